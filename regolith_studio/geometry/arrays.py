@@ -1,0 +1,54 @@
+"""Array types, and the copy-and-lock that keeps value objects from changing."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
+
+
+def locked_floats(values: ArrayLike, shape: tuple[int | None, ...], name: str) -> FloatArray:
+    """A read-only float64 copy of `values`; ``None`` in `shape` stands for any length.
+
+    Raises
+    ------
+    ValueError
+        If the shape differs or a value is not finite.
+    """
+    array = np.array(values, dtype=np.float64)
+    _check_shape(array, shape, name)
+    if not np.isfinite(array).all():
+        raise ValueError(
+            f"{name} must be finite, got {np.count_nonzero(~np.isfinite(array))} values that are not"
+        )
+    array.flags.writeable = False
+    return array
+
+
+def locked_integers(values: ArrayLike, shape: tuple[int | None, ...], name: str) -> IntArray:
+    """A read-only int64 copy of `values`; ``None`` in `shape` stands for any length.
+
+    Raises
+    ------
+    ValueError
+        If the shape differs or a value is not a whole number.
+    """
+    given = np.asarray(values)
+    array = np.array(given, dtype=np.int64)
+    _check_shape(array, shape, name)
+    if not np.array_equal(array, given):
+        raise ValueError(f"{name} must be whole numbers")
+    array.flags.writeable = False
+    return array
+
+
+def _check_shape(array: NDArray[Any], shape: tuple[int | None, ...], name: str) -> None:
+    fits = array.ndim == len(shape) and all(
+        want is None or have == want for have, want in zip(array.shape, shape, strict=True)
+    )
+    if not fits:
+        wanted = "(" + ", ".join("n" if want is None else str(want) for want in shape) + ")"
+        raise ValueError(f"{name} must have shape {wanted}, got {array.shape}")

@@ -1,0 +1,163 @@
+"""Convex polyhedra bounded by half-spaces: the particles that DEM codes take (Eq. 5)."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.spatial import ConvexHull, QhullError, cKDTree
+
+from regolith_studio.errors import GeometryError
+from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
+from regolith_studio.geometry.half_spaces import HalfSpaces
+from regolith_studio.geometry.mesh import Mesh
+
+MERGE_TOLERANCE = 1e-10
+"""Vertices closer than this share of the largest coordinate are one vertex."""
+
+
+@dataclass(frozen=True, eq=False)
+class ConvexPolyhedron:
+    """A bounded intersection of half-spaces, with its vertices and polygonal facets.
+
+    Parameters
+    ----------
+    half_spaces
+        One half-space a facet, in the order of `facets`; redundant ones are not kept.
+    vertices
+        Shape (v, 3).
+    facets
+        For each half-space the indices of its vertices, counter-clockwise seen from outside.
+    """
+
+    half_spaces: HalfSpaces
+    vertices: FloatArray
+    facets: tuple[tuple[int, ...], ...]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "vertices", locked_floats(self.vertices, (None, 3), "vertices"))
+        if len(self.facets) != len(self.half_spaces):
+            raise ValueError(
+                f"{len(self.half_spaces)} half-spaces need as many facets, got {len(self.facets)}"
+            )
+
+    def __reduce__(self) -> tuple[Callable[..., "ConvexPolyhedron"], tuple[Any, ...]]:
+        return ConvexPolyhedron, (self.half_spaces, self.vertices, self.facets)
+
+    @classmethod
+    def from_half_spaces(cls, half_spaces: HalfSpaces) -> "ConvexPolyhedron":
+        """Intersect half-spaces by the convex hull of the dual points n_i / h_i (Qhull).
+
+        Raises
+        ------
+        GeometryError
+            If the intersection is unbounded.
+        """
+        corners, triples = _dual_vertices(half_spaces)
+        vertices, merged = _merged(corners)
+        kept, facets = [], []
+        for plane in range(len(half_spaces)):
+            around = np.unique(merged[(triples == plane).any(axis=1)])
+            if len(around) >= 3:
+                kept.append(plane)
+                facets.append(_ordered(around, vertices, half_spaces.normals[plane]))
+        solid = HalfSpaces(half_spaces.normals[kept], half_spaces.offsets[kept])
+        return cls(solid, vertices, tuple(facets))
+
+    @property
+    def n_faces(self) -> int:
+        """Number of polygonal facets."""
+        return len(self.facets)
+
+    @property
+    def n_vertices(self) -> int:
+        """Number of vertices; 2 n - 4 for n facets in general position."""
+        return len(self.vertices)
+
+    @property
+    def n_triangles(self) -> int:
+        """Number of triangles of the facets' triangulation; 4 n - 12 in general position."""
+        return sum(len(facet) - 2 for facet in self.facets)
+
+    @cached_property
+    def mesh(self) -> Mesh:
+        """The facets cut into triangles, fan-wise from each facet's first vertex."""
+        fans = [(f[0], f[i], f[i + 1]) for f in self.facets for i in range(1, len(f) - 1)]
+        return Mesh(self.vertices, np.array(fans, dtype=np.int64))
+
+    @cached_property
+    def triangle_facets(self) -> IntArray:
+        """Facet of each triangle of `mesh`, shape (n_triangles,)."""
+        return np.repeat(np.arange(self.n_faces), [len(facet) - 2 for facet in self.facets])
+
+    @cached_property
+    def facet_areas(self) -> FloatArray:
+        """Area of each facet, shape (n_faces,)."""
+        areas = np.bincount(self.triangle_facets, weights=self.mesh.face_areas, minlength=self.n_faces)
+        return areas.astype(np.float64)
+
+    @property
+    def volume(self) -> float:
+        """Enclosed volume."""
+        return self.mesh.volume
+
+    @property
+    def surface_area(self) -> float:
+        """Sum of the facets' areas."""
+        return self.mesh.surface_area
+
+    @property
+    def centroid(self) -> FloatArray:
+        """Centre of mass, shape (3,)."""
+        return self.mesh.centroid
+
+    def moved(
+        self, *, shift: ArrayLike = (0.0, 0.0, 0.0), rotation: ArrayLike | None = None, scale: float = 1.0
+    ) -> "ConvexPolyhedron":
+        """The polyhedron with every point x at ``scale * rotation @ (x + shift)``.
+
+        Raises
+        ------
+        GeometryError
+            If the origin does not stay strictly inside.
+        """
+        step = np.asarray(shift, dtype=np.float64)
+        turn = np.eye(3) if rotation is None else np.asarray(rotation, dtype=np.float64)
+        old = self.half_spaces
+        planes = HalfSpaces(old.normals @ turn.T, (old.offsets + old.normals @ step) * scale)
+        return ConvexPolyhedron(planes, ((self.vertices + step) * scale) @ turn.T, self.facets)
+
+
+def _dual_vertices(half_spaces: HalfSpaces) -> tuple[FloatArray, IntArray]:
+    """Vertices (k, 3) and the three planes that meet in each (k, 3)."""
+    size = float(half_spaces.offsets.max())
+    try:
+        dual = ConvexHull(half_spaces.normals * (size / half_spaces.offsets)[:, None])
+    except (QhullError, ValueError) as error:
+        raise GeometryError("The half-spaces bound no volume: their intersection is unbounded.") from error
+    distance = -dual.equations[:, 3]
+    if not (distance > 1e-12).all():
+        raise GeometryError("The half-spaces bound no volume: their intersection is unbounded.")
+    return dual.equations[:, :3] / distance[:, None] * size, dual.simplices.astype(np.int64)
+
+
+def _merged(corners: FloatArray) -> tuple[FloatArray, IntArray]:
+    """Distinct corners, and for each corner the index of its distinct one."""
+    tolerance = MERGE_TOLERANCE * float(np.abs(corners).max())
+    pairs = cKDTree(corners).query_pairs(tolerance, output_type="ndarray")
+    root = np.arange(len(corners))
+    for first, second in pairs:
+        root[root == root[second]] = root[first]
+    distinct, inverse = np.unique(root, return_inverse=True)
+    return corners[distinct], inverse.astype(np.int64)
+
+
+def _ordered(around: IntArray, vertices: FloatArray, normal: FloatArray) -> tuple[int, ...]:
+    """The facet's vertices counter-clockwise about its normal."""
+    spokes = vertices[around] - vertices[around].mean(axis=0)
+    first = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
+    first /= np.linalg.norm(first)
+    angle = np.arctan2(spokes @ np.cross(normal, first), spokes @ first)
+    return tuple(int(index) for index in around[np.argsort(angle)])

@@ -1,0 +1,94 @@
+"""Half-spaces about an inner origin, as in Eq. 6 of the paper."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from regolith_studio.errors import GeometryError
+from regolith_studio.geometry.arrays import FloatArray, locked_floats
+
+
+@dataclass(frozen=True, eq=False)
+class HalfSpaces:
+    """The half-spaces <n_i, x> <= h_i, i = 1..n, all with the origin strictly inside (h_i > 0).
+
+    Parameters
+    ----------
+    normals
+        Outward normals, shape (n, 3); normalised on construction.
+    offsets
+        Distances h_i of the planes from the origin, shape (n,), in the unit of the particle.
+
+    Raises
+    ------
+    ValueError
+        If the shapes differ or a normal vanishes.
+    GeometryError
+        If an offset is not positive.
+    """
+
+    normals: FloatArray
+    offsets: FloatArray
+
+    def __post_init__(self) -> None:
+        normals = locked_floats(self.normals, (None, 3), "normals")
+        offsets = locked_floats(self.offsets, (len(normals),), "offsets")
+        length = np.linalg.norm(normals, axis=1, keepdims=True)
+        if not (length > 0.0).all():
+            raise ValueError("normals must not vanish")
+        if not (offsets > 0.0).all():
+            raise GeometryError(
+                f"Half-spaces must hold the origin inside: the smallest offset is {offsets.min():.3g}."
+            )
+        unit = normals if np.all(np.abs(length - 1.0) < 4e-16) else normals / length
+        object.__setattr__(self, "normals", locked_floats(unit, (None, 3), "normals"))
+        object.__setattr__(self, "offsets", offsets)
+
+    def __reduce__(self) -> tuple[Callable[..., "HalfSpaces"], tuple[ArrayLike, ArrayLike]]:
+        return HalfSpaces, (self.normals, self.offsets)
+
+    def __len__(self) -> int:
+        return len(self.offsets)
+
+    @classmethod
+    def from_points(cls, points: ArrayLike) -> "HalfSpaces":
+        """From the foot points p_i of Eq. 6, shape (n, 3): normal p_i / |p_i|, offset |p_i|.
+
+        Raises
+        ------
+        GeometryError
+            If a point lies at the origin.
+        """
+        feet = np.asarray(points, dtype=np.float64)
+        lengths = np.linalg.norm(feet, axis=1)
+        if not (lengths > 0.0).all():
+            raise GeometryError("A foot point of a half-space lies at the origin and has no direction.")
+        return cls(feet / lengths[:, None], lengths)
+
+    @property
+    def points(self) -> FloatArray:
+        """Foot points p_i = h_i n_i of Eq. 6, shape (n, 3)."""
+        return np.asarray(self.normals * self.offsets[:, None])
+
+    @property
+    def equations(self) -> FloatArray:
+        """Plane equations, shape (n, 4), outward normals, same sign as scipy's ``ConvexHull``."""
+        return np.column_stack([self.normals, -self.offsets])
+
+    def scaled(self, factor: float) -> "HalfSpaces":
+        """All offsets times `factor`."""
+        return HalfSpaces(self.normals, self.offsets * factor)
+
+    def radii(self, directions: FloatArray) -> FloatArray:
+        """Distance from the origin to the boundary of the intersection along unit `directions`.
+
+        Parameters
+        ----------
+        directions
+            Shape (k, 3). The result has shape (k,) and is infinite where no plane is met.
+        """
+        closeness = (directions @ (self.normals / self.offsets[:, None]).T).max(axis=1)
+        with np.errstate(divide="ignore"):
+            return np.asarray(np.where(closeness > 0.0, 1.0 / closeness, np.inf), dtype=np.float64)

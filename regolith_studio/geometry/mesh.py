@@ -1,0 +1,159 @@
+"""Closed triangular meshes: the shape of a particle as scanned, fitted or drawn."""
+
+import hashlib
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.spatial import ConvexHull, QhullError
+
+from regolith_studio.errors import GeometryError
+from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats, locked_integers
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """A triangular mesh.
+
+    Any triangles are accepted; volume, centroid and inertia mean what their names say only for
+    closed surfaces whose triangles run counter-clockwise seen from outside
+    (:mod:`regolith_studio.geometry.health` tells).
+
+    Parameters
+    ----------
+    vertices
+        Shape (n, 3); in micrometres for particles, dimensionless for unit-volume shapes.
+    faces
+        Vertex indices, shape (m, 3).
+
+    Raises
+    ------
+    ValueError
+        If a shape is wrong, a coordinate is not finite or an index points nowhere.
+    """
+
+    vertices: FloatArray
+    faces: IntArray
+
+    def __post_init__(self) -> None:
+        vertices = locked_floats(self.vertices, (None, 3), "vertices")
+        faces = locked_integers(self.faces, (None, 3), "faces")
+        if len(faces) and (faces.min() < 0 or faces.max() >= len(vertices)):
+            raise ValueError(f"faces must index {len(vertices)} vertices, got {faces.min()} to {faces.max()}")
+        object.__setattr__(self, "vertices", vertices)
+        object.__setattr__(self, "faces", faces)
+
+    def __reduce__(self) -> tuple[Callable[..., "Mesh"], tuple[ArrayLike, ArrayLike]]:
+        return Mesh, (self.vertices, self.faces)
+
+    @cached_property
+    def triangles(self) -> FloatArray:
+        """Corner coordinates, shape (m, 3, 3): triangle, corner, axis."""
+        return self.vertices[self.faces]
+
+    @cached_property
+    def face_area_vectors(self) -> FloatArray:
+        """Normal of each triangle times its area, shape (m, 3)."""
+        a, b, c = np.moveaxis(self.triangles, 1, 0)
+        return np.asarray(np.cross(b - a, c - a) / 2)
+
+    @cached_property
+    def face_areas(self) -> FloatArray:
+        """Area of each triangle, shape (m,)."""
+        return np.asarray(np.linalg.norm(self.face_area_vectors, axis=1))
+
+    @cached_property
+    def surface_area(self) -> float:
+        """Sum of the triangles' areas."""
+        return float(self.face_areas.sum())
+
+    @cached_property
+    def bounds(self) -> FloatArray:
+        """Lowest and highest corner of the axis-aligned box, shape (2, 3)."""
+        return np.stack([self.vertices.min(axis=0), self.vertices.max(axis=0)])
+
+    @cached_property
+    def _moments(self) -> tuple[float, FloatArray, FloatArray]:
+        """Volume, centroid (3,), central second moments (3, 3): signed tetrahedra about the middle."""
+        middle = self.bounds.mean(axis=0)
+        corners = self.triangles - middle
+        six_volumes = np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))
+        volume = float(six_volumes.sum() / 6)
+        if volume == 0.0:
+            return 0.0, middle, np.zeros((3, 3))
+        sums = corners.sum(axis=1)
+        first = np.einsum("i,ij->j", six_volumes, sums) / 24 / volume
+        second = np.einsum("i,ij,ik->jk", six_volumes, sums, sums)
+        second += np.einsum("i,icj,ick->jk", six_volumes, corners, corners)
+        return volume, middle + first, second / 120 - volume * np.outer(first, first)
+
+    @property
+    def volume(self) -> float:
+        """Signed volume by the divergence theorem; negative where the mesh is inside out."""
+        return self._moments[0]
+
+    @property
+    def centroid(self) -> FloatArray:
+        """Centre of mass of the enclosed volume, shape (3,)."""
+        return self._moments[1]
+
+    @cached_property
+    def inertia(self) -> FloatArray:
+        """Inertia tensor about the centroid at density 1, shape (3, 3)."""
+        second = self._moments[2]
+        return np.asarray(np.trace(second) * np.eye(3) - second)
+
+    @cached_property
+    def hull(self) -> "Mesh":
+        """Convex hull (Qhull), triangulated, with outward normals.
+
+        Raises
+        ------
+        GeometryError
+            If the vertices lie in one plane.
+        """
+        low, high = self.bounds
+        size = float((high - low).max())
+        if size == 0.0:
+            raise GeometryError("The mesh is a single point and has no convex hull.")
+        unit = (self.vertices - (low + high) / 2) / size
+        try:
+            hull = ConvexHull(unit)
+        except (QhullError, ValueError) as error:
+            raise GeometryError("The mesh is flat: its vertices lie in one plane.") from error
+        corner = unit[hull.simplices]
+        normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+        inward = np.einsum("ij,ij->i", normal, hull.equations[:, :3]) < 0
+        faces = np.where(inward[:, None], hull.simplices[:, ::-1], hull.simplices)
+        used, compact = np.unique(faces, return_inverse=True)
+        return Mesh(self.vertices[used], compact.reshape(-1, 3))
+
+    @cached_property
+    def content_hash(self) -> str:
+        """SHA-256 of vertices and faces, as hexadecimal digits."""
+        digest = hashlib.sha256(self.vertices.astype("<f8").tobytes())
+        digest.update(self.faces.astype("<i8").tobytes())
+        return digest.hexdigest()
+
+    def moved(
+        self, *, shift: ArrayLike = (0.0, 0.0, 0.0), rotation: ArrayLike | None = None, scale: float = 1.0
+    ) -> "Mesh":
+        """The mesh with every vertex x at ``scale * rotation @ (x + shift)``."""
+        vertices = (self.vertices + np.asarray(shift, dtype=np.float64)) * scale
+        if rotation is not None:
+            vertices = vertices @ np.asarray(rotation, dtype=np.float64).T
+        return Mesh(vertices, self.faces)
+
+    def normalised(self) -> "Mesh":
+        """The mesh centred at its centroid and scaled to unit volume.
+
+        Raises
+        ------
+        GeometryError
+            If the volume is not positive.
+        """
+        if not self.volume > 0.0:
+            raise GeometryError(f"The mesh encloses no volume (its signed volume is {self.volume:.3g}).")
+        return self.moved(shift=-self.centroid, scale=self.volume ** (-1 / 3))

@@ -1,0 +1,49 @@
+"""A measured particle: its mesh with what is known about where it came from."""
+
+from dataclasses import dataclass, field
+
+from regolith_studio.geometry.mesh import Mesh
+
+
+@dataclass(frozen=True)
+class Source:
+    """Where a particle was read.
+
+    Parameters
+    ----------
+    path
+        File as the user named it, or ``sample:NAME`` for a shipped one.
+    sha256
+        Of the file's bytes, hexadecimal.
+    unit
+        Length unit that the file's numbers were taken in: ``um``, ``mm``, ``m``, ``voxel`` ...
+    """
+
+    path: str
+    sha256: str
+    unit: str
+
+
+@dataclass(frozen=True)
+class Particle:
+    """One particle, ready to be measured.
+
+    Parameters
+    ----------
+    name
+        Unique within its sample; used in tables and file names.
+    mesh
+        Outward-oriented surface, in micrometres.
+    group
+        Sample, simulant or size fraction that it belongs to; may be empty.
+    source
+        Where it was read, or ``None`` for virtual particles.
+    notes
+        One sentence for each thing that was wrong with the input and each repair made.
+    """
+
+    name: str
+    mesh: Mesh
+    group: str = ""
+    source: Source | None = None
+    notes: tuple[str, ...] = field(default=())

@@ -1,0 +1,39 @@
+"""Where the files that ship with the program are found: samples, presets, schemas, icons."""
+
+from functools import cache
+from pathlib import Path
+
+from regolith_studio.errors import EnvironmentProblem
+
+_PACKAGE = Path(__file__).resolve().parent
+
+
+@cache
+def resource_folder() -> Path:
+    """The folder ``resources``: inside the installed package, or beside it in a checkout.
+
+    Raises
+    ------
+    EnvironmentProblem
+        If the installation holds no resources.
+    """
+    for folder in (_PACKAGE / "_resources", _PACKAGE.parent / "resources"):
+        if folder.is_dir():
+            return folder
+    raise EnvironmentProblem(
+        f"The installation in {_PACKAGE} lacks its folder of resources; install the program again."
+    )
+
+
+def resource(*parts: str) -> Path:
+    """Path of one shipped file, for example ``resource("presets", "all.json")``.
+
+    Raises
+    ------
+    EnvironmentProblem
+        If there is no such file or folder.
+    """
+    path = resource_folder().joinpath(*parts)
+    if not path.exists():
+        raise EnvironmentProblem(f"The shipped file {'/'.join(parts)} is missing; install the program again.")
+    return path
