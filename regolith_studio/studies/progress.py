@@ -1,0 +1,37 @@
+"""What a study tells while it runs."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class StudyProgress:
+    """One step of a study: `done` of `total` pieces of work are finished.
+
+    Parameters
+    ----------
+    done, total
+        Counts of equal pieces of work, 0 <= done <= total.
+    message
+        What was finished last, for a progress bar.
+    partial
+        The study's result over the pieces finished so far, or ``None`` where there is none yet.
+
+    Raises
+    ------
+    ValueError
+        If the counts are out of order.
+    """
+
+    done: int
+    total: int
+    message: str = ""
+    partial: object | None = None
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.done <= self.total:
+            raise ValueError(f"done must lie between 0 and total, got {self.done} of {self.total}")
+
+    @property
+    def share(self) -> float:
+        """Finished share of the work, 0 to 1."""
+        return self.done / self.total if self.total else 1.0

@@ -1,0 +1,139 @@
+"""Tables of results, and their two files: CSV for spreadsheets, JSON for programs."""
+
+import csv
+import io
+import json
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+Cell = str | int | float | None
+"""What a table may hold; ``None`` and NaN stand for a missing value."""
+
+
+@dataclass(frozen=True)
+class Column:
+    """One column of a table.
+
+    Parameters
+    ----------
+    name
+        Key in JSON and first word of the CSV header.
+    unit
+        Unit as printed: ``um``, ``%``, ``s``; empty for text, counts and ratios.
+    """
+
+    name: str
+    unit: str = ""
+
+    @property
+    def header(self) -> str:
+        """Name with the unit in brackets, as the CSV file prints it."""
+        return f"{self.name} [{self.unit}]" if self.unit else self.name
+
+
+@dataclass(frozen=True)
+class Table:
+    """Named columns and rows of equal length.
+
+    Parameters
+    ----------
+    title
+        One line that says what the rows are.
+    columns
+        One :class:`Column` a column.
+    rows
+        One sequence of cells a row.
+    notes
+        Sentences that a reader of the numbers needs: definitions, settings, seeds.
+
+    Raises
+    ------
+    ValueError
+        If a name appears twice or a row has another length than `columns`.
+    """
+
+    title: str
+    columns: tuple[Column, ...]
+    rows: tuple[tuple[Cell, ...], ...]
+    notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        rows = tuple(tuple(_plain(cell) for cell in row) for row in self.rows)
+        names = [column.name for column in self.columns]
+        if len(set(names)) != len(names):
+            raise ValueError(f"column names must differ, got {names}")
+        for row in rows:
+            if len(row) != len(self.columns):
+                raise ValueError(f"rows must have {len(self.columns)} cells, got {len(row)}: {row}")
+        object.__setattr__(self, "columns", tuple(self.columns))
+        object.__setattr__(self, "rows", rows)
+        object.__setattr__(self, "notes", tuple(self.notes))
+
+    def column(self, name: str) -> tuple[Cell, ...]:
+        """The cells of the column called `name`, top to bottom.
+
+        Raises
+        ------
+        KeyError
+            If there is no such column.
+        """
+        for index, column in enumerate(self.columns):
+            if column.name == name:
+                return tuple(row[index] for row in self.rows)
+        raise KeyError(name)
+
+
+def csv_text(table: Table) -> str:
+    """The table as CSV: one header line (``name [unit]``), then the rows; missing values are empty."""
+    lines = io.StringIO()
+    writer = csv.writer(lines, lineterminator="\n")
+    writer.writerow([column.header for column in table.columns])
+    writer.writerows([["" if cell is None else cell for cell in row] for row in table.rows])
+    return lines.getvalue()
+
+
+def json_text(table: Table) -> str:
+    """The table as JSON: title, notes, columns with units, and one object a row."""
+    names = [column.name for column in table.columns]
+    document = {
+        "title": table.title,
+        "notes": list(table.notes),
+        "columns": [{"name": column.name, "unit": column.unit} for column in table.columns],
+        "rows": [dict(zip(names, row, strict=True)) for row in table.rows],
+    }
+    return json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def write_table(table: Table, folder: Path, stem: str) -> tuple[Path, Path]:
+    """Write ``stem.csv`` and ``stem.json`` into `folder`, which is made if it is missing."""
+    folder.mkdir(parents=True, exist_ok=True)
+    paths = (folder / f"{stem}.csv", folder / f"{stem}.json")
+    for path, text in zip(paths, (csv_text(table), json_text(table)), strict=True):
+        path.write_text(text, encoding="utf-8", newline="\n")
+    return paths
+
+
+def rows_as_text(table: Table, digits: int = 3) -> tuple[Sequence[str], ...]:
+    """Header and rows as strings of `digits` significant digits, for a terminal or a summary page."""
+    header = [column.header for column in table.columns]
+    return (header, *[[_printed(cell, digits) for cell in row] for row in table.rows])
+
+
+def _plain(cell: object) -> Cell:
+    """A cell as plain Python: numpy scalars become numbers, NaN becomes missing, infinity text."""
+    value = cell.item() if hasattr(cell, "item") else cell
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, float) and not math.isfinite(value):
+        return None if math.isnan(value) else str(value)
+    if value is None or isinstance(value, str | int | float):
+        return value
+    raise ValueError(f"a table holds text and numbers, got {type(value).__name__}")
+
+
+def _printed(cell: Cell, digits: int) -> str:
+    if cell is None:
+        return ""
+    return f"{cell:.{digits}g}" if isinstance(cell, float) else str(cell)
