@@ -1,0 +1,178 @@
+"""The samples that ship with the program, made anew: ``python -m regolith_studio.imaging.samples FOLDER``."""
+
+import hashlib
+import json
+import sys
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.imaging.grains import AgglutinateRecipe, Recipe, StarRecipe
+from regolith_studio.imaging.stl import stl_bytes
+
+SEED = 2026
+"""Root of all shipped samples; each takes ``SeedSequence(SEED, spawn_key=(its variant,))``."""
+
+ORIGIN = (
+    "Synthesised by the generator of Regolith Studio (regolith_studio.imaging); no measured data in it. "
+    "Licence: MIT, as the program."
+)
+
+
+@dataclass(frozen=True)
+class SampleGrain:
+    """A row of the list of shipped particles.
+
+    Parameters
+    ----------
+    name, kind, description
+        As the window shows them.
+    recipe
+        With all its numbers.
+    variant
+        Spawn key of the seed.
+    """
+
+    name: str
+    kind: str
+    description: str
+    recipe: Recipe
+    variant: int
+
+    def mesh(self) -> Mesh:
+        """The particle in micrometres."""
+        return self.recipe.make(
+            np.random.default_rng(np.random.SeedSequence(SEED, spawn_key=(self.variant,)))
+        )
+
+
+GRAINS = (
+    SampleGrain(
+        "angular-1",
+        "angular",
+        "A blocky mineral fragment with flat cleavage faces and sharp edges.",
+        StarRecipe(96.0, n_planes=9, sharpness=34.0, offset_spread=0.2, roughness=0.025),
+        101,
+    ),
+    SampleGrain(
+        "angular-2",
+        "angular",
+        "A splintered fragment: few large faces, rough between sharp corners.",
+        StarRecipe(74.0, n_planes=8, sharpness=26.0, offset_spread=0.25, roughness=0.05, decay=1.4),
+        102,
+    ),
+    SampleGrain(
+        "angular-3",
+        "angular",
+        "A many-faced crushed grain with a rough surface.",
+        StarRecipe(118.0, n_planes=18, sharpness=24.0, offset_spread=0.18, roughness=0.06, decay=1.3),
+        103,
+    ),
+    SampleGrain(
+        "subangular-1",
+        "angular",
+        "A worn fragment whose edges have begun to round.",
+        StarRecipe(62.0, n_planes=14, sharpness=10.0, roughness=0.07),
+        104,
+    ),
+    SampleGrain(
+        "elongated-1",
+        "elongated",
+        "A prism about twice as long as it is wide, with cleavage faces.",
+        StarRecipe(84.0, n_planes=12, sharpness=26.0, stretch=(1.9, 1.0, 0.9), roughness=0.03),
+        105,
+    ),
+    SampleGrain(
+        "elongated-2",
+        "elongated",
+        "A rough needle-like shard.",
+        StarRecipe(56.0, n_planes=14, sharpness=16.0, stretch=(2.6, 0.9, 0.8), roughness=0.05),
+        106,
+    ),
+    SampleGrain(
+        "flat-1",
+        "flat",
+        "A plate such as plagioclase leaves, about a third as thick as it is wide.",
+        StarRecipe(90.0, n_planes=12, sharpness=26.0, stretch=(1.2, 1.1, 0.42), roughness=0.03),
+        107,
+    ),
+    SampleGrain(
+        "flat-2",
+        "flat",
+        "A thin irregular flake, longer than it is wide.",
+        StarRecipe(68.0, n_planes=12, sharpness=20.0, stretch=(1.6, 1.0, 0.38), roughness=0.06),
+        108,
+    ),
+    SampleGrain(
+        "agglutinate-1",
+        "agglutinate",
+        "Fragments welded by impact glass, with open vesicles; not star-shaped.",
+        AgglutinateRecipe(126.0),
+        11,
+    ),
+    SampleGrain(
+        "agglutinate-2",
+        "agglutinate",
+        "A branched aggregate with knobs, bridges and vesicles; not star-shaped.",
+        AgglutinateRecipe(104.0),
+        18,
+    ),
+    SampleGrain(
+        "bead-1",
+        "bead",
+        "A glass bead, almost a ball.",
+        StarRecipe(44.0, n_planes=0, roughness=0.006, highest=12, n_vertices=1502),
+        109,
+    ),
+    SampleGrain(
+        "bead-2",
+        "bead",
+        "A drop of glass that froze while it was spinning: slightly oval, smooth.",
+        StarRecipe(70.0, n_planes=0, stretch=(1.22, 1.0, 0.96), roughness=0.012, highest=12, n_vertices=1502),
+        110,
+    ),
+)
+
+
+def write_samples(folder: Path, grains: Sequence[SampleGrain] = GRAINS) -> None:
+    """Write ``particles/*.stl`` and ``manifest.json`` into `folder`, byte for byte the same each time."""
+    (folder / "particles").mkdir(parents=True, exist_ok=True)
+    rows = [_write_grain(folder, grain) for grain in grains]
+    manifest = {"origin": ORIGIN, "seed": SEED, "unit": "um", "particles": rows, "volumes": []}
+    text = json.dumps(manifest, indent=1, sort_keys=True)
+    (folder / "manifest.json").write_text(text + "\n", encoding="utf-8", newline="\n")
+
+
+def _write_grain(folder: Path, grain: SampleGrain) -> dict[str, Any]:
+    mesh = grain.mesh()
+    content = stl_bytes(mesh, f"regolith-studio sample {grain.name}, unit um")
+    name = f"particles/{grain.name}.stl"
+    (folder / name).write_bytes(content)
+    return {
+        "name": grain.name,
+        "kind": grain.kind,
+        "description": grain.description,
+        "file": name,
+        "unit": "um",
+        "n_faces": len(mesh.faces),
+        "recipe": {"type": type(grain.recipe).__name__, **asdict(grain.recipe)},
+        "variant": grain.variant,
+        "sha256": hashlib.sha256(content).hexdigest(),
+    }
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Write the samples into the folder named on the command line."""
+    if len(arguments) != 1:
+        sys.stderr.write("usage: python -m regolith_studio.imaging.samples FOLDER\n")
+        return 2
+    write_samples(Path(arguments[0]))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

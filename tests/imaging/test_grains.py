@@ -1,0 +1,90 @@
+"""Synthetic grains: closed, of the size asked, of the shape promised, and the same each time."""
+
+import numpy as np
+import pytest
+
+from regolith_studio.imaging.grains import (
+    AgglutinateRecipe,
+    StarRecipe,
+    even_sphere,
+    random_rotation,
+    star_radius,
+)
+from regolith_studio.imaging.samples import GRAINS, SampleGrain
+
+
+def directed_edges(mesh) -> tuple[np.ndarray, np.ndarray]:
+    edges = mesh.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+    return edges, edges[:, ::-1]
+
+
+def assert_closed(mesh) -> None:
+    there, back = directed_edges(mesh)
+    assert len(np.unique(there, axis=0)) == len(there)
+    assert np.array_equal(np.unique(there, axis=0), np.unique(back, axis=0))
+
+
+@pytest.mark.parametrize("grain", GRAINS, ids=lambda grain: grain.name)
+def test_that_every_shipped_grain_is_closed_outward_and_of_the_stated_size(grain: SampleGrain) -> None:
+    mesh = grain.mesh()
+    assert_closed(mesh)
+    assert len(mesh.vertices) - len(mesh.faces) / 2 == 2
+    assert mesh.volume == pytest.approx(np.pi / 6 * grain.recipe.diameter**3, rel=1e-9)
+    assert np.abs(mesh.centroid).max() < 1e-9 * grain.recipe.diameter
+    assert 2000 <= len(mesh.faces) <= 6000
+    assert 40 <= grain.recipe.diameter <= 150
+
+
+def test_that_the_kinds_can_be_told_apart_by_their_moments() -> None:
+    ratios = {}
+    for grain in GRAINS:
+        principal = np.linalg.eigvalsh(grain.mesh().inertia)
+        second = np.sqrt(principal.sum() / 2 - principal)  # standard deviations, longest first
+        ratios.setdefault(grain.kind, []).append((second[0] / second[1], second[2] / second[1]))
+    assert all(long > 1.8 for long, _ in ratios["elongated"])
+    assert all(thin < 0.5 for _, thin in ratios["flat"])
+    assert all(long < 1.3 and thin > 0.9 for long, thin in ratios["bead"])
+
+
+def test_that_agglutinates_are_not_star_shaped_and_far_from_convex() -> None:
+    for grain in GRAINS:
+        if grain.kind != "agglutinate":
+            continue
+        mesh = grain.mesh()
+        assert mesh.volume / mesh.hull.volume < 0.8
+        facing = np.einsum("ij,ij->i", mesh.face_area_vectors, mesh.triangles.mean(axis=1))
+        assert mesh.face_areas[facing < 0].sum() > 0.02 * mesh.surface_area
+
+
+@pytest.mark.parametrize("recipe", [StarRecipe(80.0), AgglutinateRecipe(80.0)], ids=["star", "agglutinate"])
+def test_that_one_seed_gives_one_grain_and_another_seed_another(recipe) -> None:
+    first, again, other = (recipe.make(np.random.default_rng(seed)) for seed in (1, 1, 2))
+    assert first.content_hash == again.content_hash
+    assert first.content_hash != other.content_hash
+
+
+def test_that_the_radius_function_and_the_mesh_are_the_same_surface() -> None:
+    recipe = StarRecipe(80.0, stretch=(1.5, 1.0, 0.6))
+    mesh = recipe.make(np.random.default_rng(5))
+    radius = star_radius(recipe, np.random.default_rng(5))
+    directions = even_sphere(20_000).vertices
+    volume = 4 * np.pi / 3 * np.mean(radius(directions) ** 3)
+    scale = (volume / mesh.volume) ** (1 / 3)
+    box = np.ptp(directions * radius(directions)[:, None], axis=0)
+    assert np.ptp(mesh.vertices, axis=0) * scale == pytest.approx(box, rel=0.01)
+
+
+def test_that_the_even_sphere_has_the_volume_and_faces_of_a_ball() -> None:
+    sphere = even_sphere(1000)
+    assert len(sphere.faces) == 1996
+    assert_closed(sphere)
+    assert sphere.volume == pytest.approx(4 * np.pi / 3, rel=0.01)
+
+
+def test_that_random_rotations_are_proper_and_uniform() -> None:
+    generator = np.random.default_rng(0)
+    turns = np.array([random_rotation(generator) for _ in range(4000)])
+    assert turns[0] @ turns[0].T == pytest.approx(np.eye(3), abs=1e-12)
+    assert np.linalg.det(turns) == pytest.approx(1.0)
+    assert np.abs(turns.mean(axis=0)).max() < 0.04
+    assert (turns**2).mean(axis=0) == pytest.approx(np.full((3, 3), 1 / 3), abs=0.03)
