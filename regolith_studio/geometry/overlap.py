@@ -13,7 +13,7 @@ N_RAYS = 16_000
 
 
 def jaccard_distance(mesh: Mesh, polyhedron: ConvexPolyhedron | HalfSpaces, n_rays: int = N_RAYS) -> float:
-    """1 - V(M n P) / V(M u P) of Eq. 7 (there called IoU): 0 where both are the same, 1 where they are disjoint.
+    """1 - V(M n P) / V(M u P), the paper's IoU (Eq. 7): 0 where both are the same, 1 where disjoint.
 
     Rays from the origin, which lies strictly inside the polyhedron, meet every crossing of the mesh, so
     that the mesh need not be star-shaped. All volumes are taken by the same quadrature; its error is

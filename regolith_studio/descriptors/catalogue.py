@@ -1,0 +1,228 @@
+"""The catalogue of descriptors (section 2.2 and what users of shape analysis expect).
+
+A descriptor is one function of :class:`ShapeFacts` and one row of `CATALOGUE`; sliders, loss terms,
+table columns and invariance tests follow from the row. S, I and L stand for the edges
+D_min <= D_int <= D_max of the minimum-volume bounding box.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from regolith_studio.descriptors.facts import ShapeFacts
+
+__all__ = ["CATALOGUE", "DEFAULT_KEYS", "LOSS_KEYS", "Descriptor", "ShapeFacts"]
+
+
+@dataclass(frozen=True)
+class Descriptor:
+    """One row of the catalogue.
+
+    Parameters
+    ----------
+    key
+        Name in files and tables.
+    symbol
+        As in the paper or the literature.
+    label
+        For people, in sentence case.
+    dimension
+        Power of length in the unit; 0 where the descriptor is a pure number.
+    formula
+        Shown in the window, with whose definition it is.
+    compute
+        Value from the shared facts.
+    in_loss
+        Whether it is one of the paper's set D of Eq. 8 and 9.
+    costly
+        Whether it is worked out only when asked for by key.
+    """
+
+    key: str
+    symbol: str
+    label: str
+    dimension: int
+    formula: str
+    compute: Callable[[ShapeFacts], float]
+    in_loss: bool = False
+    costly: bool = False
+
+
+def volume(facts: ShapeFacts) -> float:
+    """Volume enclosed by the surface."""
+    return facts.volume
+
+
+def equivalent_radius(facts: ShapeFacts) -> float:
+    """Radius of the sphere with the same volume."""
+    return float((3.0 * facts.volume / (4.0 * np.pi)) ** (1 / 3))
+
+
+def surface_area(facts: ShapeFacts) -> float:
+    """Area of the surface."""
+    return facts.surface_area
+
+
+def sphericity(facts: ShapeFacts) -> float:
+    """Wadell's true sphericity, 1 for a sphere; the printed Eq. 1 has a 3 too many in its denominator."""
+    return float(np.cbrt(np.pi) * (6.0 * facts.volume) ** (2 / 3) / facts.surface_area)
+
+
+def min_diameter(facts: ShapeFacts) -> float:
+    """Shortest edge of the minimum-volume bounding box."""
+    return facts.box.min_diameter
+
+
+def intermediate_diameter(facts: ShapeFacts) -> float:
+    """Middle edge of the minimum-volume bounding box."""
+    return facts.box.intermediate_diameter
+
+
+def max_diameter(facts: ShapeFacts) -> float:
+    """Longest edge of the minimum-volume bounding box."""
+    return facts.box.max_diameter
+
+
+def aspect_ratio(facts: ShapeFacts) -> float:
+    """D_max / D_min (Eq. 2)."""
+    return facts.box.max_diameter / facts.box.min_diameter
+
+
+def convex_hull_volume(facts: ShapeFacts) -> float:
+    """Volume of the convex hull."""
+    return facts.hull.volume
+
+
+def convexity(facts: ShapeFacts) -> float:
+    """Share of the convex hull that the particle fills, also called solidity."""
+    return facts.volume / facts.hull.volume
+
+
+def elongation(facts: ShapeFacts) -> float:
+    """Zingg's I / L (1935): 1 for no elongation, towards 0 for needles."""
+    return facts.box.intermediate_diameter / facts.box.max_diameter
+
+
+def flatness(facts: ShapeFacts) -> float:
+    """Zingg's S / I (1935): 1 for no flatness, towards 0 for flakes."""
+    return facts.box.min_diameter / facts.box.intermediate_diameter
+
+
+def corey_shape_factor(facts: ShapeFacts) -> float:
+    """S / sqrt(L I), Corey (1949)."""
+    return float(facts.box.min_diameter / np.sqrt(facts.box.max_diameter * facts.box.intermediate_diameter))
+
+
+def krumbein_sphericity(facts: ShapeFacts) -> float:
+    """Intercept sphericity (S I / L^2)^(1/3), Krumbein (1941)."""
+    return float(np.cbrt(facts.box.min_diameter * facts.box.intermediate_diameter)) / float(
+        np.cbrt(facts.box.max_diameter**2)
+    )
+
+
+def principal_moment_min(facts: ShapeFacts) -> float:
+    """Smallest principal moment of inertia at density 1."""
+    return float(facts.principal_moments[0])
+
+
+def principal_moment_mid(facts: ShapeFacts) -> float:
+    """Middle principal moment of inertia at density 1."""
+    return float(facts.principal_moments[1])
+
+
+def principal_moment_max(facts: ShapeFacts) -> float:
+    """Largest principal moment of inertia at density 1."""
+    return float(facts.principal_moments[2])
+
+
+_ROWS = (
+    Descriptor("volume", "V", "Volume", 3, "V", volume, in_loss=True),
+    Descriptor("equivalent_radius", "r_eq", "Equivalent radius", 1, "(3 V / 4π)^(1/3)", equivalent_radius),
+    Descriptor("surface_area", "A", "Surface area", 2, "A", surface_area),
+    Descriptor(
+        "sphericity",
+        "S",
+        "Sphericity",
+        0,
+        "π^(1/3) (6V)^(2/3) / A (Wadell, true sphericity)",
+        sphericity,
+        True,
+    ),
+    Descriptor(
+        "min_diameter",
+        "D_min",
+        "Minimum diameter",
+        1,
+        "shortest edge of the bounding box",
+        min_diameter,
+        True,
+    ),
+    Descriptor(
+        "max_diameter", "D_max", "Maximum diameter", 1, "longest edge of the bounding box", max_diameter, True
+    ),
+    Descriptor("aspect_ratio", "AR", "Aspect ratio", 0, "D_max / D_min", aspect_ratio, in_loss=True),
+    Descriptor(
+        "convex_hull_volume", "CH", "Convex hull volume", 3, "V of the hull", convex_hull_volume, in_loss=True
+    ),
+    Descriptor(
+        "intermediate_diameter",
+        "D_int",
+        "Intermediate diameter",
+        1,
+        "middle edge of the bounding box",
+        intermediate_diameter,
+    ),
+    Descriptor("convexity", "V/CH", "Convexity", 0, "V / CH", convexity),
+    Descriptor("elongation", "I/L", "Elongation", 0, "D_int / D_max (Zingg)", elongation),
+    Descriptor("flatness", "S/I", "Flatness", 0, "D_min / D_int (Zingg)", flatness),
+    Descriptor(
+        "corey_shape_factor",
+        "CSF",
+        "Corey shape factor",
+        0,
+        "D_min / √(D_max D_int) (Corey)",
+        corey_shape_factor,
+    ),
+    Descriptor(
+        "krumbein_sphericity",
+        "Ψ_K",
+        "Krumbein sphericity",
+        0,
+        "(D_min D_int / D_max²)^(1/3) (Krumbein)",
+        krumbein_sphericity,
+    ),
+    Descriptor(
+        "principal_moment_min",
+        "I_1",
+        "Least moment of inertia",
+        5,
+        "about the centroid",
+        principal_moment_min,
+    ),
+    Descriptor(
+        "principal_moment_mid",
+        "I_2",
+        "Middle moment of inertia",
+        5,
+        "about the centroid",
+        principal_moment_mid,
+    ),
+    Descriptor(
+        "principal_moment_max",
+        "I_3",
+        "Largest moment of inertia",
+        5,
+        "about the centroid",
+        principal_moment_max,
+    ),
+)
+
+CATALOGUE: dict[str, Descriptor] = {row.key: row for row in _ROWS}
+"""Every descriptor by its key, in the order of tables."""
+
+LOSS_KEYS: tuple[str, ...] = tuple(row.key for row in _ROWS if row.in_loss)
+"""The paper's set D of Eq. 8 and 9: V, S, D_min, D_max, AR, CH."""
+
+DEFAULT_KEYS: tuple[str, ...] = tuple(row.key for row in _ROWS if not row.costly)
+"""What :func:`describe` works out unless told."""

@@ -1,0 +1,80 @@
+"""Descriptors of one particle."""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from typing import Any
+
+from regolith_studio.descriptors.catalogue import CATALOGUE, DEFAULT_KEYS
+from regolith_studio.descriptors.facts import ShapeFacts
+from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.geometry.mesh import Mesh
+
+
+class Descriptors(Mapping[str, float]):
+    """Values of descriptors by key, in the order of `CATALOGUE`; never changes.
+
+    Raises
+    ------
+    ValueError
+        If a key is not in the catalogue.
+    """
+
+    __slots__ = ("_values",)
+    _values: dict[str, float]
+
+    def __init__(self, values: Mapping[str, float]) -> None:
+        _check_keys(values)
+        object.__setattr__(self, "_values", {key: float(values[key]) for key in CATALOGUE if key in values})
+
+    def __setattr__(self, name: str, value: object) -> None:
+        raise AttributeError(f"Descriptors cannot be changed ({name})")
+
+    def __reduce__(self) -> tuple[Callable[..., "Descriptors"], tuple[Any, ...]]:
+        return Descriptors, (dict(self._values),)
+
+    def __getitem__(self, key: str) -> float:
+        return self._values[key]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._values)
+
+    def __len__(self) -> int:
+        return len(self._values)
+
+    def __hash__(self) -> int:
+        return hash(tuple(self._values.items()))
+
+    def __repr__(self) -> str:
+        return f"Descriptors({self._values})"
+
+
+def describe(
+    solid: Mesh | ConvexPolyhedron, keys: Iterable[str] | None = None, box_metric: str = "exact"
+) -> Descriptors:
+    """Descriptors of a closed, outward-oriented solid, in powers of its length unit.
+
+    Parameters
+    ----------
+    solid
+        In micrometres for particles.
+    keys
+        Keys of `CATALOGUE`; by default all that are quick to work out (`DEFAULT_KEYS`).
+    box_metric
+        ``exact``, or ``trimesh`` for the heuristic box of the paper's program.
+
+    Raises
+    ------
+    GeometryError
+        If the solid has fewer than four faces, is flat or is inside out.
+    ValueError
+        If a key or the box metric is unknown.
+    """
+    wanted = DEFAULT_KEYS if keys is None else tuple(keys)
+    _check_keys(wanted)
+    facts = ShapeFacts(solid, box_metric)
+    return Descriptors({key: CATALOGUE[key].compute(facts) for key in wanted})
+
+
+def _check_keys(keys: Iterable[str]) -> None:
+    unknown = [key for key in keys if key not in CATALOGUE]
+    if unknown:
+        raise ValueError(f"unknown descriptors {unknown}; the catalogue has {list(CATALOGUE)}")

@@ -1,0 +1,81 @@
+"""What several descriptors of one particle share, worked out once and only if asked."""
+
+from collections.abc import Callable
+from functools import cached_property
+
+import numpy as np
+
+from regolith_studio.errors import GeometryError
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.geometry.heuristic_box import heuristic_box
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.oriented_box import OrientedBox, minimum_volume_box
+
+FLAT = 1e-9
+"""A mesh whose volume is below this share of its size cubed encloses nothing."""
+
+BOX_METRICS: dict[str, Callable[[Mesh | ConvexPolyhedron], OrientedBox]] = {
+    "exact": minimum_volume_box,
+    "trimesh": heuristic_box,
+}
+"""Bounding boxes to take D_min and D_max from; ``trimesh`` only for comparison with the paper's program."""
+
+
+class ShapeFacts:
+    """Lazily computed facts about one particle, read by the functions of the catalogue.
+
+    Parameters
+    ----------
+    solid
+        Closed and outward-oriented.
+    box_metric
+        A key of `BOX_METRICS`.
+
+    Raises
+    ------
+    GeometryError
+        If the solid has no faces, is flat or is inside out.
+    """
+
+    def __init__(self, solid: Mesh | ConvexPolyhedron, box_metric: str = "exact") -> None:
+        if box_metric not in BOX_METRICS:
+            raise ValueError(f"box_metric must be one of {sorted(BOX_METRICS)}, got {box_metric!r}")
+        self._solid = solid
+        self.box_metric = box_metric
+        self.mesh = solid.mesh if isinstance(solid, ConvexPolyhedron) else solid
+        self.volume = _checked_volume(self.mesh)
+
+    @property
+    def surface_area(self) -> float:
+        """Surface area, squared length unit."""
+        return self.mesh.surface_area
+
+    @cached_property
+    def hull(self) -> Mesh:
+        """Convex hull, triangulated."""
+        return self.mesh if isinstance(self._solid, ConvexPolyhedron) else self.mesh.hull
+
+    @cached_property
+    def box(self) -> OrientedBox:
+        """Oriented bounding box by `box_metric`."""
+        return BOX_METRICS[self.box_metric](self._solid)
+
+    @cached_property
+    def principal_moments(self) -> FloatArray:
+        """Principal moments of inertia at density 1, rising, shape (3,)."""
+        return np.linalg.eigvalsh(self.mesh.inertia / self.volume ** (5 / 3)) * self.volume ** (5 / 3)
+
+
+def _checked_volume(mesh: Mesh) -> float:
+    if len(mesh.faces) < 4:
+        raise GeometryError(f"The mesh has {len(mesh.faces)} faces; a solid needs at least 4.")
+    low, high = mesh.bounds
+    size = float((high - low).max())
+    if not abs(mesh.volume) > FLAT * size**3:
+        raise GeometryError(
+            f"The mesh is flat: it encloses a volume of {abs(mesh.volume):.3g} at a size of {size:.3g}."
+        )
+    if mesh.volume < 0.0:
+        raise GeometryError(f"The mesh is inside out: its signed volume is {mesh.volume:.3g}.")
+    return mesh.volume
