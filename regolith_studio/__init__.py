@@ -1,3 +1,55 @@
-"""Regolith Studio: from X-ray micro-CT to DEM-ready particles whose geometry is right."""
+"""Regolith Studio: from X-ray micro-CT to DEM-ready particles whose geometry is right.
+
+The doors for notebooks; each leads to the folder of its name and is opened when first used::
+
+    import regolith_studio as rs
+
+    particle = rs.read_mesh("grain.stl", unit="um")
+    rs.describe(particle.mesh)["sphericity"]
+    fit = rs.fit_harmonics(particle.mesh)
+    coarse = rs.coarsen(particle.mesh, n_faces=20)
+    dataset = rs.build_dataset([(particle, coarse)])
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from regolith_studio.coarsening.coarsen import coarsen
+    from regolith_studio.dataset.build import build_dataset
+    from regolith_studio.dataset.folder import read_dataset
+    from regolith_studio.descriptors.describe import describe
+    from regolith_studio.harmonics.fit import fit_harmonics
+    from regolith_studio.readers.registry import read_mesh
 
 __version__ = "0.1.0"
+__all__ = [
+    "__version__",
+    "build_dataset",
+    "coarsen",
+    "describe",
+    "fit_harmonics",
+    "read_dataset",
+    "read_mesh",
+]
+
+_DOORS = {
+    "build_dataset": "dataset.build",
+    "coarsen": "coarsening.coarsen",
+    "describe": "descriptors.describe",
+    "fit_harmonics": "harmonics.fit",
+    "read_dataset": "dataset.folder",
+    "read_mesh": "readers.registry",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _DOORS:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(import_module(f"{__name__}.{_DOORS[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -1,0 +1,145 @@
+"""Runs jobs in threads, one a lane, for a program whose own thread must stay free."""
+
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from regolith_studio.jobs.events import (
+    Ending,
+    Event,
+    Finished,
+    Job,
+    Listener,
+    Partial,
+    Progress,
+    Stopped,
+)
+from regolith_studio.jobs.runners.drive import drive
+
+Post = Callable[[Callable[[], None]], None]
+"""Takes a function and calls it, soon and in order, in the thread that owns the listeners."""
+
+
+class _Mailbox:
+    """Carries events to the owner; progress that nobody has read yet is replaced by the newer."""
+
+    def __init__(self, listener: Listener, post: Post) -> None:
+        self._listener, self._post = listener, post
+        self._lock = threading.Lock()
+        self._waiting: list[Event] = []
+
+    def put(self, event: Event) -> None:
+        with self._lock:
+            idle = not self._waiting
+            if isinstance(event, Progress | Partial):
+                self._waiting = [old for old in self._waiting if type(old) is not type(event)]
+            self._waiting.append(event)
+        if idle:
+            self._post(self._deliver)
+
+    def _deliver(self) -> None:
+        with self._lock:
+            events, self._waiting = self._waiting, []
+        for event in events:
+            self._listener(event)
+
+
+@dataclass(eq=False)
+class _ThreadHandle:
+    job: Job
+    mailbox: _Mailbox
+    stop: threading.Event = field(default_factory=threading.Event)
+    end: threading.Event = field(default_factory=threading.Event)
+
+    @property
+    def done(self) -> bool:
+        return self.end.is_set()
+
+    def cancel(self) -> None:
+        self.stop.set()
+
+    def run(self) -> None:
+        self.finish(drive(self.job, self.mailbox.put, self.stop.is_set))
+
+    def finish(self, ending: Ending) -> None:
+        if self.stop.is_set() and isinstance(ending, Finished):
+            ending = Stopped()
+        self.end.set()
+        self.mailbox.put(ending)
+
+
+class _Lane:
+    """One thread and the newest job that waits for it."""
+
+    def __init__(self, name: str) -> None:
+        self._condition = threading.Condition()
+        self._running: _ThreadHandle | None = None
+        self._next: _ThreadHandle | None = None
+        self._closing = False
+        self.thread = threading.Thread(target=self._work, name=f"lane {name}", daemon=True)
+        self.thread.start()
+
+    def replace(self, handle: _ThreadHandle) -> None:
+        with self._condition:
+            if self._running:
+                self._running.cancel()
+            overtaken, self._next = self._next, handle
+            self._condition.notify()
+        if overtaken:
+            overtaken.finish(Stopped())
+
+    def close(self) -> None:
+        with self._condition:
+            self._closing = True
+            overtaken, self._next = self._next, None
+            if self._running:
+                self._running.cancel()
+            self._condition.notify()
+        if overtaken:
+            overtaken.finish(Stopped())
+
+    def _work(self) -> None:
+        while handle := self._take():
+            handle.run()
+
+    def _take(self) -> _ThreadHandle | None:
+        with self._condition:
+            self._running = None
+            self._condition.wait_for(lambda: self._next or self._closing)
+            self._running, self._next = self._next, None
+            return self._running
+
+
+class ThreadRunner:
+    """One worker thread a lane; within a lane a new job stops the running one and takes its place.
+
+    Parameters
+    ----------
+    post
+        Brings a call into the thread that owns the listeners (a queue in tests, the event loop of
+        the window); events of one job arrive in order. Progress and partial results that have not
+        been read when newer ones come are skipped, endings never.
+    """
+
+    def __init__(self, post: Post) -> None:
+        self._post = post
+        self._lanes: dict[str, _Lane] = {}
+        self._closed = False
+
+    def submit(self, job: Job, listener: Listener, lane: str = "") -> _ThreadHandle:
+        if self._closed:
+            raise RuntimeError("the runner is closed")
+        handle = _ThreadHandle(job, _Mailbox(listener, self._post))
+        if lane not in self._lanes:
+            self._lanes[lane] = _Lane(lane)
+        self._lanes[lane].replace(handle)
+        return handle
+
+    def close(self, timeout: float | None = 30.0) -> None:
+        """Cancel everything and wait for the threads; a job that never yields is left behind."""
+        self._closed = True
+        for lane in self._lanes.values():
+            lane.close()
+        for lane in self._lanes.values():
+            lane.thread.join(timeout)
+        self._lanes.clear()

@@ -1,0 +1,41 @@
+"""What a program with a user needs, without any window.
+
+The cycle
+---------
+``Session(runner)`` holds three things: ``particles`` (tuple of
+:class:`~regolith_studio.session.results.ParticleEntry`), ``choices`` (a frozen
+:class:`~regolith_studio.session.choices.Choices`) and ``results`` (a frozen
+:class:`~regolith_studio.session.results.Results`). A panel reads these, connects to
+``session.topics.<name>`` and calls:
+
+=============================================  ==================================================
+``open(paths, unit=None, add=False)``          read meshes in the background
+``open_sample()``                              the shipped particles
+``select(id)``                                 put a particle on screen
+``choose("slider", l_max=7)``                  change choices; the first word joins the changes of
+                                               one drag to one undo step, until ``end_step()``
+``undo()``, ``redo()``, ``can_undo``, ...      steps of choices
+``start_study("lmax_study")``                  or ``"coarsening_study"``: over all open particles
+``export_dataset(folder, DatasetOptions())``   coarsen all and write the folder
+``tasks``, ``cancel(task.id)``, ``close()``    what is running
+=============================================  ==================================================
+
+Bad values raise :class:`~regolith_studio.errors.InputError` with one sentence; everything that goes
+wrong in the background arrives at ``topics.failed`` as a ``Failure(title, sentence, details)``.
+
+Topics: ``particles choices fit surface descriptors coarsening lmax_study coarsening_study tasks``
+carry no argument (read the session anew); ``failed`` carries a ``Failure``, ``problems`` a tuple of
+sentences about opened files, ``exported`` the folder written. All are emitted in the thread that
+owns the session.
+
+Which work a change of choices makes necessary is decided by the pure function
+:func:`~regolith_studio.session.plan.plan`; requests are numbered and answers to old ones dropped.
+
+The runner of a window::
+
+    runner = ThreadRunner(post)      # post(function): call it soon, in order, in the UI thread
+    session = Session(runner)
+
+``post`` is called from worker threads; with Qt, emit a queued ``Signal(object)`` whose slot calls
+its argument. ``InlineRunner()`` runs everything at once, for tests.
+"""

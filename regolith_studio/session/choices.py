@@ -1,0 +1,139 @@
+"""What the user wants: one frozen snapshot of every choice."""
+
+import dataclasses
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Self
+
+from regolith_studio.errors import InputError
+from regolith_studio.jobs.coarsening import CoarseningOrder
+
+if TYPE_CHECKING:
+    from regolith_studio.coarsening.weights import LossWeights
+
+Scalar = bool | int | float | str
+
+L_MAX_LIMIT = 30
+"""Highest degree that is fitted; every lower one is a truncation of that fit."""
+FACES_LIMITS = (4, 500)
+LEVEL_LIMITS = (0, 7)
+TARGETS = {"fit": "surface of the spherical-harmonics fit", "particle": "CT particle itself"}
+BOX_METRICS = ("exact", "approximate")
+DEFAULT_PRESET = "all"
+DEFAULT_METHOD = "annealing"
+
+
+def default_weights() -> "LossWeights":
+    """The weights of the default preset."""
+    from regolith_studio.coarsening.weights import LossWeights
+
+    return LossWeights.from_preset(DEFAULT_PRESET)
+
+
+@dataclass(frozen=True)
+class Choices:
+    """Every setting that decides what is computed.
+
+    Parameters
+    ----------
+    selected
+        Id of the particle on screen; empty for none.
+    l_max
+        Degree at which the spherical-harmonics series is cut, 0 to 30.
+    level
+        Subdivisions of the icosahedron that the fit is drawn on; 4 gives 5,120 triangles.
+    n_faces
+        Facets asked of the coarsened polyhedron.
+    method, settings
+        Key of the coarsening method, and those of its settings that differ from its defaults, as
+        sorted (name, value) pairs.
+    weights, preset
+        Weights of the loss (Eq. 9), and the preset that they came from; :attr:`preset_modified`
+        says whether they still agree.
+    seed
+        Of all randomness.
+    target
+        What the coarsening imitates: ``fit`` (section 3.2 of the paper) or ``particle``.
+    unit
+        Length unit in which files without one are read.
+    box_metric
+        How the minimum-volume box of the descriptors is found.
+
+    Raises
+    ------
+    InputError
+        If a value is out of its range.
+    """
+
+    selected: str = ""
+    l_max: int = 10
+    level: int = 4
+    n_faces: int = 20
+    method: str = DEFAULT_METHOD
+    settings: tuple[tuple[str, Scalar], ...] = ()
+    weights: "LossWeights" = field(default_factory=default_weights)
+    preset: str = DEFAULT_PRESET
+    seed: int = 0
+    target: str = "fit"
+    unit: str = "um"
+    box_metric: str = "exact"
+
+    def __post_init__(self) -> None:
+        _within("l_max", self.l_max, 0, L_MAX_LIMIT)
+        _within("The subdivision level", self.level, *LEVEL_LIMITS)
+        _within("The number of faces", self.n_faces, *FACES_LIMITS)
+        _within("The seed", self.seed, 0, 2**63 - 1)
+        _one_of("target of the coarsening", self.target, tuple(TARGETS))
+        _one_of("box metric", self.box_metric, BOX_METRICS)
+        object.__setattr__(self, "settings", tuple(sorted(dict(self.settings).items())))
+
+    def replaced(self, **changes: Any) -> Self:
+        """A copy with `changes`; a preset brings its weights, another method drops the old settings.
+
+        Raises
+        ------
+        InputError
+            If a name is not a choice or a value is out of its range.
+        """
+        known = {each.name for each in dataclasses.fields(self)}
+        if unknown := sorted(set(changes) - known):
+            raise InputError(f"There is no choice called {unknown[0]}; there are {', '.join(sorted(known))}.")
+        if "preset" in changes and "weights" not in changes:
+            changes["weights"] = _preset_weights(changes["preset"])
+        if changes.get("method", self.method) != self.method and "settings" not in changes:
+            changes["settings"] = ()
+        return dataclasses.replace(self, **changes)
+
+    @property
+    def order(self) -> CoarseningOrder:
+        """What is asked of a coarsening."""
+        return CoarseningOrder(
+            weights=self.weights,
+            n_faces=self.n_faces,
+            method=self.method,
+            settings=self.settings,
+            seed=self.seed,
+            target=self.target,
+            l_max=self.l_max,
+            level=self.level,
+        )
+
+    @property
+    def preset_modified(self) -> bool:
+        """Whether the weights are no longer those of the preset."""
+        return bool(self.weights != _preset_weights(self.preset))
+
+
+def _preset_weights(name: str) -> "LossWeights":
+    from regolith_studio.coarsening.weights import LossWeights
+
+    return LossWeights.from_preset(name)
+
+
+def _within(what: str, value: Any, low: int, high: int) -> None:
+    if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
+        raise InputError(f"{what} must be a whole number from {low} to {high}, got {value!r}.")
+
+
+def _one_of(what: str, value: str, known: tuple[str, ...]) -> None:
+    if value not in known:
+        raise InputError(f"There is no {what} called {value!r}; there are {', '.join(known)}.")

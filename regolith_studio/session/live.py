@@ -1,0 +1,167 @@
+"""Keeps the results of the selected particle in step with the choices."""
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, Protocol
+
+from regolith_studio.jobs.coarsening import coarsen_one
+from regolith_studio.jobs.events import Failed, Job
+from regolith_studio.jobs.fitting import describe_meshes, draw_surface, fit_one
+from regolith_studio.session.choices import Choices
+from regolith_studio.session.plan import LIVE, Kind, needs, plan
+from regolith_studio.session.results import ParticleEntry, Results
+from regolith_studio.session.tasks import Reactions, TaskBoard
+
+if TYPE_CHECKING:
+    from regolith_studio.coarsening.progress import CoarseningProgress
+    from regolith_studio.coarsening.result import Coarsened
+    from regolith_studio.harmonics.fit import HarmonicFit
+
+_TITLES = {
+    Kind.FIT: "Fitting spherical harmonics",
+    Kind.SURFACE: "Drawing the fit",
+    Kind.DESCRIPTORS: "Measuring the fit",
+    Kind.COARSENING: "Coarsening",
+}
+_EMPTY: dict[str, Any] = {
+    "fit": None,
+    "surface": None,
+    "particle_descriptors": None,
+    "fit_descriptors": None,
+    "fit_errors": {},
+    "polyhedron": None,
+    "coarsening_progress": None,
+    "coarsened": None,
+    "loss_history": (),
+}
+
+
+class Owner(Protocol):
+    """What the live results need of their session."""
+
+    results: Results
+    particles: tuple[ParticleEntry, ...]
+
+    @property
+    def choices(self) -> Choices: ...
+    @property
+    def selected(self) -> ParticleEntry | None: ...
+    def update(self, *topics: str, **changes: Any) -> None: ...
+    def tell_failure(self, title: str) -> Callable[[Failed], None]: ...
+
+
+class LiveResults:
+    """Starts each kind of work when it is due and what it needs is there."""
+
+    def __init__(self, owner: Owner, board: TaskBoard) -> None:
+        self._owner, self._board = owner, board
+        self._due: set[Kind] = set()
+        self._fits: dict[str, HarmonicFit] = {}
+
+    def forget(self) -> None:
+        """Drop the fits that are kept, because ids have got another meaning."""
+        self._fits.clear()
+
+    def follow(self, before: Choices | None, after: Choices) -> None:
+        """Start, or start anew, what the change makes necessary."""
+        requests = plan(before, after, self._fits.keys())
+        if before is None or before.selected != after.selected:
+            for kind in LIVE:
+                self._board.stop_lane(kind)
+            self._owner.update(
+                "fit",
+                "surface",
+                "descriptors",
+                "coarsening",
+                **_EMPTY | {"fit": self._fits.get(after.selected)},
+            )
+        for request in requests:
+            self._board.stop_lane(request.kind)
+        self._due = {request.kind for request in requests} | (self._due if after.selected else set())
+        self._advance()
+
+    def _advance(self) -> None:
+        for kind in LIVE:
+            if kind in self._due and not any(map(self._is_open, needs(kind, self._owner.choices))):
+                self._due.discard(kind)
+                self._start(kind)
+
+    def _is_open(self, kind: Kind) -> bool:
+        return kind in self._due or self._board.is_running(kind)
+
+    def _start(self, kind: Kind) -> None:
+        job, keep, partial = getattr(self, f"_{kind.value}")()
+
+        def finished(value: Any) -> None:
+            keep(value)
+            self._advance()
+
+        def failed(failure: Failed) -> None:
+            self._drop_dependents(kind)
+            self._owner.tell_failure(_TITLES[kind])(failure)
+
+        reactions = Reactions(finished, partial, failed, lambda: self._drop_dependents(kind))
+        self._board.start(kind, _TITLES[kind], job, reactions)
+
+    def _drop_dependents(self, kind: Kind) -> None:
+        for other in LIVE:
+            if kind in needs(other, self._owner.choices) and other in self._due:
+                self._due.discard(other)
+                self._drop_dependents(other)
+
+    def _entry(self) -> ParticleEntry:
+        entry = self._owner.selected
+        assert entry is not None, "nothing is planned without a selected particle"
+        return entry
+
+    def _fit(self) -> "_Work":
+        entry = self._entry()
+
+        def keep(fit: "HarmonicFit") -> None:
+            self._fits[entry.id] = fit
+            self._owner.update("fit", fit=fit)
+
+        return Job(fit_one, (entry.particle.mesh,)), keep, _ignore
+
+    def _surface(self) -> "_Work":
+        choices = self._owner.choices
+        job = Job(draw_surface, (self._owner.results.fit, choices.l_max, choices.level))
+        return job, lambda mesh: self._owner.update("surface", surface=mesh), _ignore
+
+    def _descriptors(self) -> "_Work":
+        meshes = {"particle": self._entry().particle.mesh, "fit": self._owner.results.surface}
+
+        def keep(described: dict[str, Any]) -> None:
+            from regolith_studio.descriptors.comparison import relative_errors
+
+            particle, fit = described["particle"], described["fit"]
+            errors = relative_errors(particle, fit)
+            self._owner.update(
+                "descriptors", particle_descriptors=particle, fit_descriptors=fit, fit_errors=errors
+            )
+
+        return Job(describe_meshes, (meshes,)), keep, _ignore
+
+    def _coarsening(self) -> "_Work":
+        choices, entry = self._owner.choices, self._entry()
+        target = self._owner.results.surface if choices.target == "fit" else entry.particle.mesh
+        self._owner.update("coarsening", coarsened=None, coarsening_progress=None, loss_history=())
+        job = Job(coarsen_one, (target, choices.order, self._owner.particles.index(entry)))
+        return job, self._keep_coarsened, self._keep_progress
+
+    def _keep_progress(self, step: "CoarseningProgress") -> None:
+        history = (*self._owner.results.loss_history, (step.step, step.loss))
+        polyhedron = step.polyhedron or self._owner.results.polyhedron
+        self._owner.update(
+            "coarsening", coarsening_progress=step, polyhedron=polyhedron, loss_history=history
+        )
+
+    def _keep_coarsened(self, done: "Coarsened") -> None:
+        history = tuple(enumerate(done.loss_history))
+        self._owner.update("coarsening", coarsened=done, polyhedron=done.polyhedron, loss_history=history)
+
+
+_Work = tuple[Job, Callable[[Any], None], Callable[[Any], None]]
+
+
+def _ignore(_value: Any) -> None:
+    """Partial results of work that is over in a moment."""

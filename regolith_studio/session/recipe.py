@@ -1,0 +1,132 @@
+"""A recipe: everything that turns files into results, as JSON; the window saves it, ``run`` takes it."""
+
+from pathlib import Path
+from typing import Any, Literal, Self
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from regolith_studio.errors import FileError, InputError
+from regolith_studio.session.choices import Choices, Scalar
+
+FORMAT: Literal["regolith-studio recipe"] = "regolith-studio recipe"
+VERSION: Literal[1] = 1
+SAMPLE = "sample:all"
+"""Stands among the inputs for the particles that ship with the program."""
+
+
+class _Strict(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+
+class Outputs(_Strict):
+    """What is written below the output folder."""
+
+    descriptors: bool = True
+    fits: bool = False
+    meshes: bool = True
+    dataset: bool = True
+    lmax_study: bool = False
+    coarsening_study: bool = False
+    summary: bool = True
+
+
+class Recipe(_Strict):
+    """Inputs, choices and outputs; relative inputs are looked up beside the recipe file.
+
+    Parameters
+    ----------
+    inputs
+        Files and folders of meshes, or ``sample:all``.
+    """
+
+    format: Literal["regolith-studio recipe"] = FORMAT
+    version: Literal[1] = VERSION
+    inputs: list[str] = Field(default_factory=lambda: [SAMPLE], min_length=1)
+    unit: str = "um"
+    l_max: int = 10
+    level: int = 4
+    target: str = "fit"
+    method: str = "annealing"
+    settings: dict[str, Scalar] = Field(default_factory=dict)
+    preset: str = "all"
+    weights: dict[str, float] | None = None
+    n_faces: int = 20
+    seed: int = 0
+    box_metric: str = "exact"
+    outputs: Outputs = Field(default_factory=Outputs)
+
+    @classmethod
+    def from_choices(cls, choices: Choices, inputs: list[str], outputs: Outputs | None = None) -> Self:
+        """The recipe that repeats what has been chosen."""
+        return cls(
+            inputs=inputs,
+            unit=choices.unit,
+            l_max=choices.l_max,
+            level=choices.level,
+            target=choices.target,
+            method=choices.method,
+            settings=dict(choices.settings),
+            preset=choices.preset,
+            weights=dict(choices.weights) if choices.preset_modified else None,
+            n_faces=choices.n_faces,
+            seed=choices.seed,
+            box_metric=choices.box_metric,
+            outputs=outputs or Outputs(),
+        )
+
+    def choices(self) -> Choices:
+        """The choices that it holds.
+
+        Raises
+        ------
+        InputError
+            If a value is out of its range.
+        """
+        from regolith_studio.coarsening.weights import LossWeights
+
+        names = ("unit", "l_max", "level", "target", "method", "preset", "n_faces", "seed", "box_metric")
+        changes: dict[str, Any] = {name: getattr(self, name) for name in names}
+        changes["settings"] = tuple(self.settings.items())
+        if self.weights is not None:
+            changes["weights"] = LossWeights.of(**self.weights)
+        return Choices().replaced(**changes)
+
+    def to_json(self) -> str:
+        """As indented JSON, ending in a newline."""
+        return self.model_dump_json(indent=2) + "\n"
+
+
+def read_recipe(path: Path) -> Recipe:
+    """Read a recipe file.
+
+    Raises
+    ------
+    FileError
+        If it cannot be read or is no recipe; the sentence names the first entry that is wrong.
+    """
+    try:
+        return Recipe.model_validate_json(path.read_bytes())
+    except OSError as error:
+        raise FileError(f"The recipe {path} cannot be read ({error.strerror}).") from error
+    except ValidationError as error:
+        raise FileError(f"{path} is not a recipe of this program: {_first_problem(error)}.") from error
+
+
+def recipe_of(**entries: Any) -> Recipe:
+    """A recipe from Python values.
+
+    Raises
+    ------
+    InputError
+        If an entry is wrong.
+    """
+    try:
+        return Recipe(**entries)
+    except ValidationError as error:
+        raise InputError(f"This is not a recipe: {_first_problem(error)}.") from error
+
+
+def _first_problem(error: ValidationError) -> str:
+    first = error.errors(include_url=False)[0]
+    where = ".".join(str(part) for part in first["loc"]) or "the file"
+    return f"{where}: {first['msg'][:1].lower()}{first['msg'][1:]}"

@@ -1,0 +1,66 @@
+"""What is true of the selected particle at the moment, and of the studies that have been run."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.particle import Particle
+
+if TYPE_CHECKING:
+    from regolith_studio.coarsening.progress import CoarseningProgress
+    from regolith_studio.coarsening.result import Coarsened
+    from regolith_studio.descriptors.describe import Descriptors
+    from regolith_studio.geometry.health import MeshHealth
+    from regolith_studio.harmonics.fit import HarmonicFit
+    from regolith_studio.studies.coarsening import CoarseningStudy
+    from regolith_studio.studies.lmax import LmaxStudy
+
+
+@dataclass(frozen=True)
+class ParticleEntry:
+    """One row of the particle list; `health` and `descriptors` follow a moment after opening."""
+
+    id: str
+    particle: Particle
+    health: "MeshHealth | None" = None
+    descriptors: "Descriptors | None" = None
+
+
+@dataclass(frozen=True)
+class Results:
+    """Everything is ``None`` (or empty) until it has been computed.
+
+    Parameters
+    ----------
+    fit
+        Coefficients up to degree 30; hidden surface share and warnings with them.
+    surface
+        The fit's surface cut at the chosen l_max, in the particle's frame, micrometres.
+    particle_descriptors, fit_descriptors, fit_errors
+        Of the CT particle, of `surface`, and the relative errors (Eq. 8) of the second.
+    polyhedron
+        The best one so far, while the coarsening runs; in the end that of `coarsened`.
+    coarsening_progress
+        The newest step of the coarsening that runs or ran.
+    coarsened
+        The finished coarsening for the present choices; ``None`` while it runs.
+    loss_history
+        (step, loss) pairs: thinned out while it runs, complete in the end.
+    lmax_study, coarsening_study
+        Of all particles that are open; `outdated` names those that no longer fit the choices.
+    """
+
+    fit: "HarmonicFit | None" = None
+    surface: Mesh | None = None
+    particle_descriptors: "Descriptors | None" = None
+    fit_descriptors: "Descriptors | None" = None
+    fit_errors: Mapping[str, float] = field(default_factory=dict)
+    polyhedron: ConvexPolyhedron | None = None
+    coarsening_progress: "CoarseningProgress | None" = None
+    coarsened: "Coarsened | None" = None
+    loss_history: tuple[tuple[int, float], ...] = ()
+    lmax_study: "LmaxStudy | None" = None
+    coarsening_study: "CoarseningStudy | None" = None
+    outdated: frozenset[str] = frozenset()

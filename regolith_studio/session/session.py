@@ -1,0 +1,265 @@
+"""The session: particles, choices and results, and the cycle that keeps the last two in step."""
+
+import dataclasses
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from regolith_studio.errors import InputError
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.jobs.building import DatasetOptions, build_dataset_folder
+from regolith_studio.jobs.events import Failed, Job
+from regolith_studio.jobs.fitting import inspect_particles
+from regolith_studio.jobs.loading import Loaded, load_particles, load_sample
+from regolith_studio.jobs.runners.protocol import Runner
+from regolith_studio.session.choices import Choices
+from regolith_studio.session.live import LiveResults
+from regolith_studio.session.plan import STUDIES, Kind, depends
+from regolith_studio.session.results import ParticleEntry, Results
+from regolith_studio.session.studies import study_job
+from regolith_studio.session.tasks import Reactions, Task, TaskBoard
+from regolith_studio.session.topics import Failure, Topics
+from regolith_studio.session.undo import History
+
+
+class Session:
+    """One sitting of one user; belongs to the thread that made it.
+
+    Parameters
+    ----------
+    runner
+        Drives the jobs and brings their events into this thread.
+    choices
+        Where to begin; the defaults if left out.
+    """
+
+    def __init__(self, runner: Runner, choices: Choices | None = None) -> None:
+        self.topics = Topics()
+        self.particles: tuple[ParticleEntry, ...] = ()
+        self.results = Results()
+        self._runner = runner
+        self._history: History[Choices] = History(choices or Choices())
+        self._board = TaskBoard(runner, self.topics.tasks.emit)
+        self._live = LiveResults(self, self._board)
+        self._studied: dict[Kind, Choices] = {}
+
+    # --- reading -------------------------------------------------------------------------------
+
+    @property
+    def choices(self) -> Choices:
+        """What the user wants at present."""
+        return self._history.value
+
+    @property
+    def selected(self) -> ParticleEntry | None:
+        """The particle on screen."""
+        return next((entry for entry in self.particles if entry.id == self.choices.selected), None)
+
+    @property
+    def tasks(self) -> tuple[Task, ...]:
+        """What is running, oldest first."""
+        return self._board.running
+
+    @property
+    def can_undo(self) -> bool:
+        """Whether :meth:`undo` would change something."""
+        return self._history.can_undo
+
+    @property
+    def can_redo(self) -> bool:
+        """Whether :meth:`redo` would change something."""
+        return self._history.can_redo
+
+    # --- particles -----------------------------------------------------------------------------
+
+    def open(self, paths: Sequence[Path | str], unit: str | None = None, add: bool = False) -> int:
+        """Read files and folders of meshes in the background; returns the task's id.
+
+        Parameters
+        ----------
+        unit
+            Length unit of files that have none; the chosen one if left out.
+        add
+            Keep the particles that are open already.
+        """
+        unit = unit or self.choices.unit
+        job = Job(load_particles, (tuple(Path(path) for path in paths), unit))
+        return self._load("Reading particles", job, add)
+
+    def open_sample(self) -> int:
+        """Load the particles that ship with the program; returns the task's id."""
+        return self._load("Reading the sample", Job(load_sample), add=False)
+
+    def select(self, id: str) -> None:
+        """Put another particle on screen."""
+        self.choose(selected=id)
+
+    # --- choices -------------------------------------------------------------------------------
+
+    def choose(self, step: str | None = None, /, **changes: Any) -> None:
+        """Change choices; what follows from them is recomputed in the background.
+
+        Parameters
+        ----------
+        step
+            Changes in a row with the same word are one step of undo, until :meth:`end_step`.
+
+        Raises
+        ------
+        InputError
+            If a value is out of its range or the particle is not there.
+        """
+        after = self.choices.replaced(**changes)
+        if "selected" in changes and after.selected not in {"", *(entry.id for entry in self.particles)}:
+            raise InputError(f"There is no particle called {after.selected!r} among those that are open.")
+        before = self.choices
+        self._history.push(after, step)
+        self._follow(before)
+
+    def end_step(self) -> None:
+        """Say that a slider was let go."""
+        self._history.end_step()
+
+    def undo(self) -> None:
+        """Take the last step back."""
+        before = self.choices
+        self._history.undo()
+        self._follow(before)
+
+    def redo(self) -> None:
+        """Take it again."""
+        before = self.choices
+        self._history.redo()
+        self._follow(before)
+
+    # --- work that is asked for ----------------------------------------------------------------
+
+    def start_study(self, kind: Kind | str, **options: Any) -> int:
+        """Run ``lmax_study`` or ``coarsening_study`` over all open particles; returns the task's id.
+
+        Raises
+        ------
+        InputError
+            If no particle is open.
+        """
+        kind = Kind(kind)
+        choices = self.choices
+        job = study_job(kind, self._open_particles(), choices, options)
+
+        def keep(value: Any) -> None:
+            self._studied[kind] = choices
+            self.update(kind.value, **{kind.value: value})
+            self._mark_outdated()
+
+        return self._board.start(
+            kind, job.title, job.job, Reactions(keep, failed=self.tell_failure(job.title))
+        )
+
+    def export_dataset(self, folder: Path | str, options: DatasetOptions | None = None) -> int:
+        """Coarsen every open particle with the present choices and write the dataset folder.
+
+        Returns the task's id; ``topics.exported`` tells when it is done.
+        """
+        particles, wish = self._open_particles(), options or DatasetOptions()
+        job = Job(build_dataset_folder, (particles, self.choices.order, Path(folder), wish))
+        title = "Building the dataset"
+        reactions = Reactions(self.topics.exported.emit, failed=self.tell_failure(title))
+        return self._board.start("export", title, job, reactions)
+
+    def cancel(self, task_id: int) -> None:
+        """Stop one task; harmless if it has ended."""
+        self._board.cancel(task_id)
+
+    def close(self) -> None:
+        """Stop everything and wait for it."""
+        for task in self.tasks:
+            self._board.stop_lane(task.lane)
+        self._runner.close()
+
+    # --- for the parts of the session ----------------------------------------------------------
+
+    def update(self, *topics: str, **changes: Any) -> None:
+        """Replace fields of the results and tell the topics."""
+        self.results = dataclasses.replace(self.results, **changes)
+        for topic in topics:
+            getattr(self.topics, topic).emit()
+
+    def tell_failure(self, title: str) -> Any:
+        """A reaction that tells a failure of the work called `title`."""
+
+        def tell(failure: Failed) -> None:
+            self.topics.failed.emit(Failure(title, failure.sentence, failure.details))
+
+        return tell
+
+    def _open_particles(self) -> tuple[Particle, ...]:
+        if not self.particles:
+            raise InputError("No particle is open; open a mesh first.")
+        return tuple(entry.particle for entry in self.particles)
+
+    def _follow(self, before: Choices) -> None:
+        if self.choices == before:
+            return
+        self.topics.choices.emit()
+        self._mark_outdated()
+        self._live.follow(before, self.choices)
+
+    def _mark_outdated(self) -> None:
+        done = {kind: made for kind, made in self._studied.items() if kind in STUDIES}
+        names = frozenset(kind.value for kind, made in done.items() if depends(kind, made, self.choices))
+        if names != self.results.outdated:
+            changed = names ^ self.results.outdated
+            self.update(*sorted(changed), outdated=names)
+
+    def _load(self, title: str, job: Job, add: bool) -> int:
+        def take(loaded: Loaded) -> None:
+            self._replace_particles(loaded, add)
+
+        return self._board.start("load", title, job, Reactions(take, failed=self.tell_failure(title)))
+
+    def _replace_particles(self, loaded: Loaded, add: bool) -> None:
+        problems = (*loaded.problems, *(note for p in loaded.particles for note in p.notes))
+        if problems:
+            self.topics.problems.emit(problems)
+        if not loaded.particles:
+            return
+        kept = self.particles if add else ()
+        self.particles = kept + _entries(loaded.particles, [entry.id for entry in kept])
+        first = self.particles[len(kept)].id
+        self._live.forget()
+        self._studied.clear()
+        self._history.restart(self.choices.replaced(selected=first))
+        self.update(
+            "lmax_study", "coarsening_study", lmax_study=None, coarsening_study=None, outdated=frozenset()
+        )
+        self.topics.particles.emit()
+        self.topics.choices.emit()
+        self._inspect()
+        self._live.follow(None, self.choices)
+
+    def _inspect(self) -> None:
+        def note(seen: tuple[tuple[Any, Any], ...]) -> None:
+            rows = list(self.particles)
+            for at, (health, descriptors) in enumerate(seen):
+                rows[at] = dataclasses.replace(rows[at], health=health, descriptors=descriptors)
+            self.particles = tuple(rows)
+            self.topics.particles.emit()
+
+        job = Job(inspect_particles, (self._open_particles(),))
+        title = "Measuring particles"
+        reactions = Reactions(lambda _all: None, partial=note, failed=self.tell_failure(title))
+        self._board.start("inspect", title, job, reactions)
+
+
+def _entries(particles: Sequence[Particle], taken: list[str]) -> tuple[ParticleEntry, ...]:
+    """Entries with ids that differ from each other and from those `taken`."""
+    used = set(taken)
+    entries = []
+    for particle in particles:
+        name, number = particle.name, 1
+        while name in used:
+            number += 1
+            name = f"{particle.name} ({number})"
+        used.add(name)
+        entries.append(ParticleEntry(name, particle))
+    return tuple(entries)

@@ -1,0 +1,114 @@
+"""The work that is under way: numbered, listed, cancellable, the newest of each lane."""
+
+import dataclasses
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from regolith_studio.jobs.events import Event, Failed, Finished, Job, Partial, Progress, Started, Stopped
+from regolith_studio.jobs.runners.protocol import Handle, Runner
+
+
+@dataclass(frozen=True)
+class Task:
+    """One request under way; `total` is 0 while its length is not known."""
+
+    id: int
+    lane: str
+    title: str
+    done: int = 0
+    total: int = 0
+    message: str = ""
+
+
+@dataclass(frozen=True)
+class Reactions:
+    """What to do with what a task says; called only while it is the newest of its lane."""
+
+    finished: Callable[[Any], None]
+    partial: Callable[[Any], None] = lambda _value: None
+    failed: Callable[[Failed], None] = lambda _failure: None
+    stopped: Callable[[], None] = lambda: None
+
+
+class TaskBoard:
+    """Hands jobs to a runner and drops what comes from requests that a newer one has replaced.
+
+    Parameters
+    ----------
+    changed
+        Called whenever :attr:`running` has changed.
+    """
+
+    def __init__(self, runner: Runner, changed: Callable[[], None]) -> None:
+        self._runner, self._changed = runner, changed
+        self._number = 0
+        self._newest: dict[str, int] = {}
+        self._tasks: dict[int, Task] = {}
+        self._handles: dict[int, Handle] = {}
+
+    @property
+    def running(self) -> tuple[Task, ...]:
+        """The newest task of each lane that has not ended, oldest first."""
+        return tuple(self._tasks.values())
+
+    def is_running(self, lane: str) -> bool:
+        """Whether `lane` has a task that has not ended."""
+        return self._newest.get(lane, 0) in self._tasks
+
+    def start(self, lane: str, title: str, job: Job, reactions: Reactions) -> int:
+        """Run `job`; whatever ran in `lane` before is cancelled and no longer heard. Returns its id."""
+        self.stop_lane(lane)
+        self._number += 1
+        number = self._newest[lane] = self._number
+        self._tasks[number] = Task(number, lane, title)
+        self._changed()
+        handle = self._runner.submit(job, lambda event: self._hear(number, event, reactions), lane)
+        if number in self._tasks:
+            self._handles[number] = handle
+        return number
+
+    def stop_lane(self, lane: str) -> None:
+        """Cancel what runs in `lane`, silently: its reactions are not called any more."""
+        number = self._newest.pop(lane, 0)
+        if handle := self._handles.get(number):
+            handle.cancel()
+        if self._forget(number):
+            self._changed()
+
+    def cancel(self, number: int) -> None:
+        """Cancel one task; its `stopped` reaction follows when it has stopped."""
+        if handle := self._handles.get(number):
+            handle.cancel()
+
+    def _forget(self, number: int) -> bool:
+        self._handles.pop(number, None)
+        return self._tasks.pop(number, None) is not None
+
+    def _hear(self, number: int, event: Event, reactions: Reactions) -> None:
+        if number not in self._tasks:
+            return
+        match event:
+            case Started(title, total):
+                self._update(number, title=title, total=total)
+            case Progress(done, total, message):
+                self._update(number, done=done, total=total, message=message)
+            case Partial(value):
+                reactions.partial(value)
+            case Finished() | Failed() | Stopped():
+                self._end(number, event, reactions)
+
+    def _update(self, number: int, **changes: Any) -> None:
+        self._tasks[number] = dataclasses.replace(self._tasks[number], **changes)
+        self._changed()
+
+    def _end(self, number: int, event: Finished | Failed | Stopped, reactions: Reactions) -> None:
+        self._forget(number)
+        match event:
+            case Finished(value):
+                reactions.finished(value)
+            case Failed():
+                reactions.failed(event)
+            case Stopped():
+                reactions.stopped()
+        self._changed()
