@@ -1,0 +1,157 @@
+"""What is written into a picture: the scale bar in micrometres, the title."""
+
+import math
+import weakref
+from collections.abc import Callable
+from typing import Any
+
+import pyvista as pv
+from vtkmodules.vtkRenderingCore import vtkActor2D, vtkCoordinate, vtkPolyDataMapper2D, vtkTextActor
+
+from regolith_studio.scene import palette
+from regolith_studio.scene.palette import Surroundings
+
+TITLE = "title"
+_STEPS = (1.0, 2.0, 5.0)
+_WIDEST_SHARE = 0.28
+"""Of the picture's width that the scale bar takes at most."""
+
+
+def bar_length(picture_width: float) -> float:
+    """The longest of 1, 2, 5, 10, ... that fits into its share of the picture, in the unit of the scene.
+
+    Parameters
+    ----------
+    picture_width
+        Width of the picture in the unit of the scene.
+    """
+    widest = picture_width * _WIDEST_SHARE
+    if not widest > 0.0:
+        return 0.0
+    power = 10.0 ** math.floor(math.log10(widest) + 1e-12)
+    return max(step * power for step in _STEPS if step * power <= widest * (1 + 1e-9))
+
+
+def length_text(micrometres: float) -> str:
+    """A length with the unit that suits it: nm, µm, mm or m."""
+    for factor, unit in ((1e-3, "nm"), (1.0, "µm"), (1e3, "mm"), (1e6, "m")):
+        if micrometres < factor * 1e3 or unit == "m":
+            return f"{micrometres / factor:.4g} {unit}"
+    raise AssertionError("the last unit takes every length")
+
+
+class ScaleBar:
+    """A bar at the lower left that keeps its meaning while the camera zooms and the picture is resized.
+
+    It is exact because the cameras use parallel projection.
+
+    Parameters
+    ----------
+    plotter
+        Any pyvista plotter; the bar belongs to its active renderer.
+    surroundings
+        Whose ink it is drawn with.
+    unit
+        ``True`` for micrometres, ``False`` for a dimensionless scene.
+    """
+
+    def __init__(
+        self, plotter: Any, surroundings: Surroundings = palette.LIGHT, *, unit: bool = True
+    ) -> None:
+        self._renderer = plotter.renderer
+        self._unit = unit
+        self._line = pv.PolyData()
+        self._bar = vtkActor2D()
+        mapper = vtkPolyDataMapper2D()
+        mapper.SetInputData(self._line)
+        coordinate = vtkCoordinate()
+        coordinate.SetCoordinateSystemToViewport()
+        mapper.SetTransformCoordinate(coordinate)
+        self._bar.SetMapper(mapper)
+        self._bar.GetProperty().SetLineWidth(2.0)
+        self._label = vtkTextActor()
+        self._label.GetTextProperty().SetFontSize(14)
+        self._label.GetTextProperty().SetFontFamilyToArial()
+        self._label.GetTextProperty().SetJustificationToCentered()
+        self.set_ink(surroundings)
+        self._renderer.AddViewProp(self._bar)
+        self._renderer.AddViewProp(self._label)
+        self._shown: tuple[float, ...] = ()
+        self._tag = self._renderer.AddObserver("StartEvent", _updater(weakref.ref(self)))
+
+    def set_ink(self, surroundings: Surroundings) -> None:
+        """Draw with another ink."""
+        red, green, blue = pv.Color(surroundings.ink).float_rgb
+        self._bar.GetProperty().SetColor(red, green, blue)
+        self._label.GetTextProperty().SetColor(red, green, blue)
+
+    def set_visible(self, visible: bool) -> None:
+        """Show or hide it."""
+        self._bar.SetVisibility(visible)
+        self._label.SetVisibility(visible)
+
+    @property
+    def text(self) -> str:
+        """What the bar says."""
+        return str(self._label.GetInput() or "")
+
+    def update(self) -> None:
+        """Fit the bar to the camera; called by itself before every picture."""
+        width, height = self._renderer.GetSize()
+        if not width or not height:
+            return
+        per_pixel = 2.0 * self._renderer.GetActiveCamera().GetParallelScale() / height
+        now = (width, height, per_pixel)
+        if now != self._shown:
+            self._shown = now
+            self._draw(16.0, 14.0, bar_length(width * per_pixel), per_pixel)
+
+    def remove(self) -> None:
+        """Take it out of the picture and stop listening to the renderer."""
+        self._renderer.RemoveObserver(self._tag)
+        self._renderer.RemoveViewProp(self._bar)
+        self._renderer.RemoveViewProp(self._label)
+
+    def _draw(self, x: float, y: float, length: float, per_pixel: float) -> None:
+        end = x + length / per_pixel
+        points = [(x, y + 5, 0), (x, y, 0), (end, y, 0), (end, y + 5, 0)]
+        self._line.copy_from(pv.PolyData(points, lines=[4, 0, 1, 2, 3]))
+        self._label.SetInput(length_text(length) if self._unit else f"{length:.4g}")
+        self._label.SetPosition((x + end) / 2, y + 7)
+
+
+def _updater(bar: "weakref.ref[ScaleBar]") -> Callable[..., None]:
+    """An observer that does not keep the bar alive."""
+
+    def update(*_: Any) -> None:
+        alive = bar()
+        if alive is not None:
+            alive.update()
+
+    return update
+
+
+def show_title(plotter: Any, title: str, surroundings: Surroundings = palette.PAPER, size: int = 11) -> None:
+    """One line above the picture, or none for an empty text."""
+    plotter.add_text(
+        title, position=(0.5, 0.945), viewport=True, font_size=size, color=surroundings.ink, name=TITLE
+    ).prop.justification_horizontal = "center"
+
+
+def show_colour_scale(plotter: Any, mapper: Any, title: str, surroundings: Surroundings) -> None:
+    """The scale of the distance map, at the lower right, in micrometres."""
+    plotter.add_scalar_bar(
+        title=title,
+        mapper=mapper,
+        color=surroundings.ink,
+        n_labels=3,
+        fmt="%.3g",
+        vertical=True,
+        width=0.06,
+        height=0.36,
+        position_x=0.84,
+        position_y=0.06,
+        label_font_size=12,
+        title_font_size=12,
+        render=False,
+    )

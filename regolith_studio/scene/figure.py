@@ -1,0 +1,89 @@
+"""The three views side by side as a picture file, drawn without a window."""
+
+from pathlib import Path
+
+import numpy as np
+import pyvista as pv
+from numpy.typing import NDArray
+
+from regolith_studio.coarsening.result import Coarsened
+from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.scene import annotations, cameras, palette, stage, surfaces
+
+Picture = NDArray[np.uint8]
+
+VIEW_SIZE = (620, 560)
+"""Width and height of one view in pixels."""
+
+
+def three_views(
+    particle: Mesh,
+    fit: Mesh,
+    polyhedron: ConvexPolyhedron | Coarsened,
+    titles: tuple[str, str, str],
+    path: Path | None = None,
+    direction: str = "isometric",
+    scale: int = 1,
+) -> Picture:
+    """Particle, fit and polyhedron side by side under one camera pose.
+
+    Parameters
+    ----------
+    particle, fit, polyhedron
+        In the particle's frame, in micrometres; a :class:`Coarsened` knows where its polyhedron lies.
+    titles
+        One line over each view.
+    path
+        PNG file to write; nothing is written if not given.
+    direction
+        A key of :data:`regolith_studio.scene.cameras.DIRECTIONS`.
+    scale
+        Whole factor on the size in pixels.
+
+    Returns
+    -------
+    The picture, shape (height, width, 3), uint8.
+    """
+    stage.choose_off_screen_window()
+    width, height = VIEW_SIZE
+    plotter = pv.Plotter(off_screen=True, shape=(1, 3), window_size=[3 * width, height], border=False)
+    try:
+        pose = cameras.framing_pose(particle.bounds, direction, width / height)
+        bars = []
+        for column, title in enumerate(titles):
+            plotter.subplot(0, column)
+            stage.set_stage(plotter, palette.PAPER)
+            _fill(plotter, column, particle, fit, polyhedron)
+            annotations.show_title(plotter, title)
+            bars.append(annotations.ScaleBar(plotter, palette.PAPER))
+            cameras.apply_pose(plotter, pose)
+        picture = plotter.screenshot(path, return_img=True, scale=scale)
+        for bar in bars:
+            bar.remove()
+    finally:
+        plotter.close()
+    return np.array(picture, dtype=np.uint8)
+
+
+def _fill(
+    plotter: pv.Plotter, column: int, particle: Mesh, fit: Mesh, polyhedron: ConvexPolyhedron | Coarsened
+) -> None:
+    if column == 0:
+        surfaces.show_particle(plotter, particle)
+    elif column == 1:
+        surfaces.show_fit(plotter, fit)
+    elif isinstance(polyhedron, Coarsened):
+        surfaces.show_polyhedron(plotter, polyhedron.polyhedron, polyhedron.centre, palette.PAPER)
+    else:
+        surfaces.show_polyhedron(plotter, polyhedron, surroundings=palette.PAPER)
+
+
+def view_titles(l_max: int, polyhedron: ConvexPolyhedron | Coarsened) -> tuple[str, str, str]:
+    """The titles that the window and the figures share; facets are not triangles, so both are named."""
+    return (
+        "CT particle",
+        f"Spherical-harmonics fit, l_max = {l_max}",
+        f"Polyhedron, {polyhedron.n_faces} facets "
+        f"({polyhedron.n_vertices} vertices, {polyhedron.n_triangles} triangles)",
+    )

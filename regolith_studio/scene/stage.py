@@ -1,0 +1,56 @@
+"""An empty plotter made ready: background, lights, parallel projection, anti-aliasing by the renderer."""
+
+import os
+import sys
+from typing import Any
+
+import pyvista as pv
+
+from regolith_studio.scene import palette
+from regolith_studio.scene.palette import Surroundings
+
+_SOFTWARE_NAMES = ("llvmpipe", "softpipe", "swrast", "software", "swiftshader")
+
+
+def choose_off_screen_window() -> None:
+    """Let VTK draw through EGL where there is no X server, without asking for one first."""
+    if sys.platform.startswith("linux") and not os.environ.get("DISPLAY"):
+        os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
+
+
+def set_stage(plotter: Any, surroundings: Surroundings = palette.LIGHT) -> None:
+    """Background, light and projection of one plotter's active renderer; no surface yet."""
+    set_background(plotter, surroundings)
+    plotter.enable_parallel_projection()
+    plotter.remove_all_lights()
+    for light in _lights():
+        plotter.add_light(light)
+
+
+def set_background(plotter: Any, surroundings: Surroundings) -> None:
+    """A gradient from the lower to the upper colour."""
+    plotter.set_background(surroundings.background_low, top=surroundings.background_high, all_renderers=False)
+
+
+def smooth_edges(plotter: Any) -> None:
+    """FXAA on software OpenGL, where multi-sampling costs more than the surface; else 4 samples."""
+    if is_software(plotter.render_window.ReportCapabilities() or ""):
+        plotter.enable_anti_aliasing("fxaa")
+    else:
+        plotter.enable_anti_aliasing("msaa", multi_samples=4)
+
+
+def is_software(capabilities: str) -> bool:
+    """Whether an OpenGL description names a renderer that runs on the processor."""
+    return any(name in capabilities.lower() for name in _SOFTWARE_NAMES)
+
+
+def _lights() -> list[pv.Light]:
+    """A key light over the left shoulder, a weak one from below right, a weak one from the eye."""
+
+    key = pv.Light(light_type="camera light", intensity=0.80)
+    key.position = (-0.55, 0.75, 1.0)
+    fill = pv.Light(light_type="camera light", intensity=0.34)
+    fill.position = (0.9, -0.5, 0.6)
+    eye = pv.Light(light_type="headlight", intensity=0.22)
+    return [key, fill, eye]

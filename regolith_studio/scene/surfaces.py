@@ -1,0 +1,173 @@
+"""The three surfaces of the studio: particle, spherical-harmonics fit, coarsened polyhedron.
+
+Each function may be called again and again on one plotter: the actors stay, only their data change,
+and the camera is left alone.
+"""
+
+from typing import Any
+
+import numpy as np
+import pyvista as pv
+from numpy.typing import ArrayLike
+
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.scene import palette
+from regolith_studio.scene.palette import Material, Surroundings
+
+SURFACE = "surface"
+OUTLINE = "outline"
+
+
+def show_particle(plotter: Any, mesh: Mesh) -> None:
+    """The particle as measured, smoothly shaded."""
+    _show_surface(plotter, _smooth(mesh), palette.PARTICLE_MATERIAL, smooth=True)
+
+
+def show_fit(
+    plotter: Any, mesh: Mesh, distances: FloatArray | None = None, span: float | None = None
+) -> None:
+    """The fit, in its own colour or coloured by its distance from the particle.
+
+    Parameters
+    ----------
+    plotter
+        Any pyvista plotter.
+    mesh
+        Surface of the fit.
+    distances
+        Signed distance of each vertex from the particle, shape (n,), positive outside.
+    span
+        Distance at both ends of the colour map; the largest distance if not given.
+    """
+    surface = _smooth(mesh)
+    if distances is not None:
+        surface.point_data["distance"] = distances
+    actor = _show_surface(plotter, surface, palette.FIT_MATERIAL, smooth=True)
+    mapper = actor.mapper
+    mapper.scalar_visibility = distances is not None
+    if distances is not None:
+        reach = span if span is not None else float(np.abs(distances).max(initial=0.0))
+        mapper.lookup_table = pv.LookupTable(palette.ERROR_MAP, scalar_range=(-reach or -1.0, reach or 1.0))
+        mapper.scalar_range = (-reach or -1.0, reach or 1.0)
+        mapper.SetScalarModeToUsePointFieldData()
+        mapper.SelectColorArray("distance")
+
+
+def show_polyhedron(
+    plotter: Any,
+    polyhedron: ConvexPolyhedron,
+    centre: ArrayLike = (0.0, 0.0, 0.0),
+    surroundings: Surroundings = palette.LIGHT,
+) -> None:
+    """The coarsened polyhedron: flat facets, each outlined (facets, not triangles).
+
+    Parameters
+    ----------
+    plotter
+        Any pyvista plotter.
+    polyhedron
+        About its own origin.
+    centre
+        Where that origin lies in the particle's frame.
+    surroundings
+        Whose outline colour is used.
+    """
+    corners = polyhedron.vertices + np.asarray(centre, dtype=np.float64)
+    _show_surface(plotter, _polygons(corners, polyhedron.facets), palette.POLYHEDRON_MATERIAL, smooth=False)
+    _show_lines(plotter, pv.PolyData(corners.copy(), lines=_facet_edges(polyhedron)), surroundings.outline)
+
+
+def clear(plotter: Any) -> None:
+    """Show no surface."""
+    for name in (SURFACE, OUTLINE):
+        if name in plotter.actors:
+            plotter.actors[name].SetVisibility(False)
+
+
+def set_wireframe(plotter: Any, wireframe: bool) -> None:
+    """Draw the surface as its triangle mesh, or filled."""
+    actor = plotter.actors.get(SURFACE)
+    if actor is not None:
+        actor.prop.style = "wireframe" if wireframe else "surface"
+        actor.prop.lighting = not wireframe
+
+
+def _show_surface(plotter: Any, data: pv.PolyData, material: Material, smooth: bool) -> Any:
+    actor = _replaced(plotter, SURFACE, data)
+    if actor is None:
+        actor = plotter.add_mesh(
+            data,
+            name=SURFACE,
+            color=material.colour,
+            ambient=material.ambient,
+            diffuse=material.diffuse,
+            specular=material.specular,
+            specular_power=material.specular_power,
+            show_scalar_bar=False,
+            copy_mesh=False,
+            reset_camera=False,
+            render=False,
+        )
+        actor.prop.interpolation = "Phong" if smooth else "Flat"
+        actor.mapper.resolve = "polygon_offset"
+    return actor
+
+
+def _show_lines(plotter: Any, data: pv.PolyData, colour: str) -> None:
+    actor = _replaced(plotter, OUTLINE, data)
+    if actor is None:
+        actor = plotter.add_mesh(
+            data,
+            name=OUTLINE,
+            line_width=1.6,
+            lighting=False,
+            copy_mesh=False,
+            reset_camera=False,
+            render=False,
+        )
+    actor.prop.color = colour
+
+
+def _replaced(plotter: Any, name: str, data: pv.PolyData) -> Any | None:
+    """The actor of this name with new data, or ``None`` where the plotter has none yet."""
+    actor = plotter.actors.get(name)
+    if actor is not None:
+        actor.mapper.dataset = data
+        actor.SetVisibility(True)
+    return actor
+
+
+def _smooth(mesh: Mesh) -> pv.PolyData:
+    """The mesh with one normal a vertex: the mean of its triangles' normals, weighted by area."""
+    cells = np.column_stack([np.full(len(mesh.faces), 3), mesh.faces])
+    data: pv.PolyData = pv.PolyData(np.array(mesh.vertices), faces=cells.ravel())
+    corners = np.repeat(mesh.face_area_vectors, 3, axis=0)
+    normals = np.stack(
+        [
+            np.bincount(mesh.faces.ravel(), weights=corners[:, axis], minlength=len(mesh.vertices))
+            for axis in range(3)
+        ],
+        axis=1,
+    )
+    length = np.linalg.norm(normals, axis=1, keepdims=True)
+    data.point_data["Normals"] = (normals / np.where(length > 0.0, length, 1.0)).astype(np.float32)
+    data.GetPointData().SetActiveNormals("Normals")
+    return data
+
+
+def _polygons(vertices: FloatArray, facets: tuple[tuple[int, ...], ...]) -> pv.PolyData:
+    cells = [item for facet in facets for item in (len(facet), *facet)]
+    polygons: pv.PolyData = pv.PolyData(np.array(vertices), faces=np.array(cells, dtype=np.int64))
+    return polygons
+
+
+def _facet_edges(polyhedron: ConvexPolyhedron) -> FloatArray:
+    """Each edge between two facets once, in VTK's layout of lines."""
+    edges = {
+        (min(a, b), max(a, b))
+        for facet in polyhedron.facets
+        for a, b in zip(facet, facet[1:] + facet[:1], strict=True)
+    }
+    return np.array([item for edge in sorted(edges) for item in (2, *edge)], dtype=np.int64)

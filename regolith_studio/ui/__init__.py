@@ -1,0 +1,1 @@
+"""The window: panels, views and widgets. Nothing is calculated here."""

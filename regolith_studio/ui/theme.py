@@ -1,0 +1,158 @@
+"""How the window looks: light or dark as the system says, one palette and one style sheet for all of it."""
+
+from dataclasses import dataclass
+
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QColor, QGuiApplication, QPalette
+from PySide6.QtWidgets import QApplication
+
+from regolith_studio.scene import palette
+from regolith_studio.scene.palette import Surroundings
+
+GAP = 8
+"""Space between neighbours, in pixels; half of it inside a group."""
+
+
+@dataclass(frozen=True)
+class Theme:
+    """Colours of the window and of its plots.
+
+    Parameters
+    ----------
+    dark
+        Whether letters are lighter than the ground.
+    window, base, raised, border
+        Grounds of the window, of lists and plots, of buttons; lines between them.
+    text, muted, accent
+        Letters, side remarks, what is selected.
+    particle, fit, polyhedron
+        The same three things in every plot and title.
+    good, doubtful, bad
+        Health of a mesh.
+    surroundings
+        Of the three-dimensional views.
+    """
+
+    dark: bool
+    window: str
+    base: str
+    raised: str
+    border: str
+    text: str
+    muted: str
+    accent: str
+    particle: str
+    fit: str
+    polyhedron: str
+    good: str
+    doubtful: str
+    bad: str
+    surroundings: Surroundings
+
+
+LIGHT = Theme(
+    dark=False,
+    window="#f3f4f6",
+    base="#ffffff",
+    raised="#fbfbfc",
+    border="#d3d7dd",
+    text="#1f242b",
+    muted="#66707d",
+    accent="#0067a3",
+    particle="#8d8a84",
+    fit=palette.FIT,
+    polyhedron=palette.POLYHEDRON,
+    good="#00805f",
+    doubtful="#b36b00",
+    bad="#c23b00",
+    surroundings=palette.LIGHT,
+)
+DARK = Theme(
+    dark=True,
+    window="#23272d",
+    base="#1b1e23",
+    raised="#2e343b",
+    border="#3d444d",
+    text="#e4e7eb",
+    muted="#9aa4b0",
+    accent="#3d9be0",
+    particle="#a9a59d",
+    fit="#56b4e9",
+    polyhedron="#f0b13a",
+    good="#2fbf96",
+    doubtful="#e6a23c",
+    bad="#ff7a45",
+    surroundings=palette.DARK,
+)
+
+
+def current_theme() -> Theme:
+    """The theme that the system asks for at the moment."""
+    hints = QGuiApplication.styleHints()
+    return DARK if hints.colorScheme() == Qt.ColorScheme.Dark else LIGHT
+
+
+def apply_theme(app: QApplication, theme: Theme) -> None:
+    """Give the whole application a theme."""
+    app.setStyle("Fusion")
+    app.setPalette(_palette(theme))
+    app.setStyleSheet(_style_sheet(theme))
+
+
+def _palette(theme: Theme) -> QPalette:
+    colours = QPalette()
+    role = QPalette.ColorRole
+    for target, colour in {
+        role.Window: theme.window,
+        role.WindowText: theme.text,
+        role.Base: theme.base,
+        role.AlternateBase: theme.window,
+        role.Text: theme.text,
+        role.Button: theme.raised,
+        role.ButtonText: theme.text,
+        role.ToolTipBase: theme.raised,
+        role.ToolTipText: theme.text,
+        role.PlaceholderText: theme.muted,
+        role.Highlight: theme.accent,
+        role.HighlightedText: "#ffffff",
+        role.Link: theme.accent,
+        role.Accent: theme.accent,
+        role.Mid: theme.border,
+    }.items():
+        colours.setColor(target, QColor(colour))
+    for target in (role.WindowText, role.Text, role.ButtonText):
+        colours.setColor(QPalette.ColorGroup.Disabled, target, QColor(theme.muted))
+    return colours
+
+
+def _style_sheet(theme: Theme) -> str:
+    return f"""
+QToolTip {{ color: {theme.text}; background: {theme.raised}; border: 1px solid {theme.border};
+    padding: 4px; }}
+QMainWindow::separator {{ width: 1px; height: 1px; background: {theme.border}; }}
+QSplitter::handle {{ background: transparent; }}
+QSplitter::handle:hover {{ background: {theme.accent}; }}
+QStatusBar {{ border-top: 1px solid {theme.border}; }}
+QStatusBar::item {{ border: none; }}
+QToolBar {{ border: none; border-bottom: 1px solid {theme.border}; spacing: 2px; padding: 3px 6px; }}
+QToolBar QToolButton {{ padding: 4px 7px; border-radius: 4px; border: 1px solid transparent; }}
+QToolBar QToolButton:hover {{ background: {theme.raised}; border-color: {theme.border}; }}
+QToolBar QToolButton:checked {{ background: {theme.base}; border-color: {theme.border}; }}
+*[role="heading"] {{ font-weight: 600; }}
+*[role="remark"] {{ color: {theme.muted}; }}
+*[role="warning"] {{ color: {theme.doubtful}; }}
+QFrame[role="card"] {{ background: {theme.base}; border: 1px solid {theme.border}; border-radius: 5px; }}
+QFrame[role="toast"] {{ background: {theme.raised}; border: 1px solid {theme.bad}; border-radius: 6px; }}
+QFrame[role="toast"][mood="note"] {{ border-color: {theme.accent}; }}
+QTableView {{ border: 1px solid {theme.border}; border-radius: 5px; gridline-color: transparent; }}
+QHeaderView::section {{ background: {theme.window}; color: {theme.muted}; border: none;
+    border-bottom: 1px solid {theme.border}; padding: 4px 5px; }}
+QTabWidget::pane {{ border: 1px solid {theme.border}; border-radius: 5px; background: {theme.base};
+    top: -1px; }}
+QTabBar::tab {{ padding: 5px 11px; color: {theme.muted}; border: 1px solid transparent; border-bottom: none;
+    border-top-left-radius: 5px; border-top-right-radius: 5px; }}
+QTabBar::tab:selected {{ color: {theme.text}; background: {theme.base}; border-color: {theme.border}; }}
+QTabBar::tab:hover {{ color: {theme.text}; }}
+QTabBar::tab:focus {{ color: {theme.accent}; }}
+QScrollArea {{ border: none; }}
+"""

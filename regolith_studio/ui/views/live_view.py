@@ -1,0 +1,109 @@
+"""The view that draws with OpenGL straight into the window."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from PySide6.QtGui import QKeyEvent, QMouseEvent, QWheelEvent
+from PySide6.QtWidgets import QVBoxLayout, QWidget
+from pyvistaqt import QtInteractor
+
+from regolith_studio.scene import annotations, cameras, stage
+from regolith_studio.scene.cameras import CameraPose
+from regolith_studio.scene.palette import LIGHT, Surroundings
+from regolith_studio.ui.views.camera_mouse import CameraMouse
+from regolith_studio.ui.views.protocol import Picture
+
+
+class _Canvas(QtInteractor):
+    """A QtInteractor that leaves mouse, keys and dropped files to the program."""
+
+    mouse: CameraMouse | None = None
+
+    def __init__(self, parent: QWidget) -> None:
+        super().__init__(parent, auto_update=False, multi_samples=0)
+        self.setAcceptDrops(False)
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:
+        if self.mouse:
+            self.mouse.press(event)
+
+    def mouseMoveEvent(self, event: QMouseEvent) -> None:
+        if self.mouse:
+            self.mouse.drag(event)
+
+    def mouseReleaseEvent(self, event: QMouseEvent) -> None:
+        if self.mouse:
+            self.mouse.release(event)
+
+    def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
+        event.ignore()
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        if self.mouse:
+            self.mouse.wheel(event)
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        event.ignore()
+
+    def keyReleaseEvent(self, event: QKeyEvent) -> None:
+        event.ignore()
+
+
+class LiveView(QWidget):
+    """See :class:`~regolith_studio.ui.views.protocol.SceneView`."""
+
+    def __init__(self, surroundings: Surroundings = LIGHT, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._canvas: Any = _Canvas(self)
+        self._canvas.mouse = CameraMouse(lambda: self.pose, self._move, self.height)
+        stage.set_stage(self._canvas, surroundings)
+        self._scale_bar = annotations.ScaleBar(self._canvas, surroundings)
+        self._moved: list[Callable[[CameraPose], None]] = []
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(self._canvas)
+
+    @property
+    def widget(self) -> QWidget:
+        return self
+
+    @property
+    def pose(self) -> CameraPose:
+        return cameras.pose_of(self._canvas)
+
+    def draw(self, fill: Callable[[Any], None]) -> None:
+        fill(self._canvas)
+        self._canvas.renderer.ResetCameraClippingRange()
+        self._canvas.update()
+
+    def set_pose(self, pose: CameraPose) -> None:
+        cameras.apply_pose(self._canvas, pose)
+        self._canvas.update()
+
+    def when_moved(self, callback: Callable[[CameraPose], None]) -> None:
+        self._moved.append(callback)
+
+    def set_surroundings(self, surroundings: Surroundings) -> None:
+        stage.set_background(self._canvas, surroundings)
+        self._scale_bar.set_ink(surroundings)
+        self._canvas.update()
+
+    def picture(self) -> Picture:
+        image = self._canvas.grabFramebuffer()
+        image = image.convertToFormat(image.Format.Format_RGB888)
+        rows = np.frombuffer(image.constBits(), dtype=np.uint8).reshape(image.height(), image.bytesPerLine())
+        return rows[:, : 3 * image.width()].reshape(image.height(), image.width(), 3).copy()
+
+    def release(self) -> None:
+        self._moved.clear()
+        if self._canvas is not None:
+            self._scale_bar.remove()
+            self._canvas.mouse = None
+            self._canvas.close()
+            self._canvas = None
+
+    def _move(self, pose: CameraPose) -> None:
+        self.set_pose(pose)
+        for callback in self._moved:
+            callback(pose)

@@ -1,0 +1,51 @@
+"""What the window asks of a three-dimensional view, whichever backend draws it."""
+
+from collections.abc import Callable
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+from PySide6.QtWidgets import QWidget
+
+from regolith_studio.scene.cameras import CameraPose
+from regolith_studio.scene.palette import Surroundings
+
+Picture = NDArray[np.uint8]
+
+
+class SceneView(Protocol):
+    """One view. Drawing is asked for, not done: many requests before the next paint cost one picture."""
+
+    @property
+    def widget(self) -> QWidget:
+        """What is placed in the window."""
+        ...
+
+    @property
+    def pose(self) -> CameraPose:
+        """Where the camera stands."""
+        ...
+
+    def draw(self, fill: Callable[[Any], None]) -> None:
+        """Let `fill` change what the plotter shows, and ask for a new picture."""
+        ...
+
+    def set_pose(self, pose: CameraPose) -> None:
+        """Move the camera, fit its clipping range, ask for a new picture; tells nobody."""
+        ...
+
+    def when_moved(self, callback: Callable[[CameraPose], None]) -> None:
+        """Call `callback` with the new pose whenever the user moves the camera."""
+        ...
+
+    def set_surroundings(self, surroundings: Surroundings) -> None:
+        """Change background and inks."""
+        ...
+
+    def picture(self) -> Picture:
+        """What the view shows now, shape (height, width, 3)."""
+        ...
+
+    def release(self) -> None:
+        """Give the graphics memory back; the view is of no use afterwards."""
+        ...
