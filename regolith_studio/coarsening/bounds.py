@@ -1,0 +1,86 @@
+"""What no convex polyhedron with n facets can do better, and the sentences that say so."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from regolith_studio.coarsening.weights import JACCARD, LossWeights
+
+MOST_FACES = 100_000
+"""Sphericities that ask for more facets count as unreachable."""
+
+
+def greatest_sphericity(n_faces: int) -> float:
+    """Upper bound of Wadell's sphericity of a convex polyhedron with `n_faces` facets (Goldberg 1935).
+
+    Attained by the tetrahedron, the cube and the dodecahedron (n = 4, 6, 12).
+
+    Raises
+    ------
+    ValueError
+        If `n_faces` is below 4.
+    """
+    if n_faces < 4:
+        raise ValueError(f"a polyhedron has at least 4 faces, got {n_faces}")
+    w = n_faces * np.pi / (6 * (n_faces - 2))
+    return float((36 * np.pi / (54 * (n_faces - 2) * np.tan(w) * (4 * np.sin(w) ** 2 - 1))) ** (1 / 3))
+
+
+def least_faces(sphericity: float) -> int | None:
+    """Fewest facets whose Goldberg bound reaches `sphericity`; ``None`` above 100,000 facets."""
+    if greatest_sphericity(MOST_FACES) < sphericity:
+        return None
+    low, high = 4, MOST_FACES
+    while low < high:
+        middle = (low + high) // 2
+        low, high = (low, middle) if greatest_sphericity(middle) >= sphericity else (middle + 1, high)
+    return low
+
+
+def hull_gives_way(weights: LossWeights, descriptors: Mapping[str, float]) -> bool:
+    """Whether V is kept and CH misses: a convex polyhedron has V = CH, a particle V < CH.
+
+    Eq. 9 is least at one of the two ends: at V where alpha_V / V >= alpha_CH / CH, else at CH.
+    """
+    volume = weights["volume"] / descriptors["volume"]
+    hull = weights["convex_hull_volume"] / descriptors["convex_hull_volume"]
+    return volume >= hull
+
+
+def attainable_errors(
+    descriptors: Mapping[str, float], n_faces: int, weights: LossWeights
+) -> dict[str, float]:
+    """Least relative error of each term of the loss, for any convex polyhedron with `n_faces` facets.
+
+    V and CH are bounded together: the one that the weights prefer can be met, the other misses by the
+    solidity s = V/CH: 1 - s or 1/s - 1. The Jaccard distance is at least that of the volumes alone.
+    Sphericity follows Goldberg's bound; box and aspect ratio have the bound 0.
+    """
+    solidity = descriptors["volume"] / descriptors["convex_hull_volume"]
+    keep_volume = hull_gives_way(weights, descriptors)
+    free = not (weights["volume"] or weights["convex_hull_volume"])
+    return {
+        JACCARD: 0.0 if keep_volume or free else 1.0 - solidity,
+        "volume": 0.0 if keep_volume else 1.0 / solidity - 1.0,
+        "sphericity": max(0.0, 1.0 - greatest_sphericity(n_faces) / descriptors["sphericity"]),
+        "min_diameter": 0.0,
+        "max_diameter": 0.0,
+        "aspect_ratio": 0.0,
+        "convex_hull_volume": 1.0 - solidity if keep_volume else 0.0,
+    }
+
+
+def least_loss(descriptors: Mapping[str, float], n_faces: int, weights: LossWeights) -> float:
+    """A lower bound of Eq. 9."""
+    bounds = attainable_errors(descriptors, n_faces, weights)
+    return float(sum(weights[key] * bound for key, bound in bounds.items()))
+
+
+def sphericity_reason(sphericity: float, n_faces: int) -> str | None:
+    """Why `n_faces` facets cannot have this sphericity, or ``None`` if Goldberg's bound allows it."""
+    most = greatest_sphericity(n_faces)
+    if sphericity <= most:
+        return None
+    needed = least_faces(sphericity)
+    ask = "more than 100,000 faces" if needed is None else f"at least {needed} faces"
+    return f"Sphericity {sphericity:.3f} needs {ask}; with {n_faces} the most is {most:.3f}."

@@ -1,0 +1,165 @@
+"""The door to all methods: coarsen one particle."""
+
+import dataclasses
+from collections.abc import Generator, Mapping
+from typing import Any
+
+import numpy as np
+
+from regolith_studio.coarsening.bounds import attainable_errors
+from regolith_studio.coarsening.loss import loss
+from regolith_studio.coarsening.methods import METHODS, CoarseningMethod
+from regolith_studio.coarsening.progress import CoarseningProgress
+from regolith_studio.coarsening.result import Coarsened, MethodResult
+from regolith_studio.coarsening.target import Target
+from regolith_studio.coarsening.weights import LossWeights
+from regolith_studio.descriptors.catalogue import CATALOGUE
+from regolith_studio.descriptors.comparison import relative_errors
+from regolith_studio.descriptors.describe import Descriptors, describe
+from regolith_studio.errors import InputError
+from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.overlap import jaccard_distance
+
+DEFAULT_METHOD = "quadric"
+DEFAULT_PRESET = "all"
+FACES_LIMITS = (5, 200)
+"""Section 2.4 asks for n > 4."""
+
+
+def coarsen(
+    mesh: Mesh | Target,
+    n_faces: int = 20,
+    method: str = DEFAULT_METHOD,
+    weights: LossWeights | None = None,
+    seed: int = 0,
+    particle_index: int = 0,
+    settings: Any = None,
+) -> Coarsened:
+    """The convex polyhedron with `n_faces` facets that stands for `mesh` (section 2.4).
+
+    Parameters
+    ----------
+    mesh
+        Closed surface of the particle in any unit, or a :class:`Target` that was made from one.
+    n_faces
+        Facets of the polyhedron, 5 to 200.
+    method
+        Key of :data:`regolith_studio.coarsening.methods.METHODS`.
+    weights
+        Of the loss (Eq. 9); preset ``all`` where not given.
+    seed, particle_index
+        The random numbers are those of ``SeedSequence(seed, spawn_key=(particle_index,))``.
+    settings
+        The method's ``Settings``, or a mapping of those that differ from the defaults.
+
+    Raises
+    ------
+    InputError
+        If a number or a name is out of its range.
+    GeometryError
+        If the mesh is open, flat or encloses no volume.
+    """
+    steps = coarsening_steps(mesh, n_faces, method, weights, seed, particle_index, settings)
+    while True:
+        try:
+            next(steps)
+        except StopIteration as end:
+            result: Coarsened = end.value
+            return result
+
+
+def coarsening_steps(
+    mesh: Mesh | Target,
+    n_faces: int = 20,
+    method: str = DEFAULT_METHOD,
+    weights: LossWeights | None = None,
+    seed: int = 0,
+    particle_index: int = 0,
+    settings: Any = None,
+) -> Generator[CoarseningProgress, None, Coarsened]:
+    """As :func:`coarsen`, telling each step; the first step comes at once and has a polyhedron."""
+    chosen = _method(method)
+    weights = LossWeights.from_preset(DEFAULT_PRESET) if weights is None else weights
+    _check(n_faces, chosen, weights, seed)
+    target = mesh if isinstance(mesh, Target) else Target.of(mesh)
+    random = np.random.SeedSequence(seed, spawn_key=(particle_index,))
+    run = chosen.run(target, n_faces, weights, random, settings_of(method, settings))
+    while True:
+        try:
+            step = next(run)
+        except StopIteration as end:
+            return _measured(target, end.value, method, n_faces, weights)
+        polyhedron = None
+        if step.half_spaces is not None:
+            polyhedron = ConvexPolyhedron.from_half_spaces(target.in_particle_unit(step.half_spaces))
+        yield CoarseningProgress(step.step, step.steps, step.loss, polyhedron, target.centre)
+
+
+def settings_of(method: str, settings: Any = None) -> Any:
+    """The settings of `method` from ``None``, a mapping of changes, or settings already made.
+
+    Raises
+    ------
+    InputError
+        If a name is no setting of the method or a value is out of its range.
+    """
+    kind = _method(method).Settings
+    if isinstance(settings, kind):
+        return settings
+    changes = dict(settings) if isinstance(settings, Mapping) else {}
+    if settings is not None and not isinstance(settings, Mapping):
+        raise InputError(f"The settings of {method} must be {kind.__name__}, got {type(settings).__name__}.")
+    known = [each.name for each in dataclasses.fields(kind)]
+    for name in changes:
+        if name not in known:
+            raise InputError(f"The method {method} has no setting {name!r}; it has {', '.join(known)}.")
+    return kind(**changes)
+
+
+def _method(key: str) -> CoarseningMethod:
+    if key not in METHODS:
+        raise InputError(f"There is no coarsening method {key!r}; there are {', '.join(METHODS)}.")
+    return METHODS[key]
+
+
+def _check(n_faces: int, method: CoarseningMethod, weights: LossWeights, seed: int) -> None:
+    low, high = FACES_LIMITS
+    if isinstance(n_faces, bool) or n_faces != int(n_faces) or not low <= n_faces <= high:
+        raise InputError(f"The number of faces must be a whole number from {low} to {high}, got {n_faces}.")
+    if weights.all_zero and method.key != "quadric":
+        raise InputError("All weights of the loss are 0, so there is nothing to optimise; raise one of them.")
+    if seed < 0:
+        raise InputError(f"The seed must not be negative, got {seed}.")
+
+
+def _measured(
+    target: Target, result: MethodResult, method: str, n_faces: int, weights: LossWeights
+) -> Coarsened:
+    """Measure the result by the public descriptors, independently of the method."""
+    unit = ConvexPolyhedron.from_half_spaces(result.half_spaces)
+    polyhedron = ConvexPolyhedron.from_half_spaces(target.in_particle_unit(unit.half_spaces))
+    achieved = describe(unit)
+    errors = relative_errors(target.descriptors, achieved)
+    overlap = jaccard_distance(target.mesh, unit)
+    return Coarsened(
+        polyhedron=polyhedron,
+        centre=target.centre,
+        target=in_unit(target.descriptors, target.scale),
+        achieved=in_unit(achieved, target.scale),
+        errors=errors,
+        jaccard_distance=overlap,
+        loss=loss(weights, errors, overlap),
+        loss_history=result.loss_history,
+        method=method,
+        n_faces_asked=n_faces,
+        bounds=attainable_errors(target.descriptors, n_faces, weights),
+        reason=result.reason,
+        steps=result.steps,
+        variants=result.variants,
+    )
+
+
+def in_unit(descriptors: Descriptors, scale: float) -> Descriptors:
+    """Descriptors of the unit-volume shape, in the unit of the particle."""
+    return Descriptors({key: value * scale ** CATALOGUE[key].dimension for key, value in descriptors.items()})

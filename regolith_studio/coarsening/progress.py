@@ -1,0 +1,63 @@
+"""What a coarsening tells while it runs."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.geometry.half_spaces import HalfSpaces
+from regolith_studio.geometry.mesh import Mesh
+
+
+@dataclass(frozen=True)
+class MethodStep:
+    """One step of a method, for a particle of unit volume with its centroid at the origin.
+
+    Parameters
+    ----------
+    step, steps
+        Steps done, and how many there will be at most.
+    loss
+        Eq. 9 for `half_spaces`, as the method evaluates it.
+    half_spaces
+        The polyhedron, where it differs from that of the step before; else ``None``.
+    """
+
+    step: int
+    steps: int
+    loss: float
+    half_spaces: HalfSpaces | None = None
+
+
+@dataclass(frozen=True)
+class CoarseningProgress:
+    """One step of a coarsening, in the unit of the particle.
+
+    Parameters
+    ----------
+    step, steps
+        Steps done, and how many there will be at most.
+    loss
+        Eq. 9 for the present polyhedron.
+    polyhedron
+        About `centre`, where it differs from that of the step before; else ``None``.
+    centre
+        The particle's centroid in its own frame, shape (3,).
+    """
+
+    step: int
+    steps: int
+    loss: float
+    polyhedron: ConvexPolyhedron | None
+    centre: FloatArray
+
+    @property
+    def mesh(self) -> Mesh | None:
+        """Triangles of the polyhedron in the particle's own frame."""
+        return None if self.polyhedron is None else placed(self.polyhedron, self.centre)
+
+
+def placed(polyhedron: ConvexPolyhedron, centre: FloatArray) -> Mesh:
+    """Triangles of a polyhedron whose origin lies at `centre`."""
+    return Mesh(polyhedron.vertices + np.asarray(centre), polyhedron.mesh.faces)

@@ -1,0 +1,111 @@
+"""A coarsened particle with everything that is known about how well it was met."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from regolith_studio.coarsening.progress import placed
+from regolith_studio.descriptors.describe import Descriptors
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.geometry.half_spaces import HalfSpaces
+from regolith_studio.geometry.mesh import Mesh
+
+
+@dataclass(frozen=True)
+class MethodResult:
+    """What a method returns, for a particle of unit volume with its centroid at the origin.
+
+    Parameters
+    ----------
+    half_spaces
+        The polyhedron.
+    loss_history
+        Eq. 9 after each step.
+    reason
+        Why the request is not met, in one sentence; ``None`` where it is met.
+    steps
+        Numbers worth knowing about the run: iterations, restarts, refused proposals ...
+    variants
+        Relative errors (and the Jaccard distance) of other readings of the result, by name.
+    """
+
+    half_spaces: HalfSpaces
+    loss_history: tuple[float, ...] = ()
+    reason: str | None = None
+    steps: Mapping[str, float] = field(default_factory=dict)
+    variants: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Coarsened:
+    """A convex polyhedron that stands for a particle.
+
+    Parameters
+    ----------
+    polyhedron
+        About `centre` (the origin of its half-spaces is the particle's centroid), in the particle's unit.
+    centre
+        The particle's centroid in its own frame, shape (3,).
+    target, achieved
+        Descriptors of particle and polyhedron, in the particle's unit.
+    errors
+        Relative error of each descriptor of the loss (Eq. 8).
+    jaccard_distance
+        Eq. 7 (there IoU), with 16,000 rays.
+    loss
+        Eq. 9 of `errors` and `jaccard_distance`.
+    loss_history
+        Eq. 9 after each step of the method, as the method evaluates it.
+    method
+        Key of the method.
+    n_faces_asked, n_faces, n_vertices, n_triangles
+        Facets asked for; real facets, vertices and triangles.
+    bounds
+        Least attainable error of each descriptor, see :mod:`regolith_studio.coarsening.bounds`.
+    reason
+        Why the request is not met, in one sentence; ``None`` where it is met.
+    steps
+        Numbers about the run: iterations, restarts, refused proposals ...
+    variants
+        Relative errors of other readings of the result (the quadric baseline has three).
+    """
+
+    polyhedron: ConvexPolyhedron
+    centre: FloatArray
+    target: Descriptors
+    achieved: Descriptors
+    errors: Mapping[str, float]
+    jaccard_distance: float
+    loss: float
+    loss_history: tuple[float, ...]
+    method: str
+    n_faces_asked: int
+    bounds: Mapping[str, float]
+    reason: str | None = None
+    steps: Mapping[str, float] = field(default_factory=dict)
+    variants: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+
+    @property
+    def n_faces(self) -> int:
+        """Real facets."""
+        return self.polyhedron.n_faces
+
+    @property
+    def n_vertices(self) -> int:
+        """Vertices."""
+        return self.polyhedron.n_vertices
+
+    @property
+    def n_triangles(self) -> int:
+        """Triangles of the facets' triangulation."""
+        return self.polyhedron.n_triangles
+
+    @property
+    def half_spaces(self) -> HalfSpaces:
+        """The half-spaces about the particle's centroid."""
+        return self.polyhedron.half_spaces
+
+    @property
+    def mesh(self) -> Mesh:
+        """Triangles in the particle's own frame: lies where the particle lies."""
+        return placed(self.polyhedron, self.centre)

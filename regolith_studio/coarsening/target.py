@@ -1,0 +1,136 @@
+"""The particle as the methods see it: unit volume, centroid at the origin, everything measured once."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from regolith_studio.descriptors.describe import Descriptors, describe
+from regolith_studio.errors import GeometryError
+from regolith_studio.geometry.arrays import FloatArray, IntArray
+from regolith_studio.geometry.directions import fibonacci_directions
+from regolith_studio.geometry.half_spaces import HalfSpaces
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.ray_casting import radial_hits
+
+SMALLEST_SPAN = 1e-150
+"""Below this size the volume of a mesh cannot be told from 0."""
+
+
+@dataclass(frozen=True)
+class RayTable:
+    """Every crossing of evenly spread rays from the origin with the unit-volume particle.
+
+    Parameters
+    ----------
+    directions
+        Unit vectors, shape (k, 3).
+    first
+        Crossings of ray k are ``first[k]:first[k + 1]``, shape (k + 1,).
+    distance
+        From the origin, rising along each ray.
+    sign
+        +1.0 where the ray leaves the particle, -1.0 where it enters.
+    weight
+        Share of the volume integral that each ray stands for, so that the quadrature's own volume is 1.
+    """
+
+    directions: FloatArray
+    first: IntArray
+    distance: FloatArray
+    sign: FloatArray
+    weight: float
+
+
+@dataclass(frozen=True, eq=False)
+class Target:
+    """A particle to be imitated.
+
+    Parameters
+    ----------
+    mesh
+        Closed, outward-oriented, unit volume, centroid at the origin.
+    centre
+        Centroid in the particle's own frame, shape (3,).
+    scale
+        Length in the particle's unit that one unit of `mesh` stands for.
+    descriptors
+        Of `mesh`.
+    """
+
+    mesh: Mesh
+    centre: FloatArray
+    scale: float
+    descriptors: Descriptors
+
+    @classmethod
+    def of(cls, mesh: Mesh) -> "Target":
+        """Normalise and measure a particle; a mesh that is inside out is turned.
+
+        Raises
+        ------
+        GeometryError
+            If the mesh is not closed or encloses no volume.
+        """
+        unit, centre, scale = _normalised(mesh)
+        return cls(unit, centre, scale, describe(unit))
+
+    @property
+    def solidity(self) -> float:
+        """Volume over the volume of the convex hull: 1 for convex particles."""
+        return self.descriptors["volume"] / self.descriptors["convex_hull_volume"]
+
+    @cached_property
+    def rays(self) -> RayTable:
+        """2,000 rays: error of the Jaccard distance about 0.0002."""
+        return self.ray_table(2000)
+
+    def ray_table(self, n_rays: int) -> RayTable:
+        """The crossings of `n_rays` Fibonacci directions."""
+        directions = fibonacci_directions(n_rays)
+        hits = radial_hits(self.mesh, np.zeros(3), directions)
+        first = np.searchsorted(hits.ray, np.arange(n_rays + 1))
+        sign = hits.sign.astype(np.float64)
+        weight = 1.0 / float(np.sum(sign * hits.distance**3) / 3.0)
+        return RayTable(directions, first.astype(np.int64), hits.distance, sign, weight)
+
+    def in_particle_unit(self, half_spaces: HalfSpaces) -> HalfSpaces:
+        """Half-spaces about the particle's centroid, in the particle's unit."""
+        return half_spaces.scaled(self.scale)
+
+
+def _normalised(mesh: Mesh) -> tuple[Mesh, FloatArray, float]:
+    """Mesh of unit volume about its centroid, the centroid, and the length of one unit."""
+    if len(mesh.faces) < 4:
+        raise GeometryError(f"A particle needs at least 4 triangles, got {len(mesh.faces)}.")
+    low, high = mesh.bounds
+    size = float((high - low).max())
+    if not size > SMALLEST_SPAN:
+        raise GeometryError("The mesh is a single point and encloses no volume.")
+    _check_closed(mesh)
+    middle = (low + high) / 2
+    rough = mesh.moved(shift=-middle, scale=1.0 / size)
+    if rough.volume < 0.0:
+        rough = Mesh(rough.vertices, rough.faces[:, ::-1])
+    if rough.volume < 1e-9:
+        raise GeometryError(
+            f"The mesh is flat: it fills {max(rough.volume, 0.0):.2g} of the cube of its longest side."
+        )
+    centre = middle + size * rough.centroid
+    return rough.normalised(), centre, size * rough.volume ** (1 / 3)
+
+
+def _check_closed(mesh: Mesh) -> None:
+    """Every directed edge must be met by its opposite, once the vertices at one place are one."""
+    _, label = np.unique(mesh.vertices, axis=0, return_inverse=True)
+    faces = label.reshape(-1)[mesh.faces]
+    faces = faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]
+    start, end = faces.reshape(-1), np.roll(faces, -1, axis=1).reshape(-1)
+    n = int(label.max()) + 1
+    forward, backward = np.sort(start * n + end), np.sort(end * n + start)
+    if not np.array_equal(forward, backward):
+        open_edges = len(np.setxor1d(forward, backward)) // 2
+        raise GeometryError(
+            f"The mesh is not closed: {max(open_edges, 1)} edges have a triangle on one side only;"
+            " repair it first."
+        )

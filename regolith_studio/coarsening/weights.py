@@ -1,0 +1,128 @@
+"""Weights of the loss (Eq. 9), and the shipped sets of them."""
+
+import json
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cache
+from typing import Self
+
+from regolith_studio.descriptors.catalogue import LOSS_KEYS
+from regolith_studio.errors import InputError
+from regolith_studio.resources import resource
+
+JACCARD = "jaccard_distance"
+"""Key of the term that the paper calls IoU (Eq. 7)."""
+WEIGHT_KEYS: tuple[str, ...] = (JACCARD, *LOSS_KEYS)
+"""Terms of the loss in the order of the paper's Figure 8."""
+
+
+@dataclass(frozen=True)
+class LossWeights(Mapping[str, float]):
+    """One weight for each term of Eq. 9; a term that is not named has weight 0.
+
+    Parameters
+    ----------
+    values_by_key
+        Weights in the order of :data:`WEIGHT_KEYS`.
+
+    Raises
+    ------
+    InputError
+        If a weight is negative or not finite.
+    """
+
+    values_by_key: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        values = tuple(float(value) for value in self.values_by_key)
+        if len(values) != len(WEIGHT_KEYS):
+            raise ValueError(f"there are {len(WEIGHT_KEYS)} weights, got {len(values)}")
+        for key, value in zip(WEIGHT_KEYS, values, strict=True):
+            if not (math.isfinite(value) and value >= 0.0):
+                raise InputError(f"The weight of {key} must be 0 or a positive number, got {value}.")
+        object.__setattr__(self, "values_by_key", values)
+
+    @classmethod
+    def of(cls, **weights: float) -> Self:
+        """From keyword arguments; terms that are not named get weight 0.
+
+        Raises
+        ------
+        InputError
+            If a name is no term of the loss or a weight is negative or not finite.
+        """
+        for key in weights:
+            if key not in WEIGHT_KEYS:
+                raise InputError(f"The loss has no term {key!r}; it has {', '.join(WEIGHT_KEYS)}.")
+        return cls(tuple(weights.get(key, 0.0) for key in WEIGHT_KEYS))
+
+    @classmethod
+    def from_preset(cls, name: str) -> Self:
+        """The weights of the shipped preset `name`.
+
+        Raises
+        ------
+        InputError
+            If there is no such preset.
+        """
+        known = presets()
+        if name not in known:
+            raise InputError(f"There is no preset {name!r}; there are {', '.join(known)}.")
+        return cls(known[name].weights.values_by_key)
+
+    def replaced(self, **weights: float) -> Self:
+        """A copy in which the named weights are changed."""
+        return self.of(**{**self, **weights})
+
+    def __getitem__(self, key: str) -> float:
+        try:
+            return self.values_by_key[WEIGHT_KEYS.index(key)]
+        except ValueError:
+            raise KeyError(key) from None
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(WEIGHT_KEYS)
+
+    def __len__(self) -> int:
+        return len(WEIGHT_KEYS)
+
+    @property
+    def all_zero(self) -> bool:
+        """Whether nothing is asked for."""
+        return not any(self.values_by_key)
+
+
+@dataclass(frozen=True)
+class Preset:
+    """A named set of weights.
+
+    Parameters
+    ----------
+    name
+        Key, and stem of its file in ``resources/presets``.
+    label
+        As shown to a person.
+    weights
+        The weights themselves.
+    origin
+        Where the set comes from.
+    """
+
+    name: str
+    label: str
+    weights: LossWeights
+    origin: str
+
+
+@cache
+def presets() -> dict[str, Preset]:
+    """The shipped presets by name, in the order that their files give."""
+    documents = [json.loads(path.read_text("utf-8")) for path in sorted(resource("presets").glob("*.json"))]
+    documents.sort(key=lambda document: document["order"])
+    return {
+        document["name"]: Preset(
+            document["name"], document["label"], LossWeights.of(**document["weights"]), document["origin"]
+        )
+        for document in documents
+    }
