@@ -1,0 +1,173 @@
+"""The house keeps its shape: imports go down, heavy libraries stay in their rooms, modules stay small."""
+
+import ast
+import copy
+import graphlib
+import importlib.util
+import statistics
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import grimp
+import pytest
+from importlinter import api
+from importlinter.application.output import console
+from importlinter.contracts.acyclic_siblings import AcyclicSiblingsContract
+from importlinter.contracts.forbidden import ForbiddenContract
+from importlinter.contracts.independence import IndependenceContract
+from importlinter.contracts.layers import LayersContract
+from importlinter.contracts.protected import ProtectedContract
+
+ROOT = Path(__file__).resolve().parents[1]
+PACKAGE = ROOT / "regolith_studio"
+MODULES = sorted(PACKAGE.rglob("*.py"))
+SETTINGS = api.read_configuration(str(ROOT / "pyproject.toml"))
+CONTRACTS = SETTINGS["contracts_options"]
+CONTRACT_TYPES = {
+    "layers": LayersContract,
+    "acyclic_siblings": AcyclicSiblingsContract,
+    "protected": ProtectedContract,
+    "forbidden": ForbiddenContract,
+    "independence": IndependenceContract,
+}
+NAME_FIELDS = (
+    "ancestors",
+    "modules",
+    "source_modules",
+    "forbidden_modules",
+    "protected_modules",
+    "allowed_importers",
+)
+LAYERS = {
+    name.strip("() ")
+    for contract in CONTRACTS
+    if contract["id"] == "layers"
+    for layer in contract["layers"]
+    for name in layer.split("|")
+}
+
+LONGEST_MODULE = 400
+LONGEST_MAIN_WINDOW = 200
+MEDIAN_MODULE = 150
+LONG_FUNCTION = 30
+
+
+@cache
+def import_graph() -> grimp.ImportGraph:
+    return grimp.build_graph("regolith_studio", include_external_packages=True, cache_dir=None)
+
+
+def names_of(contract: dict[str, Any]) -> list[str]:
+    return [name for field in NAME_FIELDS for name in contract.get(field, [])]
+
+
+def exists(name: str, graph: grimp.ImportGraph) -> bool:
+    return bool(graph.find_matching_modules(name)) if "*" in name else name in graph.modules
+
+
+def violations(contract: dict[str, Any], graph: grimp.ImportGraph) -> str:
+    """What import-linter says about a contract, reduced to the modules that exist; empty if it is kept."""
+    options = {
+        key: [name for name in value if exists(name, graph)] if key in NAME_FIELDS else value
+        for key, value in contract.items()
+    } | {"unmatched_ignore_imports_alerting": "none"}
+    if any(options.get(field) == [] for field in NAME_FIELDS if field != "allowed_importers"):
+        return ""
+    rule = CONTRACT_TYPES[contract["type"]](
+        name=contract["name"],
+        session_options=SETTINGS["session_options"],
+        contract_options=options,
+    )
+    check = rule.check(copy.deepcopy(graph), verbose=False)
+    if check.kept:
+        return ""
+    with console.capture() as said:
+        rule.render_broken_contract(check)
+    return said.get()
+
+
+@pytest.mark.parametrize("contract", CONTRACTS, ids=lambda contract: contract["id"])
+def test_that_the_imports_keep_the_contract(contract: dict[str, Any]) -> None:
+    broken = violations(contract, import_graph())
+    assert not broken, f"{contract['name']}:\n{broken}"
+
+
+@pytest.mark.parametrize("contract", CONTRACTS, ids=lambda contract: contract["id"])
+def test_that_a_contract_names_real_folders_and_installed_libraries(contract: dict[str, Any]) -> None:
+    for name in names_of(contract):
+        library, _, rest = name.partition(".")
+        if library == "regolith_studio":
+            assert not rest or rest.split(".")[0] in LAYERS, name
+        else:
+            assert importlib.util.find_spec(library), name
+
+
+@pytest.mark.parametrize(
+    ("contract", "importer", "imported"),
+    [
+        ("layers", "regolith_studio.geometry.mesh", "regolith_studio.descriptors.describe"),
+        ("cycles", "regolith_studio.errors", "regolith_studio.resources"),
+        ("qt", "regolith_studio.geometry.mesh", "PySide6"),
+        ("vtk", "regolith_studio.geometry.mesh", "pyvista"),
+        ("trimesh", "regolith_studio.descriptors.describe", "trimesh"),
+        ("pyshtools", "regolith_studio.geometry.mesh", "pyshtools"),
+    ],
+)
+def test_that_a_forbidden_import_is_noticed(contract: str, importer: str, imported: str) -> None:
+    graph = copy.deepcopy(import_graph())
+    if imported not in graph.modules:
+        graph.add_module(imported, is_squashed=True)
+    graph.add_import(importer=importer, imported=imported)
+    rule = next(each for each in CONTRACTS if each["id"] == contract)
+    assert importer.rpartition(".")[2] in violations(rule, graph)
+
+
+def test_that_no_module_imports_itself_by_a_detour() -> None:
+    graph = import_graph()
+    inside = {name for name in graph.modules if name.startswith("regolith_studio.")}
+    imports = {
+        name: graph.find_modules_directly_imported_by(name) & inside - {name} for name in inside
+    }  # a package that looks a name up in itself is no detour
+    graphlib.TopologicalSorter(imports).prepare()  # a CycleError names the cycle
+
+
+def test_that_every_module_is_part_of_a_package() -> None:
+    """A folder without __init__.py escapes import-linter, mypy and the wheel's users alike."""
+    assert not [path for path in MODULES if not (path.parent / "__init__.py").exists()]
+
+
+def test_that_no_module_is_a_drawer_for_odds_and_ends() -> None:
+    drawers = {"utils", "util", "helpers", "helper", "common", "misc"}
+    assert not [path for path in MODULES if {path.stem.strip("_"), path.parent.name.strip("_")} & drawers]
+
+
+def line_count(path: Path) -> int:
+    return len(path.read_text(encoding="utf-8").splitlines())
+
+
+@pytest.mark.parametrize("path", MODULES, ids=lambda path: path.relative_to(PACKAGE).as_posix())
+def test_that_a_module_is_short_enough_to_read(path: Path) -> None:
+    assert line_count(path) <= (LONGEST_MAIN_WINDOW if path.stem == "main_window" else LONGEST_MODULE)
+
+
+def test_that_half_of_the_modules_fit_on_a_few_pages() -> None:
+    assert statistics.median(map(line_count, MODULES)) <= MEDIAN_MODULE
+
+
+def functions(path: Path) -> Iterator[ast.FunctionDef | ast.AsyncFunctionDef]:
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+            yield node
+
+
+def body_length(function: ast.FunctionDef | ast.AsyncFunctionDef) -> int:
+    """Lines from the first statement after the docstring to the last."""
+    body = function.body[1:] if ast.get_docstring(function) and function.body[1:] else function.body
+    return (body[-1].end_lineno or 0) - body[0].lineno + 1
+
+
+def test_that_nine_functions_of_ten_fit_in_thirty_lines() -> None:
+    lengths = [body_length(function) for path in MODULES for function in functions(path)]
+    assert sum(length <= LONG_FUNCTION for length in lengths) >= 0.9 * len(lengths)
