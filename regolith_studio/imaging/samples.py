@@ -3,7 +3,7 @@
 import hashlib
 import json
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -12,7 +12,10 @@ import numpy as np
 
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.imaging.grains import AgglutinateRecipe, Recipe, StarRecipe
+from regolith_studio.imaging.sample_volumes import tiff_bytes
 from regolith_studio.imaging.stl import stl_bytes
+from regolith_studio.imaging.synthetic_ct import ScanRecipe, synthetic_scan
+from regolith_studio.imaging.volume import Volume
 
 SEED = 2026
 """Root of all shipped samples; each takes ``SeedSequence(SEED, spawn_key=(its variant,))``."""
@@ -138,13 +141,57 @@ GRAINS = (
 )
 
 
-def write_samples(folder: Path, grains: Sequence[SampleGrain] = GRAINS) -> None:
-    """Write ``particles/*.stl`` and ``manifest.json`` into `folder`, byte for byte the same each time."""
+SCANS = {"synthetic": ScanRecipe()}
+"""Shipped synthetic scans by name."""
+
+
+def write_samples(
+    folder: Path, grains: Sequence[SampleGrain] = GRAINS, scans: Mapping[str, ScanRecipe] = SCANS
+) -> None:
+    """Write ``particles/*.stl``, ``ct/*.tif`` and ``manifest.json`` into `folder`, the same each time.
+
+    The particles come out byte for byte; the volumes voxel for voxel (zlib's bytes depend on its version).
+    """
     (folder / "particles").mkdir(parents=True, exist_ok=True)
-    rows = [_write_grain(folder, grain) for grain in grains]
-    manifest = {"origin": ORIGIN, "seed": SEED, "unit": "um", "particles": rows, "volumes": []}
+    (folder / "ct").mkdir(exist_ok=True)
+    particles = [_write_grain(folder, grain) for grain in grains]
+    volumes = [row for name, recipe in scans.items() for row in _write_scan(folder, name, recipe)]
+    manifest = {"origin": ORIGIN, "seed": SEED, "unit": "um", "particles": particles, "volumes": volumes}
     text = json.dumps(manifest, indent=1, sort_keys=True)
     (folder / "manifest.json").write_text(text + "\n", encoding="utf-8", newline="\n")
+
+
+def _write_scan(folder: Path, name: str, recipe: ScanRecipe) -> list[dict[str, Any]]:
+    scan = synthetic_scan(recipe, SEED)
+    return [
+        _write_volume(folder, name, volume, description)
+        | {"recipe": {"type": "ScanRecipe", **asdict(recipe)}}
+        for volume, description in (
+            (
+                scan.labels,
+                f"True labels of {recipe.n_grains} angular grains: 0 between them, 1 to {recipe.n_grains}.",
+            ),
+            (
+                scan.grey,
+                "Grey values of the same grains with partial volumes, blur, cupping, rings and noise.",
+            ),
+        )
+    ]
+
+
+def _write_volume(folder: Path, scan: str, volume: Volume, description: str) -> dict[str, Any]:
+    content = tiff_bytes(volume)
+    name = f"ct/{scan}-{volume.kind}.tif"
+    (folder / name).write_bytes(content)
+    return {
+        "name": f"{scan}-{volume.kind}",
+        "kind": volume.kind,
+        "description": description,
+        "file": name,
+        "voxel_size_um": volume.voxel_size.tolist(),
+        "shape_xyz": list(volume.shape),
+        "sha256": hashlib.sha256(content).hexdigest(),
+    }
 
 
 def _write_grain(folder: Path, grain: SampleGrain) -> dict[str, Any]:

@@ -8,17 +8,47 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import tifffile
 
-from regolith_studio.imaging.samples import GRAINS, write_samples
+from regolith_studio.imaging.sample_volumes import sample_volume
+from regolith_studio.imaging.samples import GRAINS, SCANS, SEED, write_samples
 from regolith_studio.imaging.stl import RECORD, stl_bytes
+from regolith_studio.imaging.synthetic_ct import ScanRecipe, synthetic_scan
 from regolith_studio.resources import resource
 
 
 def test_that_the_shipped_particles_are_made_anew_byte_for_byte(tmp_path: Path) -> None:
-    write_samples(tmp_path, GRAINS[::4])
+    write_samples(tmp_path, GRAINS[::4], scans={})
     for grain in GRAINS[::4]:
         shipped = resource("samples", "particles", f"{grain.name}.stl")
         assert (tmp_path / "particles" / shipped.name).read_bytes() == shipped.read_bytes()
+
+
+def test_that_a_scan_is_written_with_its_voxel_size_and_named_in_the_manifest(tmp_path: Path) -> None:
+    recipe = ScanRecipe(shape=(40, 44, 48), n_grains=3, diameter=(14.0, 12.0, 16.0))
+    write_samples(tmp_path, (), {"small": recipe})
+    rows = json.loads((tmp_path / "manifest.json").read_text(encoding="utf-8"))["volumes"]
+    assert [row["name"] for row in rows] == ["small-labels", "small-grey"]
+    with tifffile.TiffFile(tmp_path / "ct" / "small-labels.tif") as file:
+        assert file.asarray().shape == (48, 44, 40)
+        assert file.imagej_metadata["unit"] == "um"
+        assert file.imagej_metadata["spacing"] == 2.3
+
+
+@pytest.mark.slow
+def test_that_the_shipped_scan_is_made_anew_voxel_for_voxel() -> None:
+    scan = synthetic_scan(SCANS["synthetic"], SEED)
+    assert np.array_equal(scan.labels.array, sample_volume("labels").array)
+    assert np.array_equal(scan.grey.array, sample_volume("grey").array)
+
+
+def test_that_the_shipped_volumes_load_with_their_voxel_size() -> None:
+    labels, grey = sample_volume("labels"), sample_volume("grey")
+    assert labels.shape == grey.shape == SCANS["synthetic"].shape
+    assert labels.voxel_size == pytest.approx([2.3, 2.3, 2.3])
+    assert np.unique(labels.array).tolist() == list(range(61))
+    inside = labels.array > 0
+    assert grey.array[inside].mean() > grey.array[~inside].mean() + 60
 
 
 def test_that_the_manifest_names_every_file_with_its_hash() -> None:

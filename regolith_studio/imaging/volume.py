@@ -1,0 +1,73 @@
+"""A volume of voxels, as a scanner or a segmentation leaves it."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from regolith_studio.errors import InputError
+from regolith_studio.geometry.arrays import FloatArray, locked_floats
+
+VolumeKind = Literal["labels", "grey"]
+
+
+@dataclass(frozen=True, eq=False)
+class Volume:
+    """Voxels on a rectangular grid; voxel [0, 0, 0] has its centre at the origin.
+
+    The array is not copied, since volumes can fill the memory: the volume holds a read-only view,
+    and whoever made the array must leave it alone.
+
+    Parameters
+    ----------
+    array
+        Shape (nx, ny, nz), indexed [x, y, z]; files that keep slices first are transposed where
+        they are read. Whole numbers where `kind` is ``labels``, 0 being no particle.
+    voxel_size
+        Edge lengths of a voxel along x, y and z, in micrometres, shape (3,).
+    kind
+        ``labels`` (each particle its own number) or ``grey``.
+    name
+        As the user knows the volume.
+
+    Raises
+    ------
+    InputError
+        If the array is not three-dimensional, empty or of a type that `kind` cannot have.
+    """
+
+    array: NDArray[Any]
+    voxel_size: FloatArray
+    kind: VolumeKind
+    name: str
+
+    def __post_init__(self) -> None:
+        view = np.asanyarray(self.array).view()
+        view.flags.writeable = False
+        sizes = locked_floats(self.voxel_size, (3,), "voxel_size")
+        if not (sizes > 0).all():
+            raise InputError(f"The edges of a voxel must be positive, got {sizes.tolist()} µm.")
+        if view.ndim != 3 or view.size == 0:
+            raise InputError(f"A volume has three dimensions, {self.name} has shape {view.shape}.")
+        if self.kind == "labels" and view.dtype.kind not in "uib":
+            raise InputError(f"Labels are whole numbers, {self.name} holds {view.dtype} values.")
+        if view.dtype.kind not in "uibf":
+            raise InputError(f"The voxels of {self.name} are {view.dtype}, not numbers.")
+        object.__setattr__(self, "array", view)
+        object.__setattr__(self, "voxel_size", sizes)
+
+    def __reduce__(self) -> tuple[Callable[..., "Volume"], tuple[Any, ...]]:
+        return Volume, (self.array, self.voxel_size, self.kind, self.name)
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """Voxels along x, y and z."""
+        nx, ny, nz = self.array.shape
+        return nx, ny, nz
+
+    @property
+    def voxel_volume(self) -> float:
+        """Volume of one voxel, in cubic micrometres."""
+        return float(np.prod(self.voxel_size))
