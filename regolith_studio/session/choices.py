@@ -2,31 +2,21 @@
 
 import dataclasses
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any, Self
 
+from regolith_studio.coarsening.coarsen import DEFAULT_METHOD, DEFAULT_PRESET, FACES_LIMITS, settings_of
+from regolith_studio.coarsening.weights import LossWeights
+from regolith_studio.descriptors.facts import BOX_METRICS
 from regolith_studio.errors import InputError
 from regolith_studio.jobs.coarsening import CoarseningOrder
-
-if TYPE_CHECKING:
-    from regolith_studio.coarsening.weights import LossWeights
+from regolith_studio.readers.units import unit_factor
 
 Scalar = bool | int | float | str
 
 L_MAX_LIMIT = 30
 """Highest degree that is fitted; every lower one is a truncation of that fit."""
-FACES_LIMITS = (4, 500)
 LEVEL_LIMITS = (0, 7)
 TARGETS = {"fit": "surface of the spherical-harmonics fit", "particle": "CT particle itself"}
-BOX_METRICS = ("exact", "approximate")
-DEFAULT_PRESET = "all"
-DEFAULT_METHOD = "annealing"
-
-
-def default_weights() -> "LossWeights":
-    """The weights of the default preset."""
-    from regolith_studio.coarsening.weights import LossWeights
-
-    return LossWeights.from_preset(DEFAULT_PRESET)
 
 
 @dataclass(frozen=True)
@@ -61,7 +51,7 @@ class Choices:
     Raises
     ------
     InputError
-        If a value is out of its range.
+        If a value is out of its range, or there is no such method or setting.
     """
 
     selected: str = ""
@@ -70,7 +60,7 @@ class Choices:
     n_faces: int = 20
     method: str = DEFAULT_METHOD
     settings: tuple[tuple[str, Scalar], ...] = ()
-    weights: "LossWeights" = field(default_factory=default_weights)
+    weights: LossWeights = field(default_factory=lambda: LossWeights.from_preset(DEFAULT_PRESET))
     preset: str = DEFAULT_PRESET
     seed: int = 0
     target: str = "fit"
@@ -83,7 +73,9 @@ class Choices:
         _within("The number of faces", self.n_faces, *FACES_LIMITS)
         _within("The seed", self.seed, 0, 2**63 - 1)
         _one_of("target of the coarsening", self.target, tuple(TARGETS))
-        _one_of("box metric", self.box_metric, BOX_METRICS)
+        _one_of("box metric", self.box_metric, tuple(BOX_METRICS))
+        unit_factor(self.unit)
+        settings_of(self.method, dict(self.settings))
         object.__setattr__(self, "settings", tuple(sorted(dict(self.settings).items())))
 
     def replaced(self, **changes: Any) -> Self:
@@ -98,7 +90,7 @@ class Choices:
         if unknown := sorted(set(changes) - known):
             raise InputError(f"There is no choice called {unknown[0]}; there are {', '.join(sorted(known))}.")
         if "preset" in changes and "weights" not in changes:
-            changes["weights"] = _preset_weights(changes["preset"])
+            changes["weights"] = LossWeights.from_preset(changes["preset"])
         if changes.get("method", self.method) != self.method and "settings" not in changes:
             changes["settings"] = ()
         return dataclasses.replace(self, **changes)
@@ -120,13 +112,7 @@ class Choices:
     @property
     def preset_modified(self) -> bool:
         """Whether the weights are no longer those of the preset."""
-        return bool(self.weights != _preset_weights(self.preset))
-
-
-def _preset_weights(name: str) -> "LossWeights":
-    from regolith_studio.coarsening.weights import LossWeights
-
-    return LossWeights.from_preset(name)
+        return self.weights != LossWeights.from_preset(self.preset)
 
 
 def _within(what: str, value: Any, low: int, high: int) -> None:

@@ -5,6 +5,8 @@ from typing import Any, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from regolith_studio.coarsening.coarsen import DEFAULT_METHOD, DEFAULT_PRESET
+from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.errors import FileError, InputError
 from regolith_studio.session.choices import Choices, Scalar
 
@@ -46,9 +48,9 @@ class Recipe(_Strict):
     l_max: int = 10
     level: int = 4
     target: str = "fit"
-    method: str = "annealing"
+    method: str = DEFAULT_METHOD
     settings: dict[str, Scalar] = Field(default_factory=dict)
-    preset: str = "all"
+    preset: str = DEFAULT_PRESET
     weights: dict[str, float] | None = None
     n_faces: int = 20
     seed: int = 0
@@ -82,8 +84,6 @@ class Recipe(_Strict):
         InputError
             If a value is out of its range.
         """
-        from regolith_studio.coarsening.weights import LossWeights
-
         names = ("unit", "l_max", "level", "target", "method", "preset", "n_faces", "seed", "box_metric")
         changes: dict[str, Any] = {name: getattr(self, name) for name in names}
         changes["settings"] = tuple(self.settings.items())

@@ -1,0 +1,53 @@
+"""Choices check themselves and say in one sentence what is wrong."""
+
+import pickle
+from typing import Any
+
+import pytest
+
+from regolith_studio.coarsening.weights import LossWeights
+from regolith_studio.errors import InputError
+from regolith_studio.session.choices import Choices
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"l_max": 31}, "from 0 to 30, got 31"),
+        ({"l_max": -1}, "from 0 to 30, got -1"),
+        ({"l_max": 3.5}, "whole number"),
+        ({"l_max": True}, "whole number"),
+        ({"n_faces": 4}, "from 5 to 200, got 4"),
+        ({"seed": -1}, "seed"),
+        ({"target": "moon"}, "'moon'"),
+        ({"box_metric": "sphere"}, "'sphere'"),
+        ({"method": "magic"}, "'magic'"),
+        ({"settings": (("colour", 3),)}, "'colour'"),
+        ({"preset": "favourites"}, "'favourites'"),
+        ({"colour": 3}, "colour"),
+        ({"unit": "furlong"}, "furlong"),
+    ],
+)
+def test_that_a_bad_choice_is_one_plain_sentence(changes: dict[str, Any], words: str) -> None:
+    with pytest.raises(InputError, match=words) as caught:
+        Choices().replaced(**changes)
+    assert str(caught.value).endswith(".")
+
+
+def test_that_choices_are_values() -> None:
+    assert Choices() == Choices()
+    assert hash(Choices()) == hash(Choices())
+    assert pickle.loads(pickle.dumps(Choices(l_max=4))) == Choices(l_max=4)
+
+
+def test_that_a_preset_brings_its_weights_and_a_moved_weight_marks_it_modified() -> None:
+    chosen = Choices().replaced(preset="all")
+    assert not chosen.preset_modified
+    moved = chosen.replaced(weights=LossWeights.of(volume=0.3))
+    assert moved.preset_modified
+    assert moved.replaced(preset="all") == chosen
+
+
+def test_that_the_order_of_a_coarsening_repeats_the_choices() -> None:
+    order = Choices(n_faces=12, seed=4, l_max=3, target="particle").order
+    assert (order.n_faces, order.seed, order.l_max, order.target) == (12, 4, 3, "particle")

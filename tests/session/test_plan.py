@@ -1,0 +1,83 @@
+"""What a change of choices makes necessary, without any session, thread or window."""
+
+import itertools
+from typing import Any
+
+import pytest
+
+from regolith_studio.coarsening.weights import LossWeights
+from regolith_studio.session.choices import Choices
+from regolith_studio.session.plan import LIVE, Kind, depends, needs, plan
+
+HERE = Choices(selected="a")
+FIT, SURFACE, DESCRIPTORS, COARSENING = LIVE
+
+
+def kinds(before: Choices | None, after: Choices, fitted: tuple[str, ...] = ("a",)) -> list[Kind]:
+    return [request.kind for request in plan(before, after, fitted)]
+
+
+def test_that_nothing_is_planned_without_a_particle() -> None:
+    assert plan(None, Choices()) == ()
+    assert plan(HERE, HERE.replaced(selected="")) == ()
+
+
+def test_that_the_first_particle_makes_everything_necessary() -> None:
+    assert kinds(None, HERE, ()) == list(LIVE)
+
+
+def test_that_equal_choices_make_nothing_necessary() -> None:
+    assert kinds(HERE, Choices(selected="a")) == []
+
+
+def test_that_a_particle_is_not_fitted_twice() -> None:
+    assert kinds(HERE, HERE.replaced(selected="b"), ("a",)) == list(LIVE)
+    assert kinds(HERE, HERE.replaced(selected="b"), ("a", "b")) == [SURFACE, DESCRIPTORS, COARSENING]
+
+
+@pytest.mark.parametrize(
+    ("changes", "expected"),
+    [
+        ({"l_max": 4}, [SURFACE, DESCRIPTORS, COARSENING]),
+        ({"level": 3}, [SURFACE, DESCRIPTORS, COARSENING]),
+        ({"box_metric": "trimesh"}, [DESCRIPTORS]),
+        ({"n_faces": 30}, [COARSENING]),
+        ({"seed": 7}, [COARSENING]),
+        ({"weights": LossWeights.of(volume=3.0)}, [COARSENING]),
+        ({"target": "particle"}, [COARSENING]),
+        ({"unit": "mm"}, []),
+    ],
+)
+def test_that_a_choice_remakes_what_depends_on_it(changes: dict[str, Any], expected: list[Kind]) -> None:
+    assert kinds(HERE, HERE.replaced(**changes)) == expected
+
+
+def test_that_l_max_leaves_the_coarsening_of_the_particle_itself_alone() -> None:
+    here = HERE.replaced(target="particle")
+    assert kinds(here, here.replaced(l_max=3)) == [SURFACE, DESCRIPTORS]
+
+
+def test_that_a_plan_and_its_reverse_redo_the_same_work() -> None:
+    variants = [HERE, HERE.replaced(l_max=2), HERE.replaced(seed=3), HERE.replaced(n_faces=9, level=2)]
+    for one, other in itertools.permutations(variants, 2):
+        assert kinds(one, other) == kinds(other, one)
+
+
+def test_that_requests_come_after_what_they_need() -> None:
+    for target in ("fit", "particle"):
+        seen: set[Kind] = set()
+        for request in plan(None, HERE.replaced(target=target)):
+            assert set(request.needs) <= seen
+            seen.add(request.kind)
+
+
+def test_that_the_particle_itself_is_coarsened_without_waiting_for_a_fit() -> None:
+    assert needs(COARSENING, HERE) == (SURFACE,)
+    assert needs(COARSENING, HERE.replaced(target="particle")) == ()
+
+
+def test_that_studies_know_which_choices_they_were_made_for() -> None:
+    assert depends(Kind.COARSENING_STUDY, HERE, HERE.replaced(n_faces=30))
+    assert depends(Kind.COARSENING_STUDY, HERE, HERE.replaced(l_max=3))
+    assert not depends(Kind.COARSENING_STUDY, HERE, HERE.replaced(selected="b"))
+    assert not depends(Kind.LMAX_STUDY, HERE, HERE.replaced(l_max=3))

@@ -1,0 +1,57 @@
+"""The preferences survive a restart, and a damaged file costs nothing but them."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+from regolith_studio.session.preferences import RECENT_LIMIT, Preferences, preferences_path
+
+
+def test_that_preferences_read_back(tmp_path: Path) -> None:
+    before = Preferences()
+    before.remember_opened(tmp_path / "grains" / "a.stl", "mm")
+    before.window = {"theme": "dark", "splitter": [3, 4]}
+    assert before.save(tmp_path / "p.json")
+    after = Preferences.load(tmp_path / "p.json")
+    assert after == before
+    assert after.unit_for(tmp_path / "grains" / "b.stl") == "mm"
+    assert after.unit_for(tmp_path / "elsewhere.stl") is None
+
+
+@pytest.mark.parametrize("text", ["", "{", "[]", '{"recent": 3}', "\0\0", "[" * 100_000])
+def test_that_a_damaged_file_gives_the_defaults(tmp_path: Path, text: str) -> None:
+    path = tmp_path / "p.json"
+    path.write_text(text)
+    assert Preferences.load(path) == Preferences()
+
+
+def test_that_a_missing_file_gives_the_defaults(tmp_path: Path) -> None:
+    assert Preferences.load(tmp_path / "nothing.json") == Preferences()
+
+
+def test_that_entries_of_a_newer_version_are_kept(tmp_path: Path) -> None:
+    path = tmp_path / "p.json"
+    path.write_text('{"hologram": true}')
+    Preferences.load(path).save(path)
+    assert '"hologram": true' in path.read_text()
+
+
+def test_that_recent_files_are_few_and_each_stands_once(tmp_path: Path) -> None:
+    preferences = Preferences()
+    for number in [*range(20), 19]:
+        preferences.remember_opened(tmp_path / f"{number}.stl", "um")
+    assert len(preferences.recent) == RECENT_LIMIT
+    assert [Path(name).name for name in preferences.recent[:2]] == ["19.stl", "18.stl"]
+
+
+def test_that_a_folder_that_cannot_be_written_is_no_error(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("in the way")
+    assert not Preferences().save(tmp_path / "file" / "p.json")
+
+
+def test_that_the_environment_can_name_another_folder(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("REGOLITH_STUDIO_CONFIG", os.fspath(tmp_path))
+    assert preferences_path() == tmp_path / "preferences.json"

@@ -1,0 +1,107 @@
+"""Only the newest task of a lane is heard; the test decides when each job says what."""
+
+from regolith_studio.jobs.events import Failed, Finished, Job, Listener, Partial, Progress, Started, Stopped
+from regolith_studio.session.signal import Signal
+from regolith_studio.session.tasks import Reactions, Task, TaskBoard
+
+
+class Puppet:
+    """A runner that does nothing but keep the listeners."""
+
+    def __init__(self) -> None:
+        self.listeners: list[Listener] = []
+        self.cancelled: list[int] = []
+
+    def submit(self, job: Job, listener: Listener, lane: str = "") -> "Puppet.Handle":  # noqa: ARG002
+        self.listeners.append(listener)
+        return Puppet.Handle(self, len(self.listeners) - 1)
+
+    def close(self) -> None: ...
+
+    class Handle:
+        def __init__(self, owner: "Puppet", index: int) -> None:
+            self.owner, self.index = owner, index
+
+        done = False
+
+        def cancel(self) -> None:
+            self.owner.cancelled.append(self.index)
+
+
+JOB = Job(lambda: iter(()))  # type: ignore[arg-type, return-value]
+
+
+def board() -> tuple[Puppet, TaskBoard, list[object]]:
+    puppet = Puppet()
+    return puppet, TaskBoard(puppet, lambda: None), []
+
+
+def test_that_an_answer_to_an_old_request_is_dropped() -> None:
+    puppet, tasks, heard = board()
+    tasks.start("fit", "first", JOB, Reactions(heard.append, heard.append))
+    tasks.start("fit", "second", JOB, Reactions(heard.append, heard.append))
+    assert puppet.cancelled == [0]
+    old, new = puppet.listeners
+    old(Partial("stale part"))
+    old(Finished("stale"))
+    new(Finished("fresh"))
+    assert heard == ["fresh"]
+    assert tasks.running == ()
+
+
+def test_that_lanes_do_not_replace_each_other() -> None:
+    puppet, tasks, heard = board()
+    tasks.start("fit", "one", JOB, Reactions(heard.append))
+    tasks.start("surface", "two", JOB, Reactions(heard.append))
+    puppet.listeners[0](Finished(1))
+    puppet.listeners[1](Finished(2))
+    assert heard == [1, 2]
+
+
+def test_that_progress_shows_in_the_list() -> None:
+    puppet, tasks, heard = board()
+    number = tasks.start("load", "Reading", JOB, Reactions(heard.append))
+    puppet.listeners[0](Started("Reading particles", 4))
+    puppet.listeners[0](Progress(3, 4, "b.stl"))
+    assert tasks.running == (Task(number, "load", "Reading particles", 3, 4, "b.stl"),)
+
+
+def test_that_a_cancelled_task_is_listed_until_it_has_stopped() -> None:
+    puppet, tasks, heard = board()
+    reactions = Reactions(heard.append, stopped=lambda: heard.append("stopped"))
+    number = tasks.start("load", "Reading", JOB, reactions)
+    tasks.cancel(number)
+    assert puppet.cancelled == [0]
+    assert tasks.is_running("load")
+    puppet.listeners[0](Stopped())
+    assert not tasks.is_running("load")
+    assert heard == ["stopped"]
+
+
+def test_that_a_failure_reaches_its_reaction() -> None:
+    puppet, tasks, heard = board()
+    tasks.start("load", "Reading", JOB, Reactions(heard.append, failed=heard.append))
+    puppet.listeners[0](Failed("Broken."))
+    assert heard == [Failed("Broken.")]
+
+
+def test_that_a_signal_calls_what_is_connected_and_nothing_else() -> None:
+    signal: Signal[[int]] = Signal()
+    heard: list[int] = []
+    stop = signal.connect(heard.append)
+    signal.connect(lambda value: heard.append(-value))
+    signal.emit(1)
+    stop()
+    stop()
+    signal.emit(2)
+    assert heard == [1, -1, -2]
+
+
+def test_that_a_callback_may_disconnect_another_during_an_emission() -> None:
+    signal: Signal[[]] = Signal()
+    heard: list[str] = []
+    signal.connect(lambda: stop())
+    stop = signal.connect(lambda: heard.append("late"))
+    signal.emit()
+    assert heard == []
+    assert len(signal) == 1
