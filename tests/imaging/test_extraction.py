@@ -1,0 +1,200 @@
+"""Particles from label volumes: right volume, right area, nothing left out silently."""
+
+import numpy as np
+import pytest
+import tifffile
+from scipy.spatial import ConvexHull, HalfspaceIntersection
+from scipy.special import ellipeinc, ellipkinc
+
+from regolith_studio.errors import InputError
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.imaging.extraction import (
+    ExtractionSettings,
+    border_weight,
+    extract_particles,
+    extraction_steps,
+    voxel_diameter,
+)
+from regolith_studio.imaging.grains import even_sphere, random_rotation
+from regolith_studio.imaging.sample_volumes import sample_volume
+from regolith_studio.imaging.volume import Volume
+
+ALL = ExtractionSettings(exclude_border=False, min_diameter=0.0)
+
+
+def grid(half: float, step=(1.0, 1.0, 1.0)) -> np.ndarray:
+    axes = [np.arange(-n, n + 1) * s for s, n in ((s, int(np.ceil(half / s)) + 3) for s in step)]
+    return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
+
+
+def labels(mask: np.ndarray, step=(1.0, 1.0, 1.0)) -> Volume:
+    return Volume(mask.astype(np.uint8), step, "labels", "test")
+
+
+def only_mesh(volume: Volume) -> Mesh:
+    (particle,) = extract_particles(volume, ALL).particles
+    return particle.mesh
+
+
+def ellipsoid_area(a: float, b: float, c: float) -> float:
+    """Legendre's formula for a > b > c."""
+    angle = np.arccos(c / a)
+    k = a**2 * (b**2 - c**2) / (b**2 * (a**2 - c**2))
+    bracket = ellipeinc(angle, k) * np.sin(angle) ** 2 + ellipkinc(angle, k) * np.cos(angle) ** 2
+    return 2 * np.pi * c**2 + 2 * np.pi * a * b / np.sin(angle) * bracket
+
+
+@pytest.mark.parametrize("diameter", [24.0, 41.0])
+def test_that_a_ball_of_24_voxels_has_its_volume_and_area(diameter: float) -> None:
+    mask = np.linalg.norm(grid(diameter / 2) - [0.3, -0.2, 0.4], axis=-1) <= diameter / 2
+    mesh = only_mesh(labels(mask))
+    assert mesh.volume == pytest.approx(np.pi / 6 * diameter**3, rel=5e-3)
+    assert mesh.surface_area == pytest.approx(np.pi * diameter**2, rel=0.02)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_that_an_ellipsoid_of_24_voxels_has_its_volume_and_area(seed: int) -> None:
+    axes = 12.0 * np.array([1.5, 1.1, 1 / 1.65])
+    turn = random_rotation(np.random.default_rng(seed))
+    mesh = only_mesh(labels((((grid(18.0) - 0.25) @ turn / axes) ** 2).sum(axis=-1) <= 1.0))
+    assert mesh.volume == pytest.approx(4 / 3 * np.pi * axes.prod(), rel=5e-3)
+    assert mesh.surface_area == pytest.approx(ellipsoid_area(*axes), rel=0.02)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_that_a_polyhedron_of_24_voxels_has_its_volume_and_area(seed: int) -> None:
+    generator = np.random.default_rng(seed)
+    normals = even_sphere(14).vertices + 0.4 * generator.standard_normal((14, 3))
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    offsets = generator.uniform(0.8, 1.2, 14)
+    unit = ConvexHull(HalfspaceIntersection(np.column_stack([normals, -offsets]), np.zeros(3)).intersections)
+    scale = 12.0 / (3 * unit.volume / 4 / np.pi) ** (1 / 3)
+    reach = scale * np.linalg.norm(unit.points, axis=1).max()
+    mask = ((grid(reach) - 0.25) @ normals.T <= scale * offsets).all(axis=-1)
+    mesh = only_mesh(labels(mask))
+    assert mesh.volume == pytest.approx(unit.volume * scale**3, rel=5e-3)
+    assert mesh.surface_area == pytest.approx(unit.area * scale**2, rel=0.02)
+
+
+def test_that_anisotropic_voxels_give_the_same_ball_in_micrometres() -> None:
+    step = (1.0, 1.0, 1.5)
+    mask = np.linalg.norm(grid(25.0, step), axis=-1) <= 25.0
+    mesh = only_mesh(labels(mask, step))
+    assert mesh.volume == pytest.approx(4 / 3 * np.pi * 25.0**3, rel=5e-3)
+    assert mesh.surface_area == pytest.approx(4 * np.pi * 25.0**2, rel=0.02)
+    assert np.ptp(mesh.vertices, axis=0) == pytest.approx(50.0, rel=0.03)
+
+
+def test_that_particles_stay_where_they_were_in_the_volume() -> None:
+    array = np.zeros((40, 30, 50), dtype=np.uint16)
+    array[20:32, 5:17, 30:42] = 7
+    (particle,) = extract_particles(Volume(array, (2.0, 2.0, 2.0), "labels", "t")).particles
+    assert particle.name == "particle_0007"
+    assert particle.mesh.centroid == pytest.approx([51.0, 21.0, 71.0], abs=1e-3)
+    assert particle.mesh.volume == pytest.approx(12**3 * 8)
+
+
+def test_that_border_and_small_labels_are_left_out_and_counted() -> None:
+    array = np.zeros((40, 40, 40), dtype=np.int32)
+    array[0:12, 10:22, 10:22] = 1
+    array[20:32, 20:32, 20:32] = 2
+    array[5:8, 30:33, 30:33] = 9
+    volume = Volume(array, (1.0, 1.0, 1.0), "labels", "t")
+    kept = extract_particles(volume)
+    assert (kept.labels, kept.border, kept.small) == ((2,), (1,), (9,))
+    assert "1 at the border, 1 too small" in kept.summary
+    everything = extract_particles(volume, ALL)
+    assert everything.labels == (1, 2, 9)
+    assert everything.weights == (1.0, 1.0, 1.0)
+    assert all(particle.mesh.volume > 0 for particle in everything.particles)
+
+
+def test_that_coarse_particles_carry_a_warning() -> None:
+    array = np.zeros((20, 20, 20), dtype=np.uint8)
+    array[5:13, 5:13, 5:13] = 1
+    (particle,) = extract_particles(Volume(array, (1.0, 1.0, 1.0), "labels", "t")).particles
+    assert any("9.9 voxels in diameter" in note for note in particle.notes)
+
+
+def test_that_separate_parts_and_closed_pores_are_mended_and_said() -> None:
+    array = np.zeros((30, 30, 30), dtype=np.uint8)
+    array[3:18, 3:18, 3:18] = 1
+    array[9:11, 9:11, 9:11] = 0
+    array[22:24, 22:24, 22:24] = 1
+    (particle,) = extract_particles(Volume(array, (1.0, 1.0, 1.0), "labels", "t")).particles
+    assert particle.mesh.volume == pytest.approx(15**3)
+    assert any("2 separate parts" in note and "8 voxels dropped" in note for note in particle.notes)
+    assert any("pores of 8 voxels" in note for note in particle.notes)
+
+
+def test_that_extraction_tells_how_far_it_is() -> None:
+    array = np.zeros((30, 30, 30), dtype=np.uint8)
+    array[2:14, 2:14, 2:14] = 1
+    array[16:28, 16:28, 16:28] = 2
+    story = list(extraction_steps(Volume(array, (1.0, 1.0, 1.0), "labels", "t")))
+    assert [(step.done, step.total, step.label) for step in story] == [(1, 2, 1), (2, 2, 2)]
+    assert all(step.particle is not None for step in story)
+
+
+@pytest.mark.parametrize(
+    ("volume", "message"),
+    [
+        (Volume(np.ones((3, 3, 3)), (1, 1, 1), "grey", "g"), "segment it"),
+        (Volume(np.zeros((3, 3, 3), dtype=int), (1, 1, 1), "labels", "g"), "no particle"),
+        (Volume(np.full((3, 3, 3), 10**9), (1, 1, 1), "labels", "g"), "without gaps"),
+    ],
+)
+def test_that_volumes_without_usable_labels_are_refused(volume: Volume, message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        extract_particles(volume)
+
+
+def test_that_settings_without_meaning_are_refused() -> None:
+    with pytest.raises(InputError, match="pass band"):
+        ExtractionSettings(pass_band=0.0)
+
+
+def test_that_a_mask_of_one_type_or_another_gives_the_same_particle() -> None:
+    mask = np.linalg.norm(grid(9.0), axis=-1) <= 9.0
+    hashes = {
+        only_mesh(Volume(mask.astype(dtype), (1, 1, 1), "labels", "t")).content_hash
+        for dtype in (bool, np.uint8, np.int64, np.uint32)
+    }
+    assert len(hashes) == 1
+
+
+def test_that_the_border_weight_undoes_the_loss_of_big_grains() -> None:
+    """Boxes dropped at random: the weighted mean size of those inside is that of all."""
+    generator = np.random.default_rng(3)
+    volume = Volume(np.zeros((50, 50, 50), dtype=np.uint8), (1, 1, 1), "labels", "t")
+    sizes = generator.choice([6, 24], 20_000)
+    low = np.floor(generator.uniform(-24, 50, (20_000, 3))).astype(int)
+    inside = ((low >= 1) & (low + sizes[:, None] <= 49)).all(axis=1)
+    boxes = [tuple(slice(0, int(s)) for _ in range(3)) for s in sizes[inside]]
+    weights = np.array([border_weight(box, volume) for box in boxes])
+    share_by_number = np.mean(sizes[inside] == 24)
+    share_weighted = weights[sizes[inside] == 24].sum() / weights.sum()
+    assert share_by_number < 0.3
+    assert share_weighted == pytest.approx(0.5, abs=0.06)
+
+
+def test_that_voxel_diameter_is_that_of_a_ball() -> None:
+    assert voxel_diameter(1000) == pytest.approx(2 * (3000 / 4 / np.pi) ** (1 / 3))
+
+
+def test_that_the_shipped_scan_gives_47_closed_particles() -> None:
+    volume = sample_volume("labels")
+    extraction = extract_particles(volume)
+    assert (len(extraction.particles), len(extraction.border), len(extraction.small)) == (47, 13, 0)
+    counts = np.bincount(volume.array.ravel())
+    for particle, label in zip(extraction.particles, extraction.labels, strict=True):
+        assert particle.mesh.volume == pytest.approx(counts[label] * 2.3**3, rel=0.02)
+        edges = np.sort(particle.mesh.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+        assert (np.unique(edges, axis=0, return_counts=True)[1] == 2).all()
+
+
+def test_that_the_real_label_volume_comes_in(real_data) -> None:
+    array = tifffile.imread(real_data("cement140/labels_256.tif"))
+    extraction = extract_particles(Volume(array.T, (1, 1, 1), "labels", "cement"))
+    assert len(extraction.particles) + len(extraction.border) + len(extraction.small) == 150
+    assert all(particle.mesh.volume > 0 for particle in extraction.particles)
