@@ -1,0 +1,158 @@
+"""How the triangles of a mesh hang together: edges, neighbours across them, bodies, orientation."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import int64
+
+from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
+from regolith_studio.geometry.compiled import kernel
+
+
+@dataclass(frozen=True)
+class EdgeTable:
+    """The undirected edges of m triangles; half-edge 3 f + k runs from corner k of face f to the next.
+
+    Parameters
+    ----------
+    ends
+        Vertices of each edge, the lower index first, shape (e, 2).
+    uses
+        Number of triangles at each edge, shape (e,).
+    edge
+        Edge of each half-edge, shape (3 m,).
+    forward
+        Whether each half-edge runs from the lower index to the higher, shape (3 m,).
+    """
+
+    ends: IntArray
+    uses: IntArray
+    edge: IntArray
+    forward: BoolArray
+
+    @property
+    def open_edges(self) -> int:
+        """Number of edges of one triangle only."""
+        return int(np.count_nonzero(self.uses == 1))
+
+    @property
+    def crowded_edges(self) -> int:
+        """Number of edges of three triangles or more (non-manifold)."""
+        return int(np.count_nonzero(self.uses > 2))
+
+
+def edge_table(faces: IntArray, n_vertices: int) -> EdgeTable:
+    """The edges of triangles, shape (m, 3); an edge from a vertex to itself counts as one."""
+    start, stop = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
+    low, high = np.minimum(start, stop), np.maximum(start, stop)
+    keys, edge, uses = np.unique(low * n_vertices + high, return_inverse=True, return_counts=True)
+    ends = np.column_stack([keys // max(n_vertices, 1), keys % max(n_vertices, 1)])
+    return EdgeTable(ends, uses.astype(np.int64), edge.astype(np.int64), start < stop)
+
+
+def neighbours(table: EdgeTable) -> IntArray:
+    """For each half-edge the one across an edge of exactly two triangles, else -1; shape (3 m,)."""
+    across = np.full(len(table.edge), -1, dtype=np.int64)
+    order = np.argsort(table.edge, kind="stable")
+    first = np.cumsum(table.uses) - table.uses
+    pairs = first[table.uses == 2]
+    across[order[pairs]], across[order[pairs + 1]] = order[pairs + 1], order[pairs]
+    return across
+
+
+def neighbours_at_crowded_edges(
+    vertices: FloatArray, faces: IntArray, table: EdgeTable, across: IntArray
+) -> IntArray:
+    """`across` with the triangles at crowded edges paired so that each pair bounds a wedge of the solid.
+
+    The triangles must run counter-clockwise seen from outside. About an edge, in the order of their
+    angle, a triangle that runs along the edge has the solid behind it, so its partner is the one
+    before it, if that runs the other way.
+    """
+    across = across.copy()
+    order = np.argsort(table.edge, kind="stable")
+    first = np.cumsum(table.uses) - table.uses
+    for edge in np.flatnonzero(table.uses > 2):
+        halves = order[first[edge] : first[edge] + table.uses[edge]]
+        low, high = vertices[table.ends[edge]]
+        thirds = vertices[faces.ravel()[halves - halves % 3 + (halves + 2) % 3]] - low
+        turned = halves[np.argsort(_angles(high - low, thirds), kind="stable")]
+        for place, half in enumerate(turned):
+            behind = turned[place - 1]
+            if table.forward[half] and not table.forward[behind]:
+                across[half], across[behind] = behind, half
+    return across
+
+
+def _angles(axis: FloatArray, spokes: FloatArray) -> FloatArray:
+    """Angle of each spoke about the axis, counter-clockwise seen against it."""
+    first = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+    second = np.cross(axis, first)
+    return np.asarray(
+        np.arctan2(spokes @ second * np.linalg.norm(first), spokes @ first * np.linalg.norm(second))
+    )
+
+
+@dataclass(frozen=True)
+class Bodies:
+    """Triangles that hang together across edges.
+
+    Parameters
+    ----------
+    body
+        Number of each triangle's body, shape (m,), from 0.
+    turned
+        Whether a triangle must be turned round to agree with the first of its body, shape (m,).
+    conflicts
+        Number of edges across which no turning can bring agreement (one-sided surfaces).
+    """
+
+    body: IntArray
+    turned: BoolArray
+    conflicts: int
+
+    @property
+    def count(self) -> int:
+        """Number of bodies."""
+        return int(self.body.max()) + 1 if len(self.body) else 0
+
+
+def bodies(across: IntArray, forward: BoolArray) -> Bodies:
+    """Walk from triangle to triangle over the `across` of all half-edges."""
+    body, turned, conflicts = walk_bodies(across, forward)
+    return Bodies(body, turned, int(conflicts))
+
+
+@kernel
+def walk_bodies(across: IntArray, forward: BoolArray) -> tuple[IntArray, BoolArray, int]:
+    """Body and turn of each triangle, and the number of contradictions: a flood fill with parity."""
+    m = len(across) // 3
+    body = np.full(m, -1, dtype=np.int64)
+    turned = np.zeros(m, dtype=np.bool_)
+    stack = np.empty(m, dtype=np.int64)
+    count = int64(0)
+    conflicts = int64(0)
+    for seed in range(m):
+        if body[seed] >= 0:
+            continue
+        body[seed] = count
+        stack[0] = seed
+        height = 1
+        while height > 0:
+            height -= 1
+            face = stack[height]
+            for half in range(3 * face, 3 * face + 3):
+                other = across[half]
+                if other < 0:
+                    continue
+                neighbour = other // 3
+                turn = turned[face] ^ (forward[half] == forward[other])
+                if body[neighbour] < 0:
+                    body[neighbour] = count
+                    turned[neighbour] = turn
+                    stack[height] = neighbour
+                    height += 1
+                elif turned[neighbour] != turn:
+                    conflicts += 1
+        count += 1
+    return body, turned, conflicts // 2  # type: ignore[return-value]

@@ -1,0 +1,210 @@
+"""What is wrong with a mesh: bodies, holes, winding, degenerate and crossing triangles."""
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
+from regolith_studio.geometry.edges import EdgeTable, bodies, edge_table, neighbours
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.self_intersection import count_self_intersections
+
+MOST_FACES_SEARCHED = 200_000
+"""Meshes with more faces are not searched for self-intersections."""
+
+DEGENERATE_HEIGHT = 1e-9
+"""A triangle is degenerate where its height is below this share of its longest edge."""
+
+
+@dataclass(frozen=True)
+class MeshHealth:
+    """The findings about one mesh.
+
+    Parameters
+    ----------
+    faces, vertices
+        Their numbers; vertices that no face uses do not count.
+    bodies
+        Number of parts that hang together across shared edges.
+    watertight
+        Every edge belongs to exactly two triangles.
+    consistent_winding
+        Neighbouring triangles run the opposite way along their common edge.
+    volume
+        Signed, in the cube of the mesh's unit; negative where the mesh is inside out.
+    euler_number
+        Vertices - edges + faces: 2 for each closed body without handles.
+    degenerate_faces, duplicate_faces
+        Triangles without area, and triangles on the same three vertices as one before.
+    open_edges, crowded_edges
+        Edges of one triangle, and edges of more than two (non-manifold).
+    inverted_bodies
+        Closed bodies whose triangles face inwards: cavities, nested shells, inside-out parts.
+    self_intersections
+        Pairs of triangles that cross; ``None`` where they were not searched for.
+    problems
+        One plain sentence each.
+    """
+
+    faces: int
+    vertices: int
+    bodies: int
+    watertight: bool
+    consistent_winding: bool
+    volume: float
+    euler_number: int
+    degenerate_faces: int
+    duplicate_faces: int
+    open_edges: int
+    crowded_edges: int
+    inverted_bodies: int
+    self_intersections: int | None
+    problems: tuple[str, ...] = ()
+
+    @property
+    def sound(self) -> bool:
+        """Whether the mesh encloses one proper volume, so that volume and area mean what they say.
+
+        Handles, crossing and degenerate triangles are problems that leave a mesh sound.
+        """
+        return self.watertight and self.consistent_winding and self.bodies == 1 and self.volume > 0.0
+
+    @property
+    def handles(self) -> int:
+        """Number of handles or tunnels of a watertight mesh."""
+        return max(0, self.bodies - self.euler_number // 2) if self.watertight else 0
+
+    def as_dict(self) -> dict[str, Any]:
+        """Findings as numbers, truth values and lists, ready for JSON."""
+        return {**asdict(self), "problems": list(self.problems), "handles": self.handles, "sound": self.sound}
+
+
+def inspect(mesh: Mesh, *, self_intersections: bool = True) -> MeshHealth:
+    """Look for everything that can be wrong with a mesh.
+
+    Parameters
+    ----------
+    mesh
+        Of any scale and position.
+    self_intersections
+        Whether to search for crossing triangles (the slow part; never above 200,000 faces).
+    """
+    vertices, faces = unit_size(mesh)
+    table = edge_table(faces, len(vertices))
+    across = neighbours(table)
+    parts = bodies(across, table.forward)
+    crossing = None
+    if self_intersections and len(faces) <= MOST_FACES_SEARCHED:
+        crossing = count_self_intersections(vertices, faces)
+    used = len(np.unique(faces))
+    whole = bool(len(faces)) and bool((table.uses == 2).all())
+    found = MeshHealth(
+        faces=len(faces),
+        vertices=used,
+        bodies=parts.count,
+        watertight=whole,
+        consistent_winding=bool(len(faces)) and _agrees(table, across),
+        volume=mesh.volume if len(faces) else 0.0,
+        euler_number=used - len(table.ends) + len(faces),
+        degenerate_faces=int(np.count_nonzero(degenerate(vertices, faces))),
+        duplicate_faces=len(faces) - len(np.unique(np.sort(faces, axis=1), axis=0)),
+        open_edges=table.open_edges,
+        crowded_edges=table.crowded_edges,
+        inverted_bodies=_inverted(vertices, faces, parts.body, table),
+        self_intersections=crossing,
+    )
+    problems = tuple(_sentences(found, searched=self_intersections))
+    return MeshHealth(**{**found.__dict__, "problems": problems})
+
+
+def unit_size(mesh: Mesh) -> tuple[FloatArray, IntArray]:
+    """Vertices moved and scaled into the unit cube about the origin, and the faces."""
+    if not len(mesh.faces):
+        return mesh.vertices, mesh.faces
+    points = mesh.vertices[np.unique(mesh.faces)]
+    low, high = points.min(axis=0), points.max(axis=0)
+    size = float((high - low).max())
+    return (mesh.vertices - (low + high) / 2) / (size if size > 0.0 else 1.0), mesh.faces
+
+
+def degenerate(vertices: FloatArray, faces: IntArray) -> BoolArray:
+    """Which triangles have no area: repeated corners, or three corners in a line."""
+    corner = vertices[faces]
+    sides = np.roll(corner, -1, axis=1) - corner
+    longest = (sides**2).sum(axis=2).max(axis=1, initial=0.0)
+    double_area = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
+    return np.asarray(double_area <= DEGENERATE_HEIGHT * longest)
+
+
+def body_volumes(vertices: FloatArray, faces: IntArray, body: IntArray) -> FloatArray:
+    """Signed volume of each body about its own middle; a body with holes gets a near value."""
+    corner = vertices[faces]
+    count = int(body.max()) + 1
+    weight = np.bincount(body, minlength=count)[:, None]
+    middle = np.column_stack(
+        [np.bincount(body, corner[:, :, k].mean(axis=1), minlength=count) for k in range(3)]
+    )
+    corner = corner - (middle / weight)[body][:, None]
+    six = np.einsum("ij,ij->i", corner[:, 0], np.cross(corner[:, 1], corner[:, 2]))
+    return np.asarray(np.bincount(body, six / 6, minlength=count), dtype=np.float64)
+
+
+def _agrees(table: EdgeTable, across: IntArray) -> bool:
+    paired = across >= 0
+    return not (table.forward[paired] == table.forward[across[paired]]).any()
+
+
+def _inverted(vertices: FloatArray, faces: IntArray, body: IntArray, table: EdgeTable) -> int:
+    if not len(faces):
+        return 0
+    closed = np.ones(int(body.max()) + 1, dtype=np.bool_)
+    closed[body[np.flatnonzero(table.uses[table.edge] == 1) // 3]] = False
+    return int(np.count_nonzero((body_volumes(vertices, faces, body) < 0.0) & closed))
+
+
+def _sentences(found: MeshHealth, searched: bool) -> Sequence[str]:
+    if not found.faces:
+        return ("It has no faces.",)
+    crossing = found.self_intersections
+    rows = (
+        (found.bodies > 1, f"It consists of {found.bodies:,} separate bodies."),
+        (found.open_edges > 0, f"It is not closed: {_edges(found.open_edges)} one face only."),
+        (
+            found.crowded_edges > 0,
+            f"It is not a simple surface: {_edges(found.crowded_edges)} three faces or more.",
+        ),
+        (not found.consistent_winding, "Its faces do not all look the same way: some are turned round."),
+        (found.volume < 0.0, "It is inside out: its faces look inwards."),
+        (found.volume == 0.0, "It encloses no volume."),
+        (
+            0 < found.inverted_bodies < found.bodies,
+            f"{_count(found.inverted_bodies, 'closed body is', 'closed bodies are')} turned inwards: "
+            "cavities or nested shells.",
+        ),
+        (
+            found.handles > 0,
+            f"It has {_count(found.handles, 'tunnel', 'tunnels')} through it "
+            f"(Euler number {found.euler_number}).",
+        ),
+        (found.degenerate_faces > 0, f"{_count(found.degenerate_faces, 'face has', 'faces have')} no area."),
+        (found.duplicate_faces > 0, f"{_count(found.duplicate_faces, 'face is', 'faces are')} there twice."),
+        (
+            bool(crossing),
+            f"{_count(crossing or 0, 'pair of faces crosses', 'pairs of faces cross')} each other.",
+        ),
+        (
+            searched and crossing is None,
+            "It was not searched for faces that cross: it is too large or too tangled.",
+        ),
+    )
+    return tuple(sentence for holds, sentence in rows if holds)
+
+
+def _edges(count: int) -> str:
+    return _count(count, "edge belongs to", "edges belong to")
+
+
+def _count(count: int, one: str, many: str) -> str:
+    return f"{count:,} {one if count == 1 else many}"

@@ -1,0 +1,288 @@
+"""From a mesh as scanned to one closed body that faces outwards, with a sentence for each change."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from regolith_studio.errors import GeometryError
+from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
+from regolith_studio.geometry.edges import (
+    bodies,
+    edge_table,
+    neighbours,
+    neighbours_at_crowded_edges,
+)
+from regolith_studio.geometry.health import MeshHealth, body_volumes, inspect, unit_size
+from regolith_studio.geometry.holes import filled
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.welding import welded
+
+TOLERANCES = (1e-7, 1e-6, 1e-5)
+"""Shares of the mesh's size within which the vertices of an open mesh may be joined."""
+
+LARGEST_FILLED_SHARE = 0.4
+"""A mesh with more than this share of its closed surface missing is an open sheet, not a particle."""
+
+LEAST_VOLUME = 1e-9
+"""Share of its bounding cube that a mesh must enclose, or it is flat."""
+
+
+@dataclass(frozen=True)
+class Repair:
+    """A repaired mesh and what was done to it.
+
+    Parameters
+    ----------
+    mesh
+        Closed, of one body, facing outwards; the given mesh itself if nothing was wrong.
+    health_before, health_after
+        What the inspection found.
+    actions
+        One plain sentence for each change; empty if there was none.
+    filled_area
+        Area of the triangles that close holes, in the square of the mesh's unit.
+    """
+
+    mesh: Mesh
+    health_before: MeshHealth
+    health_after: MeshHealth
+    actions: tuple[str, ...]
+    filled_area: float = 0.0
+
+
+@dataclass(frozen=True)
+class _Draft:
+    """Mesh data on their way, in unit size, with what has been done."""
+
+    vertices: FloatArray
+    faces: IntArray
+    actions: tuple[str, ...] = ()
+    filled_area: float = 0.0
+
+    def changed(
+        self, action: str, *, vertices: FloatArray | None = None, faces: IntArray | None = None
+    ) -> "_Draft":
+        return _Draft(
+            self.vertices if vertices is None else vertices,
+            self.faces if faces is None else faces,
+            (*self.actions, action) if action else self.actions,
+            self.filled_area,
+        )
+
+
+def repair(mesh: Mesh) -> Repair:
+    """Make one sound body of a mesh: weld, clean, keep the largest body, wind, close holes.
+
+    Raises
+    ------
+    GeometryError
+        With one sentence if nothing sound can be saved.
+    """
+    before = inspect(mesh)
+    if not before.faces:
+        raise GeometryError("The mesh has points but no faces: a point cloud encloses no particle.")
+    if before.sound and not before.duplicate_faces:
+        _refuse_flat(unit_size(mesh)[0], mesh.faces)
+        return Repair(mesh, before, before, ())
+    draft = _Draft(*unit_size(mesh))
+    for step in (
+        _weld,
+        _drop_degenerate,
+        _drop_duplicates,
+        _weld_near,
+        _wind,
+        _keep_largest,
+        _fill,
+        _face_outwards,
+    ):
+        draft = step(draft)
+    mended = _restored(draft, mesh)
+    after = inspect(mended)
+    if not after.sound:
+        raise GeometryError(f"The mesh cannot be repaired: {_lower(after.problems[0])}")
+    return Repair(mended, before, after, draft.actions, draft.filled_area * _size(mesh) ** 2)
+
+
+def _weld(draft: _Draft) -> _Draft:
+    used = len(np.unique(draft.faces))
+    vertices, faces = welded(draft.vertices, draft.faces)
+    joined = used - len(vertices)
+    action = (
+        f"Joined {_count(joined, 'vertex', 'vertices')} with another at the same place." if joined else ""
+    )
+    return draft.changed(action, vertices=vertices, faces=faces)
+
+
+def _drop_degenerate(draft: _Draft) -> _Draft:
+    a, b, c = draft.faces.T
+    proper = (a != b) & (b != c) & (c != a)
+    dropped = int(np.count_nonzero(~proper))
+    if not proper.any():
+        raise GeometryError("The mesh is a point or a line: none of its faces has an area.")
+    action = f"Removed {_count(dropped, 'face', 'faces')} without area." if dropped else ""
+    return draft.changed(action, faces=draft.faces[proper])
+
+
+def _drop_duplicates(draft: _Draft) -> _Draft:
+    """Of faces on the same three vertices keep one, or none where they wall off nothing."""
+    _, first, group, uses = np.unique(
+        np.sort(draft.faces, axis=1), axis=0, return_index=True, return_inverse=True, return_counts=True
+    )
+    if len(first) == len(draft.faces):
+        return draft
+    group = group.ravel()
+    double = uses > 1
+    signs = np.bincount(group, _parity(draft.faces))
+    inner = double & (signs == 0) & _closed_without(draft, double[group], first)
+    kept = np.sort(first[~inner])
+    if not len(kept):
+        raise GeometryError("The mesh is a sheet with two sides and encloses no volume.")
+    dropped = len(draft.faces) - len(kept)
+    return draft.changed(
+        f"Removed {_count(dropped, 'double face', 'double faces')}.", faces=draft.faces[kept]
+    )
+
+
+def _parity(faces: IntArray) -> IntArray:
+    """+1 for faces whose vertices are an even permutation of their sorted order, else -1."""
+    a, b, c = faces.T
+    return np.where((a < b).astype(int) + (b < c) + (c < a) == 2, 1, -1).astype(np.int64)
+
+
+def _closed_without(draft: _Draft, double: BoolArray, first: IntArray) -> BoolArray:
+    """For each group's first face whether its three edges are closed by faces that are not double."""
+    if double.all():
+        return np.zeros(len(first), dtype=np.bool_)
+    table = edge_table(draft.faces, len(draft.vertices))
+    single = np.bincount(table.edge[np.repeat(~double, 3)], minlength=len(table.ends))
+    return np.asarray((single[table.edge.reshape(-1, 3)[first]] == 2).all(axis=1))
+
+
+def _weld_near(draft: _Draft) -> _Draft:
+    """Join near vertices where that closes open edges and crowds none."""
+    table = edge_table(draft.faces, len(draft.vertices))
+    best, least = draft, table.open_edges
+    for tolerance in TOLERANCES if least else ():
+        vertices, faces = welded(draft.vertices, draft.faces, tolerance)
+        a, b, c = faces.T
+        faces = faces[(a != b) & (b != c) & (c != a)]
+        near = edge_table(faces, len(vertices))
+        if len(faces) and near.open_edges < least and near.crowded_edges <= table.crowded_edges:
+            joined = len(draft.vertices) - len(vertices)
+            near_by = f"within {tolerance:.0e} of the mesh's size"
+            text = f"Joined {_count(joined, 'vertex', 'vertices')} with another {near_by}."
+            best, least = draft.changed(text, vertices=vertices, faces=faces), near.open_edges
+    return best
+
+
+def _wind(draft: _Draft) -> _Draft:
+    """Turn faces so that neighbours agree, the fewer of each patch; then take crowded edges apart."""
+    table = edge_table(draft.faces, len(draft.vertices))
+    across = neighbours(table)
+    parts = bodies(across, table.forward)
+    if parts.conflicts:
+        raise GeometryError("The mesh is one-sided like a Möbius strip: its faces have no outside.")
+    share = np.bincount(parts.body, parts.turned) / np.bincount(parts.body)
+    turned = parts.turned ^ (share > 0.5)[parts.body]
+    faces = np.where(turned[:, None], draft.faces[:, ::-1], draft.faces)
+    count = int(np.count_nonzero(turned))
+    draft = draft.changed(
+        f"Turned {_count(count, 'face', 'faces')} that looked the wrong way." if count else "", faces=faces
+    )
+    return _take_apart(draft) if table.crowded_edges else draft
+
+
+def _take_apart(draft: _Draft) -> _Draft:
+    """Give each wedge of the solid at a crowded edge its own vertices."""
+    vertices, faces = draft.vertices, draft.faces
+    inside_out = float(body_volumes(vertices, faces, np.zeros(len(faces), dtype=np.int64))[0]) < 0.0
+    seen = faces[:, ::-1] if inside_out else faces
+    table = edge_table(seen, len(vertices))
+    across = neighbours_at_crowded_edges(vertices, seen, table, neighbours(table))
+    corner = _fans(seen, across)
+    _, first, inverse = np.unique(corner, return_index=True, return_inverse=True)
+    apart = inverse.reshape(-1, 3).astype(np.int64)
+    crowded = _count(table.crowded_edges, "edge", "edges")
+    text = f"Took the surface apart along {crowded} where more than two faces met."
+    faces = apart[:, ::-1] if inside_out else apart
+    return draft.changed(text, vertices=vertices[seen.ravel()[first]], faces=faces)
+
+
+def _fans(faces: IntArray, across: IntArray) -> IntArray:
+    """A number for each corner, shape (3 m,): equal for corners at a vertex joined by neighbours."""
+    half = np.flatnonzero(across >= 0)
+    other = across[half]
+    onward = half - half % 3 + (half + 1) % 3
+    other_onward = other - other % 3 + (other + 1) % 3
+    same = faces.ravel()[half] == faces.ravel()[other]
+    rows = np.concatenate([half, onward])
+    columns = np.concatenate([np.where(same, other, other_onward), np.where(same, other_onward, other)])
+    links = coo_array((np.ones(len(rows)), (rows, columns)), (faces.size,) * 2)
+    return np.asarray(connected_components(links, directed=False)[1], dtype=np.int64)
+
+
+def _keep_largest(draft: _Draft) -> _Draft:
+    table = edge_table(draft.faces, len(draft.vertices))
+    parts = bodies(neighbours(table), table.forward)
+    if parts.count == 1:
+        return draft
+    volumes = np.abs(body_volumes(draft.vertices, draft.faces, parts.body))
+    largest = int(np.argmax(volumes))
+    share = volumes[largest] / volumes.sum() if volumes.sum() > 0.0 else 1.0
+    text = f"Kept the largest of {parts.count:,} bodies, with {_percent(share)} of their volume."
+    return draft.changed(text, faces=draft.faces[parts.body == largest])
+
+
+def _fill(draft: _Draft) -> _Draft:
+    holes = filled(draft.vertices, draft.faces)
+    if not holes.count:
+        return draft
+    if not (edge_table(holes.faces, len(holes.vertices)).uses == 2).all():
+        holes = filled(draft.vertices, draft.faces, only_fans=True)
+    whole = Mesh(holes.vertices, holes.faces).surface_area
+    share = holes.area / whole if whole > 0.0 else 1.0
+    if share > LARGEST_FILLED_SHARE:
+        raise GeometryError(
+            f"The mesh is an open sheet, not a body: {_percent(share)} of a closed surface are missing."
+        )
+    text = f"Filled {_count(holes.count, 'hole', 'holes')} with {_percent(share)} of the surface."
+    return _Draft(holes.vertices, holes.faces, (*draft.actions, text), holes.area)
+
+
+def _face_outwards(draft: _Draft) -> _Draft:
+    _refuse_flat(draft.vertices, draft.faces)
+    if Mesh(draft.vertices, draft.faces).volume > 0.0:
+        return draft
+    return draft.changed("Turned all faces: the mesh was inside out.", faces=draft.faces[:, ::-1])
+
+
+def _refuse_flat(vertices: FloatArray, faces: IntArray) -> None:
+    if abs(Mesh(vertices, faces).volume) < LEAST_VOLUME:
+        raise GeometryError("The mesh is flat and encloses no volume.")
+
+
+def _restored(draft: _Draft, mesh: Mesh) -> Mesh:
+    """The draft at the place and size of the given mesh, without vertices that no face uses."""
+    points = mesh.vertices[np.unique(mesh.faces)]
+    middle = (points.min(axis=0) + points.max(axis=0)) / 2
+    used, compact = np.unique(draft.faces, return_inverse=True)
+    return Mesh(draft.vertices[used] * _size(mesh) + middle, compact.reshape(-1, 3))
+
+
+def _size(mesh: Mesh) -> float:
+    points = mesh.vertices[np.unique(mesh.faces)]
+    return float((points.max(axis=0) - points.min(axis=0)).max()) or 1.0
+
+
+def _percent(share: float) -> str:
+    return f"{100 * share:.2g} %" if share < 0.995 else f"{100 * share:.4g} %"
+
+
+def _count(count: int, one: str, many: str) -> str:
+    return f"{count:,} {one if count == 1 else many}"
+
+
+def _lower(sentence: str) -> str:
+    return sentence[0].lower() + sentence[1:]

@@ -1,0 +1,146 @@
+"""Triangles of a mesh that cross each other."""
+
+import numpy as np
+from numba import int64
+
+from regolith_studio.geometry.arrays import FloatArray, IntArray
+from regolith_studio.geometry.compiled import kernel
+
+MOST_CELLS = 1 << 21
+MOST_CANDIDATES = 200
+"""Mean number of triangles in a triangle's cells beyond which the search is given up."""
+
+
+def count_self_intersections(vertices: FloatArray, faces: IntArray) -> int | None:
+    """Number of pairs of triangles that cross, or ``None`` where the search would take too long.
+
+    Two triangles cross where an edge of one passes through the inside of the other; triangles that
+    touch in a shared edge, or overlap within one plane, do not count. Triangles are sorted into the
+    cells of a grid as fine as they are; only those that share a cell are compared.
+    """
+    if len(faces) < 2:
+        return 0
+    corners = np.ascontiguousarray(vertices[faces])
+    low, high = corners.min(axis=1), corners.max(axis=1)
+    origin, size = low.min(axis=0), (high.max(axis=0) - low.min(axis=0)).max()
+    if not size > 0.0:
+        return 0
+    edge = max(float((high - low).max(axis=1).mean()), size / 4096)
+    shape = np.maximum(np.ceil((high.max(axis=0) - origin) / edge), 1.0)
+    while shape.prod() > MOST_CELLS:
+        edge *= 1.3
+        shape = np.maximum(np.ceil((high.max(axis=0) - origin) / edge), 1.0)
+    cells = shape.astype(np.int64)
+    first = np.minimum(((low - origin) / edge).astype(np.int64), cells - 1)
+    last = np.minimum(((high - origin) / edge).astype(np.int64), cells - 1)
+    entries = int((last - first + 1).prod(axis=1).sum())
+    if entries > 64 * len(faces) + 4096:
+        return None
+    start, member = fill_cells(first, last, cells, entries)
+    load = np.diff(start)
+    if float((load.astype(np.float64) ** 2).sum()) > MOST_CANDIDATES * (len(faces) + 4096):
+        return None
+    return int(count_crossings(corners / size, faces, first, cells, start, member))
+
+
+@kernel
+def fill_cells(first: IntArray, last: IntArray, cells: IntArray, entries: int) -> tuple[IntArray, IntArray]:
+    """Members of each cell: triangle numbers, and where each cell's begin."""
+    start = np.zeros(cells[0] * cells[1] * cells[2] + 1, dtype=np.int64)
+    member = np.empty(entries, dtype=np.int64)
+    for stage in range(2):
+        for t in range(len(first)):
+            for i in range(first[t, 0], last[t, 0] + 1):
+                for j in range(first[t, 1], last[t, 1] + 1):
+                    for k in range(first[t, 2], last[t, 2] + 1):
+                        cell = (i * cells[1] + j) * cells[2] + k
+                        if stage == 0:
+                            start[cell + 1] += 1
+                        else:
+                            member[start[cell]] = t
+                            start[cell] += 1
+        if stage == 0:
+            for cell in range(len(start) - 1):
+                start[cell + 1] += start[cell]
+    for cell in range(len(start) - 1, 0, -1):
+        start[cell] = start[cell - 1]
+    start[0] = 0
+    return start, member
+
+
+@kernel
+def count_crossings(
+    corners: FloatArray,
+    faces: IntArray,
+    first: IntArray,
+    cells: IntArray,
+    start: IntArray,
+    member: IntArray,
+) -> int:
+    """Crossing pairs, each counted in the lowest cell that both triangles reach."""
+    count = int64(0)
+    for cell in range(len(start) - 1):
+        i = cell // (cells[1] * cells[2])
+        j = cell // cells[2] % cells[1]
+        k = cell % cells[2]
+        for p in range(start[cell], start[cell + 1]):
+            a = member[p]
+            for q in range(p + 1, start[cell + 1]):
+                b = member[q]
+                if (
+                    max(first[a, 0], first[b, 0]) == i
+                    and max(first[a, 1], first[b, 1]) == j
+                    and max(first[a, 2], first[b, 2]) == k
+                    and cross(corners[a], corners[b], faces[a], faces[b])
+                ):
+                    count += 1
+    return count  # type: ignore[return-value]
+
+
+@kernel
+def cross(a: FloatArray, b: FloatArray, face_a: IntArray, face_b: IntArray) -> bool:
+    """Whether an edge of one triangle passes through the other; shared corners are left out."""
+    for axis in range(3):
+        if max(a[0, axis], a[1, axis], a[2, axis]) < min(b[0, axis], b[1, axis], b[2, axis]):
+            return False
+        if max(b[0, axis], b[1, axis], b[2, axis]) < min(a[0, axis], a[1, axis], a[2, axis]):
+            return False
+    shared = 0
+    for i in range(3):
+        for j in range(3):
+            if face_a[i] == face_b[j]:
+                shared += 1
+    if shared > 1:
+        return False
+    return pierces(a, b, face_a, face_b) or pierces(b, a, face_b, face_a)
+
+
+@kernel
+def pierces(a: FloatArray, b: FloatArray, face_a: IntArray, face_b: IntArray) -> bool:
+    """Whether an edge of triangle `a` that has no corner in common with `b` passes through `b`."""
+    normal = np.cross(b[1] - b[0], b[2] - b[0])
+    area = np.sqrt((normal * normal).sum())
+    if area == 0.0:
+        return False
+    slack = 1e-12 * area
+    height = np.empty(3)
+    for i in range(3):
+        height[i] = ((a[i] - b[0]) * normal).sum()
+    for i in range(3):
+        j = (i + 1) % 3
+        if (height[i] > slack and height[j] < -slack) or (height[i] < -slack and height[j] > slack):
+            common = False
+            for k in range(3):
+                if face_a[i] == face_b[k] or face_a[j] == face_b[k]:
+                    common = True
+            if common:
+                continue
+            point = a[i] + (a[j] - a[i]) * (height[i] / (height[i] - height[j]))
+            inside = True
+            for k in range(3):
+                side = (np.cross(b[(k + 1) % 3] - b[k], point - b[k]) * normal).sum()
+                if side <= 1e-12 * area * area:
+                    inside = False
+            if inside:
+                return True
+    return False

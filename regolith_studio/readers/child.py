@@ -1,0 +1,105 @@
+"""The child process that parses untrusted files: ``python -m regolith_studio.readers.child``.
+
+It takes one request at a time on its standard input and answers on its standard output, until the
+input ends. It kills itself when a request takes too long, so that it cannot outlive its parent.
+"""
+
+import contextlib
+import hashlib
+import os
+import signal
+import sys
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from regolith_studio.errors import RegolithError
+from regolith_studio.readers.mesh_file import parse_mesh
+from regolith_studio.readers.protocol import Message, receive, send
+
+Task = Callable[[dict[str, Any]], Message]
+
+
+def read_mesh_file(request: dict[str, Any]) -> Message:
+    """Vertices and faces of the file at ``request["path"]``."""
+    path = Path(request["path"])
+    data = path.read_bytes()
+    parsed, row = parse_mesh(data, path)
+    header = {
+        "notes": parsed.notes,
+        "format": row.key,
+        "shares_vertices": row.shares_vertices,
+        "sha256": hashlib.sha256(data).hexdigest(),
+    }
+    return Message(header, (parsed.vertices.astype("<f8"), parsed.faces.astype("<i8")))
+
+
+TASKS: dict[str, Task] = {"mesh": read_mesh_file}
+"""What the child can be asked for; another kind of file is another row."""
+
+
+def answer(request: dict[str, Any]) -> Message:
+    """The task's result, or a header that says why there is none."""
+    name = Path(request["path"]).name
+    try:
+        message = TASKS[request["task"]](request)
+    except RegolithError as error:
+        return Message({"status": "refused", "sentence": str(error)})
+    except MemoryError:
+        return Message({"status": "memory"})
+    except OSError as error:
+        return Message(
+            {"status": "refused", "sentence": f"{name} cannot be opened: {error.strerror or error}."}
+        )
+    except Exception as error:  # noqa: BLE001 (whatever a parser trips over is the file's fault)
+        sentence = f"{name} is damaged in a way that its reader does not know; export it again."
+        return Message({"status": "refused", "sentence": sentence, "details": repr(error)})
+    return Message({**message.header, "status": "read"}, message.arrays)
+
+
+def main() -> None:
+    """Answer requests until the parent closes the pipe."""
+    source, sink = _private_pipes()
+    _limit_memory(int(sys.argv[1]) if len(sys.argv) > 1 else 0)
+    warnings.simplefilter("ignore")
+    send(sink, Message({"status": "ready", "pid": os.getpid()}))
+    with contextlib.suppress(EOFError, OSError, KeyboardInterrupt):
+        while True:
+            request = receive(source).header
+            _alarm(float(request.get("seconds", 60.0)))
+            send(sink, answer(request))
+            _alarm(0.0)
+
+
+def _private_pipes() -> tuple[Any, Any]:
+    """The pipes to the parent, out of reach of anything that prints."""
+    source, sink = os.dup(0), os.dup(1)
+    nothing = os.open(os.devnull, os.O_RDWR)
+    os.dup2(nothing, 0)
+    os.dup2(nothing, 1)
+    os.close(nothing)
+    return os.fdopen(source, "rb", buffering=0), os.fdopen(sink, "wb", buffering=0)
+
+
+def _alarm(seconds: float) -> None:
+    """Die after so many seconds, even inside compiled code; never for 0."""
+    if hasattr(signal, "setitimer"):
+        signal.signal(signal.SIGALRM, signal.SIG_DFL)
+        signal.setitimer(signal.ITIMER_REAL, seconds)
+
+
+def _limit_memory(limit: int) -> None:
+    """No more than `limit` bytes of addresses, no core files, no written files; where the system can."""
+    with contextlib.suppress(ImportError, ValueError, OSError):
+        import resource
+
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
+        if limit:
+            resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
+
+
+if __name__ == "__main__":
+    main()

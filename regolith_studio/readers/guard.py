@@ -1,0 +1,211 @@
+"""The guard of the reading child: starts it, keeps it warm, limits it, replaces it when it dies."""
+
+import multiprocessing.util as process_end
+import os
+import stat
+import subprocess
+import sys
+import threading
+from pathlib import Path
+from typing import Any
+
+from regolith_studio.errors import EnvironmentProblem, FileError
+from regolith_studio.readers.protocol import Message, receive, send
+
+LARGEST_FILE = 2 * 1024**3
+MEMORY = 6 * 1024**3
+"""Bytes of addresses that the child may use; a 2 GiB file and its arrays fit."""
+
+BASE_SECONDS = 10.0
+SECONDS_PER_BYTE = 1.0 / 1e6
+START_SECONDS = 60.0
+LARGEST_WARM_RESULT = 256 * 1024**2
+"""After a larger result the child is replaced, so that its memory returns to the system."""
+
+
+class Guard:
+    """One warm child process; safe to share between threads, not between processes.
+
+    Parameters
+    ----------
+    memory
+        Bytes of addresses that the child may use, where the system can limit them.
+    seconds
+        Wall time for a small file; larger ones get a second more for each million bytes.
+    """
+
+    def __init__(self, memory: int = MEMORY, seconds: float = BASE_SECONDS) -> None:
+        self._memory = memory
+        self._seconds = seconds
+        self._lock = threading.RLock()
+        self._process: subprocess.Popen[bytes] | None = None
+        self._timed_out = False
+        self._ends_with_process = False
+
+    def warm_up(self) -> None:
+        """Start the child now instead of at the first request."""
+        with self._lock:
+            self._running()
+
+    def request(self, task: str, path: Path, **options: Any) -> Message:
+        """Let the child do `task` on the file at `path`.
+
+        Raises
+        ------
+        FileError
+            With one sentence if the file is refused, hangs or kills its reader.
+        """
+        size = checked_size(path)
+        seconds = self._seconds + size * SECONDS_PER_BYTE
+        header = {"task": task, "path": str(path.absolute()), "seconds": seconds + 2.0, **options}
+        with self._lock:
+            message = self._asked(Message(header), seconds)
+        if message is None:
+            raise FileError(_why_dead(path, self._timed_out, seconds))
+        if message.header["status"] == "memory":
+            limit = self._memory / 1024**3
+            raise FileError(
+                f"{path.name} needs more than the {limit:.3g} GiB of memory that a reader may use."
+            )
+        if message.header["status"] != "read":
+            raise FileError(message.header["sentence"])
+        return message
+
+    def close(self) -> None:
+        """End the child, if there is one."""
+        with self._lock:
+            process, self._process = self._process, None
+            if process is not None:
+                _end(process)
+
+    def forget(self) -> None:
+        """Let go of a child that belongs to the process that this one was forked from."""
+        self._lock = threading.RLock()
+        self._ends_with_process = False
+        process, self._process = self._process, None
+        if process is not None:
+            process.returncode = 0
+            for pipe in (process.stdin, process.stdout):
+                if pipe is not None:
+                    pipe.close()
+
+    def _asked(self, message: Message, seconds: float) -> Message | None:
+        """The child's answer; ``None`` if it died or was killed over it."""
+        process = self._running()
+        assert process.stdin is not None
+        try:
+            send(process.stdin, message)
+        except OSError:
+            self.close()
+            process = self._running()
+            send(process.stdin, message)  # type: ignore[arg-type]
+        answer = self._answer(process, seconds)
+        if answer is None or _wasteful(answer):
+            self.close()
+        return answer
+
+    def _answer(self, process: subprocess.Popen[bytes], seconds: float) -> Message | None:
+        assert process.stdout is not None
+        self._timed_out = False
+        watch = threading.Timer(seconds, self._kill, (process,))
+        watch.daemon = True
+        watch.start()
+        try:
+            return receive(process.stdout)  # type: ignore[arg-type]
+        except (EOFError, OSError, ValueError, KeyError):
+            return None
+        except BaseException:
+            self.close()
+            raise
+        finally:
+            watch.cancel()
+            watch.join()
+
+    def _kill(self, process: subprocess.Popen[bytes]) -> None:
+        self._timed_out = True
+        process.kill()
+
+    def _running(self) -> subprocess.Popen[bytes]:
+        if self._process is not None and self._process.poll() is None:
+            return self._process
+        self.close()
+        process = _started(self._memory)
+        if self._answer(process, START_SECONDS) is None:
+            _end(process)
+            raise EnvironmentProblem(f"The program's reading process does not start with {sys.executable}.")
+        self._process = process
+        if not self._ends_with_process:
+            process_end.Finalize(None, self.close, exitpriority=100)
+            self._ends_with_process = True
+        return process
+
+
+def _wasteful(answer: Message) -> bool:
+    size = sum(array.nbytes for array in answer.arrays)
+    return answer.header["status"] == "memory" or size > LARGEST_WARM_RESULT
+
+
+def checked_size(path: Path) -> int:
+    """Size in bytes of a regular file that can be read whole.
+
+    Raises
+    ------
+    FileError
+        If there is no such file, it is no regular file, or it is too large.
+    """
+    try:
+        status = path.stat()
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise FileError(f"{path.name or path} cannot be opened: {reason}.") from None
+    if stat.S_ISDIR(status.st_mode):
+        raise FileError(f"{path.name or path} is a folder, not a file.")
+    if not stat.S_ISREG(status.st_mode):
+        raise FileError(f"{path.name} is a device or a pipe, not a file.")
+    if status.st_size > LARGEST_FILE:
+        raise FileError(f"{path.name} has {status.st_size / 1024**3:.1f} GiB; at most 2 GiB are read.")
+    return status.st_size
+
+
+def _started(memory: int) -> subprocess.Popen[bytes]:
+    package = str(Path(__file__).resolve().parents[2])
+    single = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+    inherited = os.environ.get("PYTHONPATH")
+    found = {"PYTHONPATH": os.pathsep.join([package, inherited] if inherited else [package])}
+    return subprocess.Popen(
+        [sys.executable, "-P", "-B", "-m", "regolith_studio.readers.child", str(memory)],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        bufsize=0,
+        env={**os.environ, **single, **found},
+        creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
+    )
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    """Close the pipes and collect the child, by force if it does not go."""
+    for pipe in (process.stdin, process.stdout):
+        if pipe is not None:
+            pipe.close()
+    try:
+        process.wait(timeout=0.2)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()
+
+
+def _why_dead(path: Path, timed_out: bool, seconds: float) -> str:
+    if timed_out:
+        return f"{path.name} was given up after {seconds:.0f} s: it is damaged, or far larger than it looks."
+    return f"{path.name} is damaged: it ended the process that tried to read it; export it again."
+
+
+_SHARED = Guard()
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_SHARED.forget)
+
+
+def shared_guard() -> Guard:
+    """The one guard of this process."""
+    return _SHARED

@@ -1,0 +1,70 @@
+"""One untrusted file of bytes to checked triangles; runs in the guarded child process only."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from regolith_studio.errors import FileError
+from regolith_studio.readers.formats import mesh_formats, mesh_suffixes
+from regolith_studio.readers.mesh_format import MeshFormat, ParsedMesh
+
+LARGEST_COORDINATE = 1e40
+"""Beyond it the sixth powers in the checks would leave the range of float64."""
+
+
+def parse_mesh(data: bytes, path: Path) -> tuple[ParsedMesh, MeshFormat]:
+    """Triangles with finite corners and valid indices, and the format that they came in.
+
+    The content decides where it is unmistakable, the suffix otherwise.
+
+    Raises
+    ------
+    FileError
+        With a whole sentence that names the file.
+    """
+    try:
+        row, notes = _format_of(data, path)
+        parsed = row.parse(data, path)
+        return _checked(replace(parsed, notes=notes + parsed.notes)), row
+    except FileError as error:
+        raise FileError(f"{path.name} {error}") from None
+
+
+def _format_of(data: bytes, path: Path) -> tuple[MeshFormat, tuple[str, ...]]:
+    if not data:
+        raise FileError("is empty: it has no bytes at all.")
+    suffix = path.suffix.lower()
+    named = next((row for row in mesh_formats().values() if suffix in row.suffixes), None)
+    shown = next((row for row in mesh_formats().values() if row.recognises(data[:1024])), None)
+    if shown is not None and shown is not named:
+        return shown, (f"The file is named {path.suffix or 'without a suffix'} but holds {shown.label}.",)
+    if named is not None:
+        return named, ()
+    raise FileError(
+        f"is of no kind that is read here ({path.suffix or 'no suffix'}); "
+        f"what is read are meshes in {', '.join(sorted(mesh_suffixes()))}."
+    )
+
+
+def _checked(parsed: ParsedMesh) -> ParsedMesh:
+    vertices, faces = parsed.vertices, parsed.faces
+    if not len(vertices):
+        raise FileError("holds an empty mesh: it has no vertices.")
+    if not len(faces):
+        raise FileError(
+            f"is a point cloud: it has {len(vertices):,} points and no faces; reconstruct a surface first."
+        )
+    if faces.min() < 0 or faces.max() >= len(vertices):
+        raise FileError(f"has faces that point to vertices beyond its {len(vertices):,}.")
+    good = np.asarray((np.abs(vertices) < LARGEST_COORDINATE).all(axis=1))
+    if good.all():
+        return parsed
+    kept = np.asarray(good[faces].all(axis=1))
+    if not kept.any():
+        raise FileError("has no face whose corners are all finite numbers.")
+    lost = len(faces) - np.count_nonzero(kept)
+    notes = parsed.notes
+    if lost:
+        notes += (f"Left out {lost:,} faces with a corner that is not a finite number.",)
+    return ParsedMesh(np.where(good[:, None], vertices, 0.0), faces[kept], notes)

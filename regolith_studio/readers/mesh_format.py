@@ -1,0 +1,56 @@
+"""What a mesh format says about itself, and what its parser returns."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True)
+class ParsedMesh:
+    """Triangles as a file states them, unchecked.
+
+    Parameters
+    ----------
+    vertices
+        Shape (n, 3), float64; may hold values that are not finite.
+    faces
+        Shape (m, 3), int64; may point outside the vertices.
+    notes
+        One sentence for each thing in the file that was passed over.
+    """
+
+    vertices: NDArray[np.float64]
+    faces: NDArray[np.int64]
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class MeshFormat:
+    """One row of the table of mesh formats; each file of ``readers.formats`` announces one as ``FORMAT``.
+
+    Parameters
+    ----------
+    key
+        Short name, ``stl``.
+    label
+        As a sentence names it, ``STL``.
+    suffixes
+        Lower case, with the dot.
+    recognises
+        Whether the first 1,024 bytes can only be this format.
+    parse
+        Bytes and path to triangles; the path serves to find files that belong to this one. Raises
+        ``FileError`` with the second half of a sentence that begins with the file's name.
+    shares_vertices
+        False where each triangle brings its own three vertices, to be joined after reading.
+    """
+
+    key: str
+    label: str
+    suffixes: tuple[str, ...]
+    recognises: Callable[[bytes], bool]
+    parse: Callable[[bytes, Path], ParsedMesh]
+    shares_vertices: bool = True

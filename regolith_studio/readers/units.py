@@ -1,0 +1,33 @@
+"""Length units that the numbers of a file can be in, and what they are in micrometres."""
+
+import math
+
+from regolith_studio.errors import InputError
+
+UNITS: dict[str, float] = {"um": 1.0, "mm": 1e3, "m": 1e6, "nm": 1e-3, "cm": 1e4, "voxel": math.nan}
+"""Micrometres in a unit; not a number for ``voxel``, whose size must be given: ``voxel:2.5``."""
+
+
+def unit_factor(unit: str) -> float:
+    """Micrometres in `unit`: a key of `UNITS`, or ``voxel:SIZE`` with the voxel's edge in micrometres.
+
+    Raises
+    ------
+    InputError
+        If there is no such unit, or the voxel size is missing or not positive.
+    """
+    key, _, size = unit.partition(":")
+    if key == "voxel":
+        try:
+            factor = float(size)
+        except ValueError:
+            factor = math.nan
+    else:
+        factor = UNITS.get(unit, math.nan)
+        if math.isnan(factor):
+            raise InputError(f"There is no unit “{unit}”; the units are {', '.join(UNITS)}.")
+    if not (math.isfinite(factor) and factor > 0.0):
+        raise InputError(
+            "The unit voxel needs the size of a voxel in micrometres: write for example voxel:2.5."
+        )
+    return factor
