@@ -1,13 +1,21 @@
-"""Coarsens one particle, with every better polyhedron on the way, or a whole sample."""
+"""Coarsens one particle, with every better polyhedron on the way."""
 
+import time
+from collections.abc import Generator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from functools import lru_cache
+from typing import Any
 
+from regolith_studio.coarsening.coarsen import coarsening_steps
+from regolith_studio.coarsening.result import Coarsened
+from regolith_studio.coarsening.target import Target
+from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.jobs.events import Partial, Progress, Started, Steps
-
-if TYPE_CHECKING:
-    from regolith_studio.coarsening.weights import LossWeights
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.harmonics.fit import fit_harmonics
+from regolith_studio.harmonics.surface import reconstruct
+from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
+from regolith_studio.jobs.fitting import FIT_DEGREE
 
 
 @dataclass(frozen=True)
@@ -21,10 +29,11 @@ class CoarseningOrder:
     settings
         The method's settings that differ from its defaults, as (name, value) pairs.
     target
-        ``fit``: the surface at degree `l_max` is imitated; ``particle``: the mesh itself.
+        ``fit``: the surface at degree `l_max`, drawn at `level`, is imitated (section 3.2);
+        ``particle``: the mesh itself.
     """
 
-    weights: "LossWeights"
+    weights: LossWeights
     n_faces: int = 20
     method: str = "annealing"
     settings: tuple[tuple[str, bool | int | float | str], ...] = ()
@@ -34,19 +43,64 @@ class CoarseningOrder:
     level: int = 4
 
 
+@dataclass(frozen=True)
+class CoarsenedParticle:
+    """What became of one particle of a sample.
+
+    Parameters
+    ----------
+    coarsened
+        ``None`` if it failed.
+    problem
+        Why it failed, in one sentence.
+    notes
+        What to know about the particle: repairs of its mesh, warnings of its fit.
+    seconds
+        Time of fit and coarsening together.
+    """
+
+    name: str
+    index: int
+    coarsened: Coarsened | None
+    problem: str = ""
+    notes: tuple[str, ...] = ()
+    seconds: float = 0.0
+
+
 def coarsen_one(mesh: Mesh, order: CoarseningOrder, particle_index: int = 0) -> Steps:
     """Coarsen `mesh` as ordered; partial results are ``CoarseningProgress``, the result ``Coarsened``."""
-    from regolith_studio.coarsening.coarsen import coarsening_steps
-
     yield Started("Coarsening")
+    return (yield from _told(mesh, order, particle_index))
+
+
+def coarsen_particle(particle: Particle, order: CoarseningOrder, index: int) -> Steps:
+    """Fit (where the order says so) and coarsen one particle of a sample; returns `CoarsenedParticle`."""
+    yield Started(f"Coarsening {particle.name}")
+    begun = time.perf_counter()
+    mesh, notes = particle.mesh, particle.notes
+    if order.target == "fit":
+        fit = fit_harmonics(mesh, l_max=max(order.l_max, FIT_DEGREE))
+        mesh, notes = reconstruct(fit, order.l_max, level=order.level), notes + fit.warnings
+    coarsened = yield from _told(mesh, order, index)
+    seconds = time.perf_counter() - begun
+    return CoarsenedParticle(particle.name, index, coarsened, notes=notes, seconds=seconds)
+
+
+@lru_cache(maxsize=4)
+def _target(mesh: Mesh) -> Target:
+    """The measured target of a mesh; a moved weight or face count need not measure it anew."""
+    return Target.of(mesh)
+
+
+def _told(mesh: Mesh, order: CoarseningOrder, index: int) -> Generator[Step, None, Any]:
     steps = coarsening_steps(
-        mesh,
+        _target(mesh),
         n_faces=order.n_faces,
         method=order.method,
         weights=order.weights,
         seed=order.seed,
-        particle_index=particle_index,
-        settings=dict(order.settings) or None,
+        particle_index=index,
+        settings=dict(order.settings),
     )
     while True:
         try:

@@ -25,8 +25,8 @@ wrong in the background arrives at ``topics.failed`` as a ``Failure(title, sente
 
 Topics: ``particles choices fit surface descriptors coarsening lmax_study coarsening_study tasks``
 carry no argument (read the session anew); ``failed`` carries a ``Failure``, ``problems`` a tuple of
-sentences about opened files, ``exported`` the folder written. All are emitted in the thread that
-owns the session.
+``Problem(path, sentence)`` of files that were refused, ``exported`` the folder written. All are
+emitted in the thread that owns the session.
 
 Which work a change of choices makes necessary is decided by the pure function
 :func:`~regolith_studio.session.plan.plan`; requests are numbered and answers to old ones dropped.

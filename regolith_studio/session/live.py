@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Protocol
 
+from regolith_studio.descriptors.comparison import relative_errors
 from regolith_studio.jobs.coarsening import coarsen_one
 from regolith_studio.jobs.events import Failed, Job
 from regolith_studio.jobs.fitting import describe_meshes, draw_surface, fit_one
@@ -28,7 +29,7 @@ _EMPTY: dict[str, Any] = {
     "particle_descriptors": None,
     "fit_descriptors": None,
     "fit_errors": {},
-    "polyhedron": None,
+    "best": None,
     "coarsening_progress": None,
     "coarsened": None,
     "loss_history": (),
@@ -131,15 +132,13 @@ class LiveResults:
         meshes = {"particle": self._entry().particle.mesh, "fit": self._owner.results.surface}
 
         def keep(described: dict[str, Any]) -> None:
-            from regolith_studio.descriptors.comparison import relative_errors
-
             particle, fit = described["particle"], described["fit"]
             errors = relative_errors(particle, fit)
             self._owner.update(
                 "descriptors", particle_descriptors=particle, fit_descriptors=fit, fit_errors=errors
             )
 
-        return Job(describe_meshes, (meshes,)), keep, _ignore
+        return Job(describe_meshes, (meshes, self._owner.choices.box_metric)), keep, _ignore
 
     def _coarsening(self) -> "_Work":
         choices, entry = self._owner.choices, self._entry()
@@ -149,15 +148,14 @@ class LiveResults:
         return job, self._keep_coarsened, self._keep_progress
 
     def _keep_progress(self, step: "CoarseningProgress") -> None:
-        history = (*self._owner.results.loss_history, (step.step, step.loss))
-        polyhedron = step.polyhedron or self._owner.results.polyhedron
-        self._owner.update(
-            "coarsening", coarsening_progress=step, polyhedron=polyhedron, loss_history=history
-        )
+        results = self._owner.results
+        history = (*results.loss_history, (step.step, step.loss))
+        best = step if step.polyhedron else results.best
+        self._owner.update("coarsening", coarsening_progress=step, best=best, loss_history=history)
 
     def _keep_coarsened(self, done: "Coarsened") -> None:
         history = tuple(enumerate(done.loss_history))
-        self._owner.update("coarsening", coarsened=done, polyhedron=done.polyhedron, loss_history=history)
+        self._owner.update("coarsening", coarsened=done, best=done, loss_history=history)
 
 
 _Work = tuple[Job, Callable[[Any], None], Callable[[Any], None]]

@@ -40,10 +40,11 @@ class Results:
         The fit's surface cut at the chosen l_max, in the particle's frame, micrometres.
     particle_descriptors, fit_descriptors, fit_errors
         Of the CT particle, of `surface`, and the relative errors (Eq. 8) of the second.
-    polyhedron
-        The best one so far, while the coarsening runs; in the end that of `coarsened`.
     coarsening_progress
         The newest step of the coarsening that runs or ran.
+    best
+        The newest step with a polyhedron, or the finished coarsening; read :attr:`polyhedron` and
+        :attr:`polyhedron_mesh`.
     coarsened
         The finished coarsening for the present choices; ``None`` while it runs.
     loss_history
@@ -57,10 +58,20 @@ class Results:
     particle_descriptors: "Descriptors | None" = None
     fit_descriptors: "Descriptors | None" = None
     fit_errors: Mapping[str, float] = field(default_factory=dict)
-    polyhedron: ConvexPolyhedron | None = None
+    best: "CoarseningProgress | Coarsened | None" = None
     coarsening_progress: "CoarseningProgress | None" = None
     coarsened: "Coarsened | None" = None
     loss_history: tuple[tuple[int, float], ...] = ()
     lmax_study: "LmaxStudy | None" = None
     coarsening_study: "CoarseningStudy | None" = None
     outdated: frozenset[str] = frozenset()
+
+    @property
+    def polyhedron(self) -> ConvexPolyhedron | None:
+        """The best polyhedron so far, about its own centre (``best.centre`` in the particle's frame)."""
+        return self.best.polyhedron if self.best else None
+
+    @property
+    def polyhedron_mesh(self) -> Mesh | None:
+        """Its triangles where the particle lies."""
+        return self.best.mesh if self.best else None

@@ -9,8 +9,8 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.building import DatasetOptions, build_dataset_folder
 from regolith_studio.jobs.events import Failed, Job
-from regolith_studio.jobs.fitting import inspect_particles
-from regolith_studio.jobs.loading import Loaded, load_particles, load_sample
+from regolith_studio.jobs.fitting import Examined, examine_particles
+from regolith_studio.jobs.loading import Loaded, load_particles, load_sample, uniquely_named
 from regolith_studio.jobs.runners.protocol import Runner
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.live import LiveResults
@@ -218,13 +218,11 @@ class Session:
         return self._board.start("load", title, job, Reactions(take, failed=self.tell_failure(title)))
 
     def _replace_particles(self, loaded: Loaded, add: bool) -> None:
-        problems = (*loaded.problems, *(note for p in loaded.particles for note in p.notes))
-        if problems:
-            self.topics.problems.emit(problems)
-        if not loaded.particles:
-            return
+        if loaded.problems:
+            self.topics.problems.emit(loaded.problems)
         kept = self.particles if add else ()
-        self.particles = kept + _entries(loaded.particles, [entry.id for entry in kept])
+        fresh = uniquely_named(loaded.particles, [entry.id for entry in kept])
+        self.particles = kept + tuple(ParticleEntry(particle.name, particle) for particle in fresh)
         first = self.particles[len(kept)].id
         self._live.forget()
         self._studied.clear()
@@ -238,28 +236,14 @@ class Session:
         self._live.follow(None, self.choices)
 
     def _inspect(self) -> None:
-        def note(seen: tuple[tuple[Any, Any], ...]) -> None:
+        def note(seen: tuple[Examined, ...]) -> None:
             rows = list(self.particles)
-            for at, (health, descriptors) in enumerate(seen):
-                rows[at] = dataclasses.replace(rows[at], health=health, descriptors=descriptors)
+            for at, facts in enumerate(seen):
+                rows[at] = dataclasses.replace(rows[at], health=facts.health, descriptors=facts.descriptors)
             self.particles = tuple(rows)
             self.topics.particles.emit()
 
-        job = Job(inspect_particles, (self._open_particles(),))
+        job = Job(examine_particles, (self._open_particles(),))
         title = "Measuring particles"
         reactions = Reactions(lambda _all: None, partial=note, failed=self.tell_failure(title))
         self._board.start("inspect", title, job, reactions)
-
-
-def _entries(particles: Sequence[Particle], taken: list[str]) -> tuple[ParticleEntry, ...]:
-    """Entries with ids that differ from each other and from those `taken`."""
-    used = set(taken)
-    entries = []
-    for particle in particles:
-        name, number = particle.name, 1
-        while name in used:
-            number += 1
-            name = f"{particle.name} ({number})"
-        used.add(name)
-        entries.append(ParticleEntry(name, particle))
-    return tuple(entries)

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from regolith_studio.jobs.loading import Problem
 from regolith_studio.session.signal import Signal
 
 
@@ -29,7 +30,7 @@ class Topics:
     coarsening_study: Signal[[]] = field(default_factory=Signal)
     tasks: Signal[[]] = field(default_factory=Signal)
     failed: Signal[[Failure]] = field(default_factory=Signal)
-    problems: Signal[[tuple[str, ...]]] = field(default_factory=Signal)
-    """Sentences about input that was refused or mended, after an :meth:`Session.open`."""
+    problems: Signal[[tuple[Problem, ...]]] = field(default_factory=Signal)
+    """Files that were refused, after an :meth:`Session.open`; what was mended stands in the notes."""
     exported: Signal[[Path]] = field(default_factory=Signal)
     """The folder that was written."""
