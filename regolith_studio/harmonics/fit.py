@@ -1,0 +1,179 @@
+"""From a mesh to the spherical-harmonics coefficients of its radius function (sections 2.3 and 3.1)."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from regolith_studio.errors import GeometryError, InputError
+from regolith_studio.geometry.arrays import FloatArray, locked_floats
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.harmonics.closed_surface import checked_solid
+from regolith_studio.harmonics.coefficients import ShCoefficients, checked_degree
+from regolith_studio.harmonics.radius_function import DEFAULT_RULE, RadiusFunction, sample_radius
+from regolith_studio.harmonics.reference import REFERENCES, Ellipsoid
+from regolith_studio.harmonics.star_point import STAR_POINT_RULES, centre_of_mass, least_hidden_volume
+from regolith_studio.harmonics.transform import SAMPLING_DEGREE, RayGrid, expand, ray_grid, smoothed
+from regolith_studio.harmonics.visibility import hidden_surface_share
+
+HIDDEN_TOLERANCE = 0.01
+"""Hidden share of the surface from which on a fit carries a warning."""
+OSCILLATION_TOLERANCE = 0.05
+"""Root-mean-square radial error, as a share of the radius, from which on a fit carries a warning."""
+
+
+@dataclass(frozen=True, eq=False)
+class HarmonicFit:
+    """A particle in spherical harmonics, and how well they can hold it.
+
+    Parameters
+    ----------
+    coefficients
+        Of the radius, or of the radius divided by the reference's.
+    star_point
+        Shape (3,), in the frame of the particle.
+    hidden_surface_share
+        Share of the surface that is not visible from the star point: no radius function keeps it.
+    unrepresentable_volume_share
+        Share of the volume behind the first crossing of a ray. By the default rule it is kept in sum
+        but not in place.
+    radial_error, largest_radial_error
+        Root mean square and maximum over all directions of the relative difference between the
+        expansion and the radius function: truncation, and the swinging that flat grains suffer.
+    reference
+        Ellipsoid that the radius was divided by, or ``None``.
+    rule
+        Radius rule where a ray crosses the surface more than once.
+    sampling_degree
+        Degree of the ray grid.
+    warnings
+        One sentence for each thing to know before the fit is used.
+    """
+
+    coefficients: ShCoefficients
+    star_point: FloatArray
+    hidden_surface_share: float = 0.0
+    unrepresentable_volume_share: float = 0.0
+    radial_error: float = 0.0
+    largest_radial_error: float = 0.0
+    reference: Ellipsoid | None = None
+    rule: str = DEFAULT_RULE
+    sampling_degree: int = SAMPLING_DEGREE
+    warnings: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "star_point", locked_floats(self.star_point, (3,), "star_point"))
+
+    def __reduce__(self) -> tuple[Callable[..., "HarmonicFit"], tuple[Any, ...]]:
+        return HarmonicFit, tuple(getattr(self, name) for name in self.__dataclass_fields__)
+
+    @property
+    def l_max(self) -> int:
+        """Highest degree."""
+        return self.coefficients.l_max
+
+    @property
+    def star_shaped(self) -> bool:
+        """Whether every ray from the star point crosses the surface once."""
+        return self.hidden_surface_share == 0.0
+
+
+def fit_harmonics(
+    mesh: Mesh,
+    l_max: int = 30,
+    star_point: ArrayLike | str | None = None,
+    sampling_degree: int = SAMPLING_DEGREE,
+    rule: str = DEFAULT_RULE,
+    reference: str = "sphere",
+    grid: str = "glq",
+) -> HarmonicFit:
+    """Expand the radius function of a closed mesh.
+
+    The radius is sampled at `sampling_degree` and the expansion cut at `l_max`, because sampling at
+    l_max itself folds finer shape into the coefficients. A lower l_max later needs no new fit.
+
+    Parameters
+    ----------
+    star_point
+        Coordinates (3,), a key of ``STAR_POINT_RULES``, or ``None``: the centre of mass, and where that
+        lies outside the particle the nearest good point, with a warning.
+    rule
+        Key of ``radius_function.RULES``.
+    reference
+        Key of ``reference.REFERENCES``.
+    grid
+        Key of ``transform.GRIDS``.
+
+    Raises
+    ------
+    GeometryError
+        If the mesh is open or inside out, or the star point lies outside.
+    InputError
+        If `l_max`, a rule or a degree is out of range.
+    """
+    checked_degree(l_max, sampling_degree)
+    if reference not in REFERENCES:
+        raise InputError(f"The reference must be one of {', '.join(REFERENCES)}, got {reference!r}.")
+    rays = ray_grid(sampling_degree, grid)
+    solid = checked_solid(mesh)
+    radius, notes = _sampled(solid, star_point, rays, rule)
+    ellipsoid = REFERENCES[reference](solid)
+    fit = expand_radius(radius, rays, l_max, ellipsoid)
+    hidden = hidden_surface_share(solid, radius.star_point)
+    fit = replace(fit, hidden_surface_share=hidden)
+    return replace(fit, warnings=(*notes, *_warnings(fit)))
+
+
+def expand_radius(
+    radius: RadiusFunction, rays: RayGrid, l_max: int, reference: Ellipsoid | None = None
+) -> HarmonicFit:
+    """The expansion of a radius function that was sampled on a grid; its mesh is not looked at."""
+    unit = 1.0 if reference is None else reference.radii(rays.directions)
+    samples = radius.radii / unit
+    difference = smoothed(rays, samples, l_max) / samples - 1
+    return HarmonicFit(
+        expand(rays, samples, l_max),
+        radius.star_point,
+        unrepresentable_volume_share=rays.mean(radius.hidden_cubes) / rays.mean(radius.volume**3),
+        radial_error=float(np.sqrt(rays.mean(difference**2))),
+        largest_radial_error=float(np.abs(difference).max()),
+        reference=reference,
+        rule=radius.rule,
+        sampling_degree=rays.degree,
+    )
+
+
+def _sampled(
+    mesh: Mesh, star_point: ArrayLike | str | None, rays: RayGrid, rule: str
+) -> tuple[RadiusFunction, tuple[str, ...]]:
+    """The radius function about the star point that was asked for, and what has to be said about it."""
+    if isinstance(star_point, str):
+        if star_point not in STAR_POINT_RULES:
+            choices = ", ".join(STAR_POINT_RULES)
+            raise InputError(f"The star point must be one of {choices}, got {star_point!r}.")
+        return sample_radius(mesh, STAR_POINT_RULES[star_point](mesh), rays.directions, rule), ()
+    if star_point is not None:
+        return sample_radius(mesh, star_point, rays.directions, rule), ()
+    try:
+        return sample_radius(mesh, centre_of_mass(mesh), rays.directions, rule), ()
+    except GeometryError:
+        point = least_hidden_volume(mesh)
+    note = "The centre of mass lies outside the particle; the point with the least hidden volume is used."
+    return sample_radius(mesh, point, rays.directions, rule), (note,)
+
+
+def _warnings(fit: HarmonicFit) -> list[str]:
+    found = []
+    if fit.hidden_surface_share > HIDDEN_TOLERANCE:
+        found.append(
+            f"{fit.hidden_surface_share:.1%} of the surface and {fit.unrepresentable_volume_share:.1%} of "
+            "the volume are hidden from the star point and cannot be kept by a radius function."
+        )
+    if fit.radial_error > OSCILLATION_TOLERANCE:
+        found.append(
+            f"The expansion up to l = {fit.l_max} misses the radius by {fit.radial_error:.1%} on average and "
+            f"{fit.largest_radial_error:.0%} at most: it oscillates, as it does on flat and elongated grains."
+        )
+    return found

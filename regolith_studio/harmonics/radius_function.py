@@ -1,0 +1,159 @@
+"""The radius function of a particle about its star point (section 2.3), sampled by ray casting.
+
+Scanned particles are hardly ever star-shaped: some rays cross the surface three times or more. The
+radius is then defined by one of the rules below. The default keeps the particle's volume.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from regolith_studio.errors import GeometryError, InputError
+from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats, locked_integers
+from regolith_studio.geometry.compiled import kernel
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.ray_casting import radial_hits
+
+DEFAULT_RULE = "volume"
+RULES: Mapping[str, str] = MappingProxyType(
+    {
+        "volume": "radius that keeps the volume: cube root of the signed sum of r^3",
+        "outermost": "last crossing",
+        "first": "first crossing",
+    }
+)
+"""Rules for rays that cross the surface more than once, with a label for each."""
+
+N_RECASTS = 4
+RECAST_ANGLE = 1e-7
+"""A ray through an edge may miss or count it twice; it is cast again this much (radians) beside."""
+
+
+@dataclass(frozen=True, eq=False)
+class RadiusFunction:
+    """Distances from the star point to the surface along given directions.
+
+    Parameters
+    ----------
+    star_point
+        Shape (3,).
+    directions
+        Unit vectors, shape (n, 3).
+    first, outermost, volume
+        Radius by each rule, shape (n,), in the unit of the mesh; equal where a ray crosses once.
+    n_crossings
+        Crossings of each ray, shape (n,).
+    rule
+        Key of :data:`RULES` that :attr:`radii` follows.
+    """
+
+    star_point: FloatArray
+    directions: FloatArray
+    first: FloatArray
+    outermost: FloatArray
+    volume: FloatArray
+    n_crossings: IntArray
+    rule: str = DEFAULT_RULE
+
+    def __post_init__(self) -> None:
+        if self.rule not in RULES:
+            raise InputError(f"The radius rule must be one of {', '.join(RULES)}, got {self.rule!r}.")
+        object.__setattr__(self, "star_point", locked_floats(self.star_point, (3,), "star_point"))
+        object.__setattr__(self, "directions", locked_floats(self.directions, (None, 3), "directions"))
+        shape = (len(self.directions),)
+        for name in ("first", "outermost", "volume"):
+            object.__setattr__(self, name, locked_floats(getattr(self, name), shape, name))
+        object.__setattr__(self, "n_crossings", locked_integers(self.n_crossings, shape, "n_crossings"))
+
+    def __reduce__(self) -> tuple[Callable[..., "RadiusFunction"], tuple[ArrayLike | str, ...]]:
+        fields = (self.star_point, self.directions, self.first, self.outermost, self.volume)
+        return RadiusFunction, (*fields, self.n_crossings, self.rule)
+
+    @property
+    def radii(self) -> FloatArray:
+        """Radius by the chosen rule, shape (n,)."""
+        chosen: FloatArray = getattr(self, self.rule)
+        return chosen
+
+    @property
+    def hidden_cubes(self) -> FloatArray:
+        """Three times the volume a solid angle that lies behind the first crossing, shape (n,)."""
+        return np.asarray(self.volume**3 - self.first**3)
+
+    def with_rule(self, rule: str) -> "RadiusFunction":
+        """The same rays by another rule."""
+        return replace(self, rule=rule)
+
+
+def sample_radius(
+    mesh: Mesh, star_point: ArrayLike, directions: ArrayLike, rule: str = DEFAULT_RULE
+) -> RadiusFunction:
+    """Cast rays from `star_point` along `directions` (n, 3) at a closed mesh.
+
+    Raises
+    ------
+    GeometryError
+        If the star point lies outside, or the mesh is open.
+    InputError
+        If the rule is unknown.
+    """
+    centre = locked_floats(star_point, (3,), "star_point")
+    rays = locked_floats(directions, (None, 3), "directions")
+    table = _crossings(mesh, centre, rays)
+    inside = _winding_number(table, centre)
+    for attempt in range(N_RECASTS):
+        doubtful = np.flatnonzero((table[:, 4] != inside) | ~(table[:, 2] > 0))
+        if not len(doubtful):
+            break
+        table[doubtful] = _crossings(mesh, centre, _beside(rays[doubtful], attempt))
+    else:
+        raise GeometryError("Some rays do not leave the particle: the mesh is open, repair it first.")
+    first, outermost, cubes, crossings, _ = table.T
+    return RadiusFunction(centre, rays, first, outermost, np.cbrt(cubes), crossings.astype(np.int64), rule)
+
+
+def _crossings(mesh: Mesh, centre: FloatArray, rays: FloatArray) -> FloatArray:
+    """A row a ray, shape (n, 5): first, last, signed sum of r^3, number and sum of signs of crossings."""
+    hits = radial_hits(mesh, centre, rays)
+    return _summed(hits.ray, hits.distance, hits.sign, len(rays))
+
+
+@kernel
+def _summed(ray: IntArray, distance: FloatArray, sign: IntArray, n_rays: int) -> FloatArray:
+    table = np.zeros((n_rays, 5))
+    for k in range(len(ray)):
+        row = table[ray[k]]
+        if row[3] == 0.0:
+            row[0] = distance[k]
+        row[1] = distance[k]
+        row[2] += sign[k] * distance[k] ** 3
+        row[3] += 1.0
+        row[4] += sign[k]
+    return table
+
+
+def _winding_number(table: FloatArray, centre: FloatArray) -> int:
+    """How often the surface winds round the star point, by the majority of rays; 1 inside a solid.
+
+    Raises
+    ------
+    GeometryError
+        If it does not.
+    """
+    sums, counts = np.unique(table[:, 4], return_counts=True)
+    winding = int(sums[counts.argmax()])
+    if winding < 1:
+        where = ", ".join(f"{x:.4g}" for x in centre)
+        raise GeometryError(f"The star point ({where}) lies outside the particle.")
+    return winding
+
+
+def _beside(rays: FloatArray, attempt: int) -> FloatArray:
+    """The rays turned by a tiny angle, another one each attempt."""
+    angle = RECAST_ANGLE * (attempt + 1)
+    axis = np.roll(np.array([0.37, -0.61, 0.70]), attempt)
+    beside = rays + angle * np.cross(axis, rays)
+    return np.asarray(beside / np.linalg.norm(beside, axis=1, keepdims=True))
