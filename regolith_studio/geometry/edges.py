@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numba import int64
 
-from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
+from regolith_studio.geometry.arrays import BoolArray, IntArray
 from regolith_studio.geometry.compiled import kernel
 
 
@@ -60,39 +60,6 @@ def neighbours(table: EdgeTable) -> IntArray:
     return across
 
 
-def neighbours_at_crowded_edges(
-    vertices: FloatArray, faces: IntArray, table: EdgeTable, across: IntArray
-) -> IntArray:
-    """`across` with the triangles at crowded edges paired so that each pair bounds a wedge of the solid.
-
-    The triangles must run counter-clockwise seen from outside. About an edge, in the order of their
-    angle, a triangle that runs along the edge has the solid behind it, so its partner is the one
-    before it, if that runs the other way.
-    """
-    across = across.copy()
-    order = np.argsort(table.edge, kind="stable")
-    first = np.cumsum(table.uses) - table.uses
-    for edge in np.flatnonzero(table.uses > 2):
-        halves = order[first[edge] : first[edge] + table.uses[edge]]
-        low, high = vertices[table.ends[edge]]
-        thirds = vertices[faces.ravel()[halves - halves % 3 + (halves + 2) % 3]] - low
-        turned = halves[np.argsort(_angles(high - low, thirds), kind="stable")]
-        for place, half in enumerate(turned):
-            behind = turned[place - 1]
-            if table.forward[half] and not table.forward[behind]:
-                across[half], across[behind] = behind, half
-    return across
-
-
-def _angles(axis: FloatArray, spokes: FloatArray) -> FloatArray:
-    """Angle of each spoke about the axis, counter-clockwise seen against it."""
-    first = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
-    second = np.cross(axis, first)
-    return np.asarray(
-        np.arctan2(spokes @ second * np.linalg.norm(first), spokes @ first * np.linalg.norm(second))
-    )
-
-
 @dataclass(frozen=True)
 class Bodies:
     """Triangles that hang together across edges.
@@ -129,18 +96,18 @@ def walk_bodies(across: IntArray, forward: BoolArray) -> tuple[IntArray, BoolArr
     m = len(across) // 3
     body = np.full(m, -1, dtype=np.int64)
     turned = np.zeros(m, dtype=np.bool_)
-    stack = np.empty(m, dtype=np.int64)
+    queue = np.empty(m, dtype=np.int64)
     count = int64(0)
     conflicts = int64(0)
     for seed in range(m):
         if body[seed] >= 0:
             continue
         body[seed] = count
-        stack[0] = seed
-        height = 1
-        while height > 0:
-            height -= 1
-            face = stack[height]
+        queue[0] = seed
+        head, tail = 0, 1
+        while head < tail:
+            face = queue[head]
+            head += 1
             for half in range(3 * face, 3 * face + 3):
                 other = across[half]
                 if other < 0:
@@ -150,8 +117,8 @@ def walk_bodies(across: IntArray, forward: BoolArray) -> tuple[IntArray, BoolArr
                 if body[neighbour] < 0:
                     body[neighbour] = count
                     turned[neighbour] = turn
-                    stack[height] = neighbour
-                    height += 1
+                    queue[tail] = neighbour
+                    tail += 1
                 elif turned[neighbour] != turn:
                     conflicts += 1
         count += 1

@@ -3,17 +3,11 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
-from regolith_studio.geometry.edges import (
-    bodies,
-    edge_table,
-    neighbours,
-    neighbours_at_crowded_edges,
-)
+from regolith_studio.geometry.crowded_edges import without_crowded_edges
+from regolith_studio.geometry.edges import bodies, edge_table, neighbours
 from regolith_studio.geometry.health import MeshHealth, body_volumes, inspect, unit_size
 from regolith_studio.geometry.holes import filled
 from regolith_studio.geometry.mesh import Mesh
@@ -24,6 +18,11 @@ TOLERANCES = (1e-7, 1e-6, 1e-5)
 
 LARGEST_FILLED_SHARE = 0.4
 """A mesh with more than this share of its closed surface missing is an open sheet, not a particle."""
+
+LARGEST_TWISTED_SHARE = 0.05
+"""A mesh from which more of the surface must be cut to have two sides is one-sided."""
+
+TWIST_ROUNDS = 5
 
 LEAST_VOLUME = 1e-9
 """Share of its bounding cube that a mesh must enclose, or it is flat."""
@@ -179,48 +178,54 @@ def _weld_near(draft: _Draft) -> _Draft:
 
 def _wind(draft: _Draft) -> _Draft:
     """Turn faces so that neighbours agree, the fewer of each patch; then take crowded edges apart."""
+    draft = _untwist(draft)
     table = edge_table(draft.faces, len(draft.vertices))
-    across = neighbours(table)
-    parts = bodies(across, table.forward)
-    if parts.conflicts:
-        raise GeometryError("The mesh is one-sided like a Möbius strip: its faces have no outside.")
+    parts = bodies(neighbours(table), table.forward)
     share = np.bincount(parts.body, parts.turned) / np.bincount(parts.body)
     turned = parts.turned ^ (share > 0.5)[parts.body]
     faces = np.where(turned[:, None], draft.faces[:, ::-1], draft.faces)
     count = int(np.count_nonzero(turned))
-    draft = draft.changed(
-        f"Turned {_count(count, 'face', 'faces')} that looked the wrong way." if count else "", faces=faces
-    )
+    text = f"Turned {_count(count, 'face', 'faces')} that looked the wrong way." if count else ""
+    draft = draft.changed(text, faces=faces)
     return _take_apart(draft) if table.crowded_edges else draft
 
 
+def _untwist(draft: _Draft) -> _Draft:
+    """Cut out the few faces over which a surface becomes one-sided, if they are few."""
+    area = Mesh(draft.vertices, draft.faces).face_areas
+    kept = np.arange(len(draft.faces))
+    for _ in range(TWIST_ROUNDS):
+        table = edge_table(draft.faces[kept], len(draft.vertices))
+        across = neighbours(table)
+        parts = bodies(across, table.forward)
+        if not parts.conflicts:
+            break
+        half = np.flatnonzero(across >= 0)
+        turn = parts.turned[half // 3] ^ parts.turned[across[half] // 3]
+        clash = half[(table.forward[half] == table.forward[across[half]]) != turn]
+        kept = np.delete(kept, np.unique(clash // 3))
+        if area[kept].sum() < (1 - LARGEST_TWISTED_SHARE) * area.sum():
+            raise GeometryError("The mesh is one-sided like a Möbius strip: its faces have no outside.")
+    else:
+        raise GeometryError("The mesh is one-sided like a Möbius strip: its faces have no outside.")
+    cut = len(draft.faces) - len(kept)
+    text = f"Cut out {_count(cut, 'face', 'faces')} that made the surface one-sided." if cut else ""
+    return draft.changed(text, faces=draft.faces[kept])
+
+
 def _take_apart(draft: _Draft) -> _Draft:
-    """Give each wedge of the solid at a crowded edge its own vertices."""
-    vertices, faces = draft.vertices, draft.faces
-    inside_out = float(body_volumes(vertices, faces, np.zeros(len(faces), dtype=np.int64))[0]) < 0.0
-    seen = faces[:, ::-1] if inside_out else faces
-    table = edge_table(seen, len(vertices))
-    across = neighbours_at_crowded_edges(vertices, seen, table, neighbours(table))
-    corner = _fans(seen, across)
-    _, first, inverse = np.unique(corner, return_index=True, return_inverse=True)
-    apart = inverse.reshape(-1, 3).astype(np.int64)
-    crowded = _count(table.crowded_edges, "edge", "edges")
-    text = f"Took the surface apart along {crowded} where more than two faces met."
-    faces = apart[:, ::-1] if inside_out else apart
-    return draft.changed(text, vertices=vertices[seen.ravel()[first]], faces=faces)
+    """Make every edge one of two faces: each wedge of the solid at a crowded edge gets its own."""
+    inside_out = float(_whole_volume(draft)) < 0.0
+    faces = draft.faces[:, ::-1] if inside_out else draft.faces
+    crowded = edge_table(faces, len(draft.vertices)).crowded_edges
+    apart = without_crowded_edges(draft.vertices, faces)
+    text = f"Took the surface apart along {_count(crowded, 'edge', 'edges')} where more than two faces met."
+    faces = apart.faces[:, ::-1] if inside_out else apart.faces
+    return draft.changed(text, vertices=apart.vertices, faces=faces)
 
 
-def _fans(faces: IntArray, across: IntArray) -> IntArray:
-    """A number for each corner, shape (3 m,): equal for corners at a vertex joined by neighbours."""
-    half = np.flatnonzero(across >= 0)
-    other = across[half]
-    onward = half - half % 3 + (half + 1) % 3
-    other_onward = other - other % 3 + (other + 1) % 3
-    same = faces.ravel()[half] == faces.ravel()[other]
-    rows = np.concatenate([half, onward])
-    columns = np.concatenate([np.where(same, other, other_onward), np.where(same, other_onward, other)])
-    links = coo_array((np.ones(len(rows)), (rows, columns)), (faces.size,) * 2)
-    return np.asarray(connected_components(links, directed=False)[1], dtype=np.int64)
+def _whole_volume(draft: _Draft) -> float:
+    return float(body_volumes(draft.vertices, draft.faces, np.zeros(len(draft.faces), dtype=np.int64))[0])
 
 
 def _keep_largest(draft: _Draft) -> _Draft:

@@ -7,6 +7,9 @@ from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.compiled import kernel
 
 MOST_CELLS = 1 << 21
+SLACK = 1e-12
+"""Share of a triangle by which an edge must pass inside its rim."""
+
 MOST_CANDIDATES = 200
 """Mean number of triangles in a triangle's cells beyond which the search is given up."""
 
@@ -118,29 +121,32 @@ def cross(a: FloatArray, b: FloatArray, face_a: IntArray, face_b: IntArray) -> b
 @kernel
 def pierces(a: FloatArray, b: FloatArray, face_a: IntArray, face_b: IntArray) -> bool:
     """Whether an edge of triangle `a` that has no corner in common with `b` passes through `b`."""
-    normal = np.cross(b[1] - b[0], b[2] - b[0])
-    area = np.sqrt((normal * normal).sum())
-    if area == 0.0:
+    ux, uy, uz = b[1, 0] - b[0, 0], b[1, 1] - b[0, 1], b[1, 2] - b[0, 2]
+    vx, vy, vz = b[2, 0] - b[0, 0], b[2, 1] - b[0, 1], b[2, 2] - b[0, 2]
+    nx, ny, nz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+    square = nx * nx + ny * ny + nz * nz
+    if square == 0.0:
         return False
-    slack = 1e-12 * area
-    height = np.empty(3)
-    for i in range(3):
-        height[i] = ((a[i] - b[0]) * normal).sum()
+    slack = SLACK * np.sqrt(square)
     for i in range(3):
         j = (i + 1) % 3
-        if (height[i] > slack and height[j] < -slack) or (height[i] < -slack and height[j] > slack):
-            common = False
-            for k in range(3):
-                if face_a[i] == face_b[k] or face_a[j] == face_b[k]:
-                    common = True
-            if common:
-                continue
-            point = a[i] + (a[j] - a[i]) * (height[i] / (height[i] - height[j]))
-            inside = True
-            for k in range(3):
-                side = (np.cross(b[(k + 1) % 3] - b[k], point - b[k]) * normal).sum()
-                if side <= 1e-12 * area * area:
-                    inside = False
-            if inside:
-                return True
+        px, py, pz = a[i, 0] - b[0, 0], a[i, 1] - b[0, 1], a[i, 2] - b[0, 2]
+        qx, qy, qz = a[j, 0] - b[0, 0], a[j, 1] - b[0, 1], a[j, 2] - b[0, 2]
+        p = px * nx + py * ny + pz * nz
+        q = qx * nx + qy * ny + qz * nz
+        if not ((p > slack and q < -slack) or (p < -slack and q > slack)):
+            continue
+        common = False
+        for k in range(3):
+            if face_a[i] == face_b[k] or face_a[j] == face_b[k]:
+                common = True
+        if common:
+            continue
+        share = p / (p - q)
+        x, y, z = px + share * (qx - px), py + share * (qy - py), pz + share * (qz - pz)
+        first = (uy * z - uz * y) * nx + (uz * x - ux * z) * ny + (ux * y - uy * x) * nz
+        second = (y * vz - z * vy) * nx + (z * vx - x * vz) * ny + (x * vy - y * vx) * nz
+        least = SLACK * square
+        if first > least and second > least and square - first - second > least:
+            return True
     return False

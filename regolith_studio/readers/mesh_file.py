@@ -1,5 +1,6 @@
 """One untrusted file of bytes to checked triangles; runs in the guarded child process only."""
 
+import codecs
 from dataclasses import replace
 from pathlib import Path
 
@@ -24,11 +25,21 @@ def parse_mesh(data: bytes, path: Path) -> tuple[ParsedMesh, MeshFormat]:
         With a whole sentence that names the file.
     """
     try:
+        data = _as_bytes_of_one(data)
         row, notes = _format_of(data, path)
         parsed = row.parse(data, path)
         return _checked(replace(parsed, notes=notes + parsed.notes)), row
     except FileError as error:
         raise FileError(f"{path.name} {error}") from None
+
+
+def _as_bytes_of_one(data: bytes) -> bytes:
+    """Text without the byte order mark that some editors put first, and never in UTF-16."""
+    if data.startswith(codecs.BOM_UTF8):
+        return data[len(codecs.BOM_UTF8) :]
+    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return data.decode("utf-16", "replace").encode()
+    return data
 
 
 def _format_of(data: bytes, path: Path) -> tuple[MeshFormat, tuple[str, ...]]:

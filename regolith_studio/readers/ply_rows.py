@@ -67,6 +67,25 @@ def ascii_columns(words: list[bytes], place: int, element: Element) -> tuple[Col
         ) from None
 
 
+def trimmed_rows(lines: list[list[bytes]], elements: tuple[Element, ...]) -> list[bytes] | None:
+    """The words that the header asks for, a row a line; ``None`` if a line has fewer."""
+    words: list[bytes] = []
+    if sum(element.count for element in elements) > len(lines):
+        return None
+    rows = iter(lines)
+    for element in elements:
+        for _ in range(element.count):
+            row, needed = next(rows), 0
+            for p in element.properties:
+                if needed >= len(row) or (p.counted_by and not row[needed].isdigit()):
+                    return None
+                needed += 1 + int(row[needed]) if p.counted_by else 1
+            if needed > len(row):
+                return None
+            words += row[:needed]
+    return words
+
+
 def _empty(element: Element) -> Columns:
     columns = Columns()
     for p in element.properties:

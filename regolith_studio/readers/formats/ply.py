@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
 from regolith_studio.readers.mesh_format import MeshFormat, ParsedMesh
-from regolith_studio.readers.ply_header import read_header
-from regolith_studio.readers.ply_rows import Columns, ascii_columns, binary_columns
+from regolith_studio.readers.ply_header import Header, read_header
+from regolith_studio.readers.ply_rows import Columns, ascii_columns, binary_columns, trimmed_rows
 from regolith_studio.readers.polygons import triangulated
 
 _CORNERS = ("vertex_indices", "vertex_index", "vertex_indexes")
@@ -23,16 +23,41 @@ def parse(data: bytes, _path: Path) -> ParsedMesh:
         If the header or a row is broken, or an index points nowhere.
     """
     header = read_header(data)
-    words = data[header.body :].split() if header.encoding == "" else []
-    place = header.body if header.encoding else 0
+    tables, notes = _binary_tables(data, header) if header.encoding else _ascii_tables(data, header)
+    vertices = _vertices(tables)
+    return ParsedMesh(vertices, _faces(tables, vertices), notes)
+
+
+def _binary_tables(data: bytes, header: Header) -> tuple[dict[str, Columns], tuple[str, ...]]:
+    place = header.body
     tables: dict[str, Columns] = {}
     for element in header.elements:
-        if header.encoding:
-            tables[element.name], place = binary_columns(data, place, element, header.encoding)
-        else:
-            tables[element.name], place = ascii_columns(words, place, element)
-    vertices = _vertices(tables)
-    return ParsedMesh(vertices, _faces(tables, vertices))
+        tables[element.name], place = binary_columns(data, place, element, header.encoding)
+    surplus = len(data) - place
+    return tables, (f"The file goes on for {surplus:,} bytes after its last row.",) if surplus > 2 else ()
+
+
+def _ascii_tables(data: bytes, header: Header) -> tuple[dict[str, Columns], tuple[str, ...]]:
+    """The rows as one stream of words; where that does not come out even, a row a line."""
+    body = data[header.body :]
+    try:
+        tables, surplus = _from_words(body.split(), header)
+    except FileError:
+        lines = [line.split() for line in body.splitlines() if line.strip()]
+        trimmed = trimmed_rows(lines, header.elements)
+        if trimmed is None:
+            raise
+        tables, _ = _from_words(trimmed, header)
+        return tables, ("The file's lines hold more numbers than its header says; the rest was passed over.",)
+    return tables, (f"The file goes on for {surplus:,} numbers after its last row.",) if surplus else ()
+
+
+def _from_words(words: list[bytes], header: Header) -> tuple[dict[str, Columns], int]:
+    tables: dict[str, Columns] = {}
+    place = 0
+    for element in header.elements:
+        tables[element.name], place = ascii_columns(words, place, element)
+    return tables, len(words) - place
 
 
 def _vertices(tables: dict[str, Columns]) -> NDArray[np.float64]:

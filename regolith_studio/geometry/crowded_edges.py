@@ -1,0 +1,131 @@
+"""Edges where more than two triangles meet, and how to take the surface apart there."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from regolith_studio.geometry.arrays import FloatArray, IntArray
+from regolith_studio.geometry.edges import EdgeTable, edge_table, neighbours
+
+MOST_ROUNDS = 100
+
+
+@dataclass(frozen=True)
+class TakenApart:
+    """Mesh data without crowded edges; the surface in space is the same."""
+
+    vertices: FloatArray
+    faces: IntArray
+
+
+def without_crowded_edges(vertices: FloatArray, faces: IntArray) -> TakenApart:
+    """Give each pair of triangles at a crowded edge that bounds a wedge of the solid its own edge.
+
+    Vertices are doubled where that parts the pairs; where the surface closes again about both ends
+    of the edge, each pair gets its own vertex in the middle of it. The faces must run
+    counter-clockwise seen from outside. A triangle that finds no partner is left with an open edge.
+    """
+    vertices, faces = _with_parted_vertices(vertices, faces)
+    for _ in range(MOST_ROUNDS):
+        table = edge_table(faces, len(vertices))
+        if not table.crowded_edges:
+            break
+        vertices, faces = _with_middle_vertices(vertices, faces, table)
+    return TakenApart(vertices, faces)
+
+
+def wedge_neighbours(vertices: FloatArray, faces: IntArray, table: EdgeTable, across: IntArray) -> IntArray:
+    """`across` with the triangles at crowded edges paired so that each pair bounds a wedge of the solid.
+
+    The triangles must run counter-clockwise seen from outside. About an edge, in the order of their
+    angle, a triangle that runs along the edge has the solid behind it, so its partner is the one
+    before it, if that runs the other way.
+    """
+    across = across.copy()
+    order = np.argsort(table.edge, kind="stable")
+    first = np.cumsum(table.uses) - table.uses
+    for edge in np.flatnonzero(table.uses > 2):
+        halves = order[first[edge] : first[edge] + table.uses[edge]]
+        low, high = vertices[table.ends[edge]]
+        thirds = vertices[faces.ravel()[halves - halves % 3 + (halves + 2) % 3]] - low
+        ring = halves[np.argsort(_angles(high - low, thirds), kind="stable")].tolist()
+        for half, behind in _wedges(ring, table):
+            across[half], across[behind] = behind, half
+    return across
+
+
+def _wedges(ring: list[int], table: EdgeTable) -> list[tuple[int, int]]:
+    """Forward half-edges of a ring in angular order, each with the backward one before it; innermost first."""
+    pairs = []
+    place = 0
+    while len(ring) > 1 and place < len(ring):
+        half, behind = ring[place], ring[place - 1]
+        if table.forward[half] and not table.forward[behind]:
+            pairs.append((half, behind))
+            ring = [other for other in ring if other not in (half, behind)]
+            place = 0
+        else:
+            place += 1
+    return pairs
+
+
+def _angles(axis: FloatArray, spokes: FloatArray) -> FloatArray:
+    """Angle of each spoke about the axis, counter-clockwise seen against it."""
+    first = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+    second = np.cross(axis, first)
+    return np.asarray(
+        np.arctan2(spokes @ second * np.linalg.norm(first), spokes @ first * np.linalg.norm(second))
+    )
+
+
+def _with_parted_vertices(vertices: FloatArray, faces: IntArray) -> tuple[FloatArray, IntArray]:
+    table = edge_table(faces, len(vertices))
+    corner = _fans(faces, wedge_neighbours(vertices, faces, table, neighbours(table)))
+    _, first, inverse = np.unique(corner, return_index=True, return_inverse=True)
+    return vertices[faces.ravel()[first]], inverse.reshape(-1, 3).astype(np.int64)
+
+
+def _fans(faces: IntArray, across: IntArray) -> IntArray:
+    """A number for each corner, shape (3 m,): equal for corners at a vertex joined by neighbours."""
+    half = np.flatnonzero(across >= 0)
+    other = across[half]
+    onward = half - half % 3 + (half + 1) % 3
+    other_onward = other - other % 3 + (other + 1) % 3
+    same = faces.ravel()[half] == faces.ravel()[other]
+    rows = np.concatenate([half, onward])
+    columns = np.concatenate([np.where(same, other, other_onward), np.where(same, other_onward, other)])
+    links = coo_array((np.ones(len(rows)), (rows, columns)), (faces.size,) * 2)
+    return np.asarray(connected_components(links, directed=False)[1], dtype=np.int64)
+
+
+def _with_middle_vertices(
+    vertices: FloatArray, faces: IntArray, table: EdgeTable
+) -> tuple[FloatArray, IntArray]:
+    """Halve the triangles at crowded edges, at most one edge of each triangle at a time."""
+    across = wedge_neighbours(vertices, faces, table, neighbours(table))
+    touched: set[int] = set()
+    points: list[FloatArray] = []
+    halves: list[tuple[int, int, int]] = []
+    for edge in np.flatnonzero(table.uses > 2):
+        around = np.flatnonzero(table.edge == edge)
+        if touched.intersection((around // 3).tolist()):
+            continue
+        touched.update((around // 3).tolist())
+        middle = vertices[table.ends[edge]].mean(axis=0)
+        number: dict[int, int] = {}
+        for half in around.tolist():
+            number[half] = number.get(int(across[half]), len(vertices) + len(points))
+            if number[half] == len(vertices) + len(points):
+                points.append(middle)
+            halves += _halved(faces, half, number[half])
+    kept = np.delete(faces, sorted(touched), axis=0)
+    return np.concatenate([vertices, points]), np.concatenate([kept, np.array(halves, dtype=np.int64)])
+
+
+def _halved(faces: IntArray, half: int, middle: int) -> list[tuple[int, int, int]]:
+    """The two triangles of a face whose half-edge gets a vertex in its middle."""
+    face = faces[half // 3].tolist()
+    a, b, c = (face[(half + step) % 3] for step in range(3))
+    return [(a, middle, c), (middle, b, c)]

@@ -1,0 +1,170 @@
+"""3MF: the objects of a print job with their components and placements."""
+
+import io
+import zipfile
+from collections.abc import Iterator
+from pathlib import Path
+from xml.etree import ElementTree
+from xml.etree.ElementTree import Element
+
+import numpy as np
+from numpy.typing import NDArray
+
+from regolith_studio.errors import FileError
+from regolith_studio.readers.mesh_format import MeshFormat, ParsedMesh
+
+LARGEST_PART = 1 << 29
+"""Bytes of one unpacked part; a part that unpacks to more is refused."""
+
+MOST_PLACEMENTS = 10_000
+MOST_FACES = 20_000_000
+
+_Triangles = tuple[NDArray[np.float64], NDArray[np.int64]]
+
+
+def parse(data: bytes, _path: Path) -> ParsedMesh:
+    """All triangles of the built objects, in the file's unit, which is noted where it is stated.
+
+    Raises
+    ------
+    FileError
+        If the archive or its model is broken, or unpacks to something far too large.
+    """
+    try:
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            package = _Package(archive)
+            return _built(package)
+    except (zipfile.BadZipFile, NotImplementedError, EOFError, RuntimeError, OSError) as error:
+        if isinstance(error, RecursionError):
+            raise FileError("is not a proper 3MF: its components go round in circles.") from None
+        raise FileError("is not a proper 3MF: its archive is damaged; export it again.") from None
+    except ElementTree.ParseError:
+        raise FileError("is not a proper 3MF: the XML of its model is broken.") from None
+    except (ValueError, KeyError, OverflowError, UnicodeError) as error:
+        kind = type(error).__name__
+        raise FileError(f"is not a proper 3MF: its model lacks a number or a name ({kind}).") from None
+
+
+class _Package:
+    """The model parts of an archive, each read once."""
+
+    def __init__(self, archive: zipfile.ZipFile) -> None:
+        self._archive = archive
+        self._models: dict[str, Element] = {}
+        self.root_part = self._find_root()
+
+    def model(self, part: str) -> Element:
+        """The root element of a model part."""
+        if part not in self._models:
+            self._models[part] = _xml(self._read(part))
+        return self._models[part]
+
+    def object(self, part: str, key: str) -> Element:
+        """The object of a model part that has this id."""
+        for found in _children(self.model(part), "resources"):
+            for candidate in _children(found, "object"):
+                if candidate.get("id") == key:
+                    return candidate
+        raise FileError(f"is not a proper 3MF: it builds the object “{key[:20]}”, which is not there.")
+
+    def _find_root(self) -> str:
+        if "_rels/.rels" in self._archive.namelist():
+            for relation in _xml(self._read("_rels/.rels")):
+                if relation.get("Type", "").endswith("/3dmodel"):
+                    return relation.get("Target", "").lstrip("/")
+        models = [name for name in self._archive.namelist() if name.lower().endswith(".model")]
+        if not models:
+            raise FileError("is not a 3MF: its archive holds no model.")
+        return min(models)
+
+    def _read(self, part: str) -> bytes:
+        with self._archive.open(part) as file:
+            data = file.read(LARGEST_PART + 1)
+        if len(data) > LARGEST_PART:
+            raise FileError("unpacks to more than 512 MiB, which is more than can be read.")
+        return data
+
+
+def _xml(data: bytes) -> Element:
+    if b"<!DOCTYPE" in data or b"<!ENTITY" in data:
+        raise FileError("is not a proper 3MF: its XML defines entities.")
+    return ElementTree.fromstring(data)
+
+
+def _children(element: Element, name: str) -> Iterator[Element]:
+    return (child for child in element if child.tag.rpartition("}")[2] == name)
+
+
+def _built(package: _Package) -> ParsedMesh:
+    model = package.model(package.root_part)
+    parts: list[_Triangles] = []
+    for build in _children(model, "build"):
+        for item in _children(build, "item"):
+            _place(package, package.root_part, item, np.eye(4), parts, 0)
+    if not parts:
+        raise FileError("is a 3MF that builds no triangles.")
+    offsets = np.cumsum([0, *(len(points) for points, _ in parts)])
+    unit = model.get("unit", "millimeter")[:20]
+    return ParsedMesh(
+        np.concatenate([points for points, _ in parts]),
+        np.concatenate([faces + offset for (_, faces), offset in zip(parts, offsets, strict=False)]),
+        (f"The file states its unit: {unit}.",),
+    )
+
+
+def _place(
+    package: _Package,
+    part: str,
+    use: Element,
+    above: NDArray[np.float64],
+    parts: list[_Triangles],
+    depth: int,
+) -> None:
+    """Add the triangles of the object that `use` (an item or a component) refers to."""
+    if depth > 50 or len(parts) > MOST_PLACEMENTS:
+        raise FileError("is not a proper 3MF: its components go round in circles, or are far too many.")
+    elsewhere = next((value for key, value in use.attrib.items() if key.rpartition("}")[2] == "path"), None)
+    part = elsewhere.lstrip("/") if elsewhere else part
+    matrix = above @ _matrix(use.get("transform"))
+    thing = package.object(part, use.get("objectid", ""))
+    for mesh in _children(thing, "mesh"):
+        points, faces = _triangles(mesh)
+        if sum(len(placed) for _, placed in parts) + len(faces) > MOST_FACES:
+            raise FileError(f"has more than {MOST_FACES:,} faces, which is more than can be read.")
+        faces = faces[:, ::-1] if np.linalg.det(matrix[:3, :3]) < 0 else faces
+        parts.append((points @ matrix[:3, :3].T + matrix[:3, 3], faces))
+    for components in _children(thing, "components"):
+        for component in _children(components, "component"):
+            _place(package, part, component, matrix, parts, depth + 1)
+
+
+def _matrix(text: str | None) -> NDArray[np.float64]:
+    """Transformation for column vectors from the twelve numbers of a 3MF, written for row vectors."""
+    matrix = np.eye(4)
+    if text:
+        matrix[:3, :] = np.array([float(word) for word in text.split()]).reshape(4, 3).T
+    return matrix
+
+
+def _triangles(mesh: Element) -> _Triangles:
+    points = [
+        [float(vertex.attrib[axis]) for axis in "xyz"]
+        for group in _children(mesh, "vertices")
+        for vertex in _children(group, "vertex")
+    ]
+    faces = [
+        [int(triangle.attrib[corner]) for corner in ("v1", "v2", "v3")]
+        for group in _children(mesh, "triangles")
+        for triangle in _children(group, "triangle")
+    ]
+    indices = np.array(faces, dtype=np.int64).reshape(-1, 3)
+    if len(indices) and (indices.min() < 0 or indices.max() >= len(points)):
+        raise FileError(f"is not a proper 3MF: a triangle points beyond the {len(points):,} vertices.")
+    return np.array(points, dtype=np.float64).reshape(-1, 3), indices
+
+
+def _recognises(head: bytes) -> bool:
+    return head[:4] == b"PK\3\4" and b"3D/" in head
+
+
+FORMAT = MeshFormat("3mf", "3MF", (".3mf",), _recognises, parse)
