@@ -283,7 +283,7 @@ def set_up(extra: str) -> None:
     if not usable_venv():
         make_venv()
     UNFINISHED.touch()
-    say("installing the Python packages into .venv (about 1.5 GB, a minute or a few)")
+    say("installing the Python packages into .venv (1.8 GB on disk, about a minute)")
     target = ".[" + extra + "]" if extra else "."
     command = [str(venv_python()), "-m", "pip", "install", "--quiet", "--prefer-binary", "--no-input"]
     command += ["--disable-pip-version-check", "-c", "constraints.txt", "-e", target]
