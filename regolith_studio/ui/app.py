@@ -1,0 +1,108 @@
+"""Starts the window."""
+
+import sys
+import traceback
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+from PySide6.QtCore import QCoreApplication, Qt, QTimer
+from PySide6.QtGui import QIcon, QSurfaceFormat
+from PySide6.QtWidgets import QApplication
+
+from regolith_studio.errors import RegolithError
+from regolith_studio.jobs.events import Job, Started, Steps
+from regolith_studio.jobs.runners.thread import ThreadRunner
+from regolith_studio.resources import resource
+from regolith_studio.session.preferences import Preferences
+from regolith_studio.session.session import Session
+from regolith_studio.ui.environment import check_display
+from regolith_studio.ui.main_window import MainWindow
+from regolith_studio.ui.posting import Poster
+from regolith_studio.ui.views.factory import best_kind, surface_format
+
+
+def run(paths: Sequence[str | Path] = (), unit: str | None = None) -> int:
+    """Open the window, with these files or with the shipped sample; returns when it is closed.
+
+    Parameters
+    ----------
+    paths
+        Mesh files and folders.
+    unit
+        Their length unit; the window asks if it is not given.
+
+    Raises
+    ------
+    EnvironmentProblem
+        If there is no display.
+    """
+    check_display()
+    app = make_application(sys.argv[:1])
+    window = open_window(paths, unit)
+    sys.excepthook = telling_hook(window.toast.problem)
+    window.show()
+    code = app.exec()
+    sys.excepthook = sys.__excepthook__
+    return code
+
+
+def make_application(arguments: Sequence[str]) -> QApplication:
+    """The one application object, with contexts shared between windows and the format that VTK needs."""
+    QCoreApplication.setAttribute(Qt.ApplicationAttribute.AA_ShareOpenGLContexts)
+    QSurfaceFormat.setDefaultFormat(surface_format())
+    app = QApplication(list(arguments))
+    app.setApplicationName("Regolith Studio")
+    app.setDesktopFileName("regolith-studio")
+    app.setWindowIcon(QIcon(str(resource("icons", "app.svg"))))
+    return app
+
+
+def open_window(
+    paths: Sequence[str | Path] = (),
+    unit: str | None = None,
+    views: str | None = None,
+    preferences: Preferences | None = None,
+) -> MainWindow:
+    """A window with its own session; the particles arrive a moment later."""
+    poster = Poster()
+    runner = ThreadRunner(poster.post)
+    session = Session(runner)
+    window = MainWindow(session, preferences or Preferences.load(), views or best_kind())
+    poster.setParent(window)
+    runner.submit(Job(warm_up), lambda _event: None, "warm-up")
+    found = [Path(path) for path in paths]
+    if found:
+        QTimer.singleShot(0, window, lambda: window.commands.open_paths(found, unit))
+    else:
+        session.open_sample()
+    return window
+
+
+def warm_up() -> Steps:
+    """Load and compile what the first coarsening needs, while the user looks around."""
+    yield Started("Warming up")
+    from regolith_studio.coarsening.warm_up import warm_up as warm_up_kernels
+
+    warm_up_kernels()
+
+
+Hook = Callable[[type[BaseException], BaseException, TracebackType | None], Any]
+
+
+def telling_hook(tell: Callable[[str, str], None]) -> Hook:
+    """An excepthook that says one sentence and keeps the program alive."""
+
+    def hook(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
+        if issubclass(kind, KeyboardInterrupt):
+            QApplication.quit()
+            return
+        details = "".join(traceback.format_exception(kind, error, trace))
+        print(details, file=sys.stderr)  # noqa: T201
+        if isinstance(error, RegolithError):
+            tell(str(error), details)
+        else:
+            tell(f"Something went wrong in the program ({kind.__name__}); the work goes on.", details)
+
+    return hook

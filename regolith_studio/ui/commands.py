@@ -1,0 +1,156 @@
+"""What menus, tool bar, shortcuts and dropped files do."""
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from PySide6.QtCore import QObject
+from PySide6.QtWidgets import QDialog, QFileDialog, QWidget
+
+from regolith_studio.errors import RegolithError
+from regolith_studio.session.preferences import Preferences
+from regolith_studio.session.recipe import SAMPLE, Recipe
+from regolith_studio.session.session import Session
+from regolith_studio.ui.dialogs.export import ExportDialog, ExportOrder
+from regolith_studio.ui.dialogs.unit import UnitDialog
+from regolith_studio.ui.widgets.toast import Toast
+
+MESH_FILTER = "Meshes (*.stl *.ply *.obj *.off *.glb *.gltf *.3mf);;All files (*)"
+
+
+class Commands(QObject):
+    """Opens, saves and exports, asking what must be asked.
+
+    Parameters
+    ----------
+    session
+        What is commanded.
+    preferences
+        Recent files, and the unit of each folder.
+    toast
+        Says what came of it.
+    window
+        Parent of the dialogs.
+    """
+
+    def __init__(self, session: Session, preferences: Preferences, toast: Toast, window: QWidget) -> None:
+        super().__init__(window)
+        self._session, self._preferences, self._toast, self._window = session, preferences, toast, window
+        self._export: ExportDialog | None = None
+        self._export_task = 0
+
+    def open(self) -> None:
+        """Ask for files and open them."""
+        names, _ = QFileDialog.getOpenFileNames(self._window, "Open meshes", self._folder(), MESH_FILTER)
+        self.open_paths([Path(name) for name in names])
+
+    def open_folder(self) -> None:
+        """Ask for a folder and open every mesh in it."""
+        name = QFileDialog.getExistingDirectory(self._window, "Open a folder of meshes", self._folder())
+        self.open_paths([Path(name)] if name else [])
+
+    def open_sample(self) -> None:
+        """Open the shipped particles."""
+        self._session.open_sample()
+
+    def open_paths(self, paths: Sequence[Path], unit: str | None = None) -> None:
+        """Open files and folders; asks for their unit unless it is given."""
+        if not paths:
+            return
+        unit = unit or self._ask_unit(list(paths))
+        if unit is None:
+            return
+        for path in paths:
+            self._preferences.remember_opened(path, unit)
+        self._preferences.save()
+        self._try(lambda: self._session.open(paths, unit))
+
+    def save_recipe(self) -> None:
+        """Ask for a file and write the present choices into it."""
+        start = str(Path(self._folder()) / "recipe.json")
+        name, _ = QFileDialog.getSaveFileName(self._window, "Save recipe", start, "Recipes (*.json)")
+        if not name:
+            return
+        sources = [entry.particle.source for entry in self._session.particles]
+        paths = [source.path for source in sources if source]
+        inputs = [SAMPLE if path.startswith("sample:") else path for path in paths]
+        text = Recipe.from_choices(self._session.choices, list(dict.fromkeys(inputs)) or [SAMPLE]).to_json()
+        try:
+            Path(name).write_text(text, encoding="utf-8")
+        except OSError as error:
+            self._toast.problem(f"The recipe {name} cannot be written ({error.strerror}).")
+            return
+        self._toast.note(f"Saved {name}; run it with: regolith-studio run {Path(name).name}")
+
+    def export(self) -> None:
+        """Show what will be written, ask for the folder, and export."""
+        count = len(self._session.particles)
+        if not count:
+            self._toast.problem("There is nothing to export: open a particle first.")
+            return
+        folder = Path(self._folder()) / "dataset"
+        dialog = self._export = ExportDialog(count, self._session.choices, folder, self._window)
+        dialog.started.connect(self._start_export)
+        dialog.stopped.connect(lambda: self._session.cancel(self._export_task))
+        dialog.finished.connect(self._forget_export)
+        dialog.open()
+
+    def undo(self) -> None:
+        """Take the last step back."""
+        self._session.undo()
+
+    def redo(self) -> None:
+        """Take it again."""
+        self._session.redo()
+
+    def stop(self, task_id: int) -> None:
+        """Stop one task."""
+        self._session.cancel(task_id)
+
+    def show_tasks(self) -> None:
+        """Tell the export dialog how far the export is."""
+        dialog = self._export
+        if dialog is None or not self._export_task:
+            return
+        mine = [task for task in self._session.tasks if task.id == self._export_task]
+        if mine:
+            dialog.show_task(mine[0])
+        else:
+            dialog.finish()
+
+    def tell_exported(self, folder: Path) -> None:
+        """Say where the dataset is."""
+        self._toast.note(f"The dataset is in {folder}.")
+
+    def _start_export(self, order: ExportOrder) -> None:
+        task = self._try(lambda: self._session.export_dataset(order.folder, order.options))
+        self._export_task = task or 0
+        if task is None and self._export:
+            self._export.finish()
+        self.show_tasks()
+
+    def _forget_export(self) -> None:
+        if self._export:
+            self._export.deleteLater()
+        self._export, self._export_task = None, 0
+
+    def _ask_unit(self, paths: list[Path]) -> str | None:
+        known = {self._preferences.unit_for(path) for path in paths}
+        if len(known) == 1 and (unit := known.pop()):
+            return unit
+        dialog = UnitDialog(paths, self._session.choices.unit, self._window)
+        accepted = dialog.exec() == QDialog.DialogCode.Accepted
+        unit = dialog.value()
+        dialog.deleteLater()
+        return unit if accepted else None
+
+    def _folder(self) -> str:
+        recent = [Path(path) for path in self._preferences.recent]
+        folders = [path if path.is_dir() else path.parent for path in recent]
+        return str(next((folder for folder in folders if folder.is_dir()), Path.home()))
+
+    def _try(self, action: Callable[[], int]) -> int | None:
+        try:
+            return action()
+        except RegolithError as error:
+            self._toast.problem(str(error))
+            return None

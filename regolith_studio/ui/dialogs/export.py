@@ -1,0 +1,169 @@
+"""The export of a dataset: what will be written and where, then its progress."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import (
+    QCheckBox,
+    QDialog,
+    QDialogButtonBox,
+    QFileDialog,
+    QFormLayout,
+    QHBoxLayout,
+    QLabel,
+    QLineEdit,
+    QProgressBar,
+    QPushButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from regolith_studio.coarsening.methods import METHODS
+from regolith_studio.coarsening.weights import JACCARD, presets
+from regolith_studio.descriptors.catalogue import CATALOGUE
+from regolith_studio.jobs.building import DatasetOptions
+from regolith_studio.session.choices import TARGETS, Choices
+from regolith_studio.session.tasks import Task
+from regolith_studio.ui.widgets.labels import remark, rich_symbol
+
+
+@dataclass(frozen=True)
+class ExportOrder:
+    """What the user asked for."""
+
+    folder: Path
+    options: DatasetOptions
+
+
+def summary(count: int, choices: Choices) -> list[tuple[str, str]]:
+    """What will be written, as pairs of a word and rich text."""
+    triangles = 4 * choices.n_faces - 12
+    size = count * (84 + 50 * triangles)
+    weights = ", ".join(
+        f"{'Jaccard' if key == JACCARD else rich_symbol(CATALOGUE[key].symbol)}&nbsp;{value:g}"
+        for key, value in choices.weights.items()
+        if value
+    )
+    modified = ", modified" if choices.preset_modified else ""
+    target = TARGETS[choices.target]
+    if choices.target == "fit":
+        target += f" at l<sub>max</sub> = {choices.l_max}"
+    return [
+        ("Particles", f"{count}, as unit-volume STL files, {size / 1024:,.0f} KiB in all"),
+        ("Each with", f"at most {choices.n_faces} facets, {triangles} triangles"),
+        ("Imitating", f"the {target}"),
+        ("Method", f"{METHODS[choices.method].label}, seed {choices.seed}"),
+        ("Weights", f"{weights or 'none'} ({presets()[choices.preset].label}{modified})"),
+        ("Also", "weights, size distribution, descriptors, provenance (JSON)"),
+    ]
+
+
+class ExportDialog(QDialog):
+    """Asks, then shows the progress; ``started`` carries the order, ``stopped`` asks to cancel."""
+
+    started = Signal(object)
+    stopped = Signal()
+
+    def __init__(self, count: int, choices: Choices, folder: Path, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setWindowTitle("Export dataset")
+        self.setObjectName("export_dialog")
+        self.setMinimumWidth(520)
+        self._running = False
+        self.folder = QLineEdit(str(folder))
+        self.folder.setObjectName("export_folder")
+        self.folder.setAccessibleName("Folder of the dataset")
+        self.browse = QPushButton("Browse …")
+        self.name = QLineEdit()
+        self.name.setObjectName("export_name")
+        self.name.setAccessibleName("Name of the dataset")
+        self.name.setPlaceholderText("as the folder")
+        self.overwrite = QCheckBox("Replace the dataset that is there")
+        self.overwrite.setObjectName("export_overwrite")
+        self.state = remark()
+        self.bar = QProgressBar()
+        self.bar.setAccessibleName("Progress of the export")
+        buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Cancel)
+        self.cancel = buttons.button(QDialogButtonBox.StandardButton.Cancel)
+        self.go = buttons.addButton("Export", QDialogButtonBox.ButtonRole.AcceptRole)
+        self.go.setObjectName("export_go")
+        self._arrange(summary(count, choices), buttons)
+        self.go.setDefault(True)
+        buttons.accepted.connect(self._start)
+        buttons.rejected.connect(self.reject)
+        self.browse.clicked.connect(self._browse)
+        self.folder.textChanged.connect(self._judge)
+        self.overwrite.toggled.connect(self._judge)
+        self._judge()
+
+    def value(self) -> ExportOrder:
+        """Folder and options."""
+        options = DatasetOptions(name=self.name.text().strip(), overwrite=self.overwrite.isChecked())
+        return ExportOrder(Path(self.folder.text().strip()).expanduser(), options)
+
+    def show_task(self, task: Task) -> None:
+        """Show how far the work is."""
+        self.bar.setRange(0, task.total)
+        self.bar.setValue(task.done)
+        self.state.setText(f"{task.title}: {task.done} of {task.total} {task.message}".strip())
+
+    def finish(self) -> None:
+        """The dataset is written, or the work has ended otherwise."""
+        self._running = False
+        self.accept()
+
+    def reject(self) -> None:
+        """Stop the work, and close."""
+        if self._running:
+            self._running = False
+            self.stopped.emit()
+        super().reject()
+
+    def _arrange(self, rows: list[tuple[str, str]], buttons: QDialogButtonBox) -> None:
+        where = QHBoxLayout()
+        where.addWidget(self.folder, 1)
+        where.addWidget(self.browse)
+        form = QFormLayout()
+        form.setVerticalSpacing(7)
+        for word, text in rows:
+            label = QLabel(text)
+            label.setWordWrap(True)
+            form.addRow(f"{word}:", label)
+        form.addRow("Folder:", where)
+        form.addRow("Name:", self.name)
+        form.addRow("", self.overwrite)
+        layout = QVBoxLayout(self)
+        layout.addLayout(form)
+        layout.addWidget(self.state)
+        layout.addWidget(self.bar)
+        layout.addWidget(buttons)
+        self.bar.hide()
+
+    def _judge(self) -> None:
+        folder = self.value().folder
+        text = self.folder.text().strip()
+        used = bool(text) and folder.is_dir() and any(folder.iterdir())
+        blocked = folder.is_file() or not text
+        self.overwrite.setVisible(used)
+        sentence = ""
+        if blocked:
+            sentence = "Name a folder, new or empty."
+        elif used and not self.overwrite.isChecked():
+            sentence = "The folder is not empty: choose another one, or replace the dataset in it."
+        self.state.setText(sentence)
+        self.go.setEnabled(not sentence)
+
+    def _browse(self) -> None:
+        chosen = QFileDialog.getExistingDirectory(self, "Folder of the dataset", self.folder.text())
+        if chosen:
+            self.folder.setText(chosen)
+
+    def _start(self) -> None:
+        self._running = True
+        for widget in (self.folder, self.browse, self.name, self.overwrite, self.go):
+            widget.setEnabled(False)
+        self.bar.setRange(0, 0)
+        self.bar.show()
+        self.state.setText("Starting …")
+        self.started.emit(self.value())

@@ -1,0 +1,80 @@
+"""About the program, and the list of its shortcuts."""
+
+from collections.abc import Sequence
+from importlib.metadata import PackageNotFoundError, version
+
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QAction, QKeySequence
+from PySide6.QtWidgets import (
+    QDialog,
+    QDialogButtonBox,
+    QFormLayout,
+    QHBoxLayout,
+    QLabel,
+    QVBoxLayout,
+    QWidget,
+)
+
+from regolith_studio.ui.icons import pixmap
+from regolith_studio.ui.widgets.labels import heading, remark
+
+MOUSE = (
+    ("Left drag", "Turn the particle"),
+    ("Right or middle drag, Shift + drag", "Shift the picture"),
+    ("Ctrl + drag", "Roll the picture"),
+    ("Wheel", "Zoom"),
+)
+
+
+def about_dialog(parent: QWidget, renderer: str) -> QDialog:
+    """Version, purpose, and the libraries that matter when something looks wrong."""
+    dialog = QDialog(parent)
+    dialog.setWindowTitle("About Regolith Studio")
+    mark = QLabel()
+    mark.setPixmap(pixmap("app", "#000000", 72))
+    mark.setAlignment(Qt.AlignmentFlag.AlignTop)
+    text = QVBoxLayout()
+    text.addWidget(heading(f"Regolith Studio {_version('regolith-studio')}"))
+    text.addWidget(QLabel("From X-ray micro-CT to DEM-ready regolith particles whose geometry is right."))
+    names = ("PySide6-Essentials", "vtk", "pyvista", "pyqtgraph", "numpy", "numba")
+    text.addWidget(remark(", ".join(f"{name} {_version(name)}" for name in names)))
+    text.addWidget(remark(f"Three-dimensional views: {renderer}"))
+    row = QHBoxLayout()
+    row.setSpacing(16)
+    row.addWidget(mark)
+    row.addLayout(text, 1)
+    return _closed(dialog, row)
+
+
+def shortcuts_dialog(parent: QWidget, actions: Sequence[QAction]) -> QDialog:
+    """Every action that has a shortcut, and what the mouse does."""
+    dialog = QDialog(parent)
+    dialog.setWindowTitle("Keyboard and mouse")
+    form = QFormLayout()
+    form.setHorizontalSpacing(24)
+    form.addRow(heading("Keyboard"))
+    for action in actions:
+        if not action.shortcut().isEmpty():
+            keys = action.shortcut().toString(QKeySequence.SequenceFormat.NativeText)
+            form.addRow(keys, QLabel(action.text().replace("&", "").rstrip(" …")))
+    form.addRow(heading("Mouse in the views"))
+    for gesture, meaning in MOUSE:
+        form.addRow(gesture, QLabel(meaning))
+    return _closed(dialog, form)
+
+
+def _closed(dialog: QDialog, content: QHBoxLayout | QFormLayout) -> QDialog:
+    buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close)
+    buttons.rejected.connect(dialog.reject)
+    layout = QVBoxLayout(dialog)
+    layout.addLayout(content)
+    layout.addWidget(buttons)
+    dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+    return dialog
+
+
+def _version(name: str) -> str:
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return "(not installed)"

@@ -1,0 +1,161 @@
+"""How the particle is coarsened: facets, what is imitated, method and its settings, seed."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from PySide6.QtCore import QSignalBlocker, Signal
+from PySide6.QtWidgets import (
+    QComboBox,
+    QFormLayout,
+    QHBoxLayout,
+    QSpinBox,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from regolith_studio.coarsening.coarsen import FACES_LIMITS
+from regolith_studio.coarsening.methods import METHODS
+from regolith_studio.session.choices import TARGETS
+from regolith_studio.ui.icons import icon
+from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.widgets.labels import heading, remark
+from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
+from regolith_studio.ui.widgets.settings_form import SettingsForm
+
+FACES = NumberSpec(
+    "Facets n",
+    "Number of facets",
+    FACES_LIMITS[0],
+    60,
+    limit=FACES_LIMITS[1],
+    tip="Half-spaces of Eq. 5; n facets in general position have 2n−4 vertices and 4n−12 triangles.",
+)
+SEED_LIMIT = 2**31 - 1
+
+
+class CoarseningPanel(QWidget):
+    """Edits the coarsening, all but the weights of its loss."""
+
+    FIELDS = ("n_faces", "target", "method", "settings", "seed")
+    valueChanged = Signal(dict)  # noqa: N815
+    editingFinished = Signal()  # noqa: N815
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("coarsening")
+        self.n_faces = NumberSlider(FACES)
+        self.n_faces.slider.setObjectName("n_faces_slider")
+        self.n_faces.field.setObjectName("n_faces")
+        self.target = _combo("target", "What is imitated", TARGETS)
+        self.method = _combo("method", "Coarsening method", {k: m.label for k, m in METHODS.items()})
+        self.seed = _seed_field()
+        self.dice = QToolButton()
+        self.dice.setObjectName("next_seed")
+        self.dice.setToolTip("Next seed: the same method with other random numbers")
+        self.dice.setAccessibleName("Next seed")
+        self._forms: dict[str, SettingsForm] = {}
+        self._settings = QVBoxLayout()
+        self.outcome = remark(role="warning")
+        self.outcome.hide()
+        self.set_theme(current_theme())
+        self._arrange()
+        self._connect()
+        self._show_settings()
+
+    def value(self) -> dict[str, Any]:
+        """All of it."""
+        form = self._forms.get(self.method.currentData())
+        settings = form.value() if form else {}
+        return {
+            "n_faces": int(self.n_faces.value()),
+            "target": self.target.currentData(),
+            "method": self.method.currentData(),
+            "settings": tuple(sorted(settings.items())),
+            "seed": self.seed.value(),
+        }
+
+    def setValue(self, value: Mapping[str, Any]) -> None:
+        """Show other choices."""
+        self.n_faces.setValue(value["n_faces"])
+        for combo, name in ((self.target, "target"), (self.method, "method")):
+            with QSignalBlocker(combo):
+                combo.setCurrentIndex(combo.findData(value[name]))
+        with QSignalBlocker(self.seed):
+            self.seed.setValue(value["seed"])
+        self._show_settings()
+        if form := self._forms.get(value["method"]):
+            form.setValue(dict(value["settings"]))
+
+    def set_outcome(self, sentence: str | None) -> None:
+        """Say why a request could not be met, or nothing."""
+        self.outcome.setText(sentence or "")
+        self.outcome.setVisible(bool(sentence))
+
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        self.dice.setIcon(icon("dice", theme.text, theme.muted))
+
+    def _arrange(self) -> None:
+        seed = QHBoxLayout()
+        seed.addWidget(self.seed, 1)
+        seed.addWidget(self.dice)
+        form = QFormLayout()
+        form.setContentsMargins(0, 0, 0, 0)
+        form.addRow("Method", self.method)
+        form.addRow("Imitate", self.target)
+        form.addRow("Seed", seed)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(heading("Coarsened polyhedron"))
+        layout.addWidget(self.n_faces)
+        layout.addLayout(form)
+        layout.addLayout(self._settings)
+        layout.addWidget(self.outcome)
+
+    def _connect(self) -> None:
+        self.n_faces.valueChanged.connect(lambda n: self.valueChanged.emit({"n_faces": int(n)}))
+        self.n_faces.editingFinished.connect(self.editingFinished)
+        self.target.activated.connect(lambda _: self._announce("target"))
+        self.method.activated.connect(self._change_method)
+        self.seed.valueChanged.connect(lambda _: self._announce("seed"))
+        self.dice.clicked.connect(lambda: self.seed.setValue((self.seed.value() + 1) % SEED_LIMIT))
+
+    def _announce(self, *names: str) -> None:
+        now = self.value()
+        self.valueChanged.emit({name: now[name] for name in names})
+        self.editingFinished.emit()
+
+    def _change_method(self) -> None:
+        self._show_settings()
+        self._announce("method", "settings")
+
+    def _show_settings(self) -> None:
+        key = self.method.currentData()
+        if key and key not in self._forms:
+            form = self._forms[key] = SettingsForm(METHODS[key].Settings)
+            form.valueChanged.connect(lambda _: self._announce("settings"))
+            self._settings.addWidget(form)
+        for name, form in self._forms.items():
+            form.setVisible(name == key and not form.is_empty())
+
+
+def _combo(name: str, accessible: str, entries: Mapping[str, str]) -> QComboBox:
+    combo = QComboBox()
+    combo.setObjectName(name)
+    combo.setAccessibleName(accessible)
+    combo.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
+    combo.setMinimumContentsLength(12)
+    for key, label in entries.items():
+        combo.addItem(label[:1].upper() + label[1:], key)
+    return combo
+
+
+def _seed_field() -> QSpinBox:
+    field = QSpinBox()
+    field.setObjectName("seed")
+    field.setAccessibleName("Seed")
+    field.setToolTip("Of all random numbers: the same seed gives the same polyhedron.")
+    field.setRange(0, SEED_LIMIT)
+    field.setKeyboardTracking(False)
+    return field

@@ -1,0 +1,59 @@
+"""Relative errors of fit and polyhedron, descriptor by descriptor (Eq. 8)."""
+
+import math
+
+from PySide6.QtWidgets import QVBoxLayout, QWidget
+
+from regolith_studio.coarsening.weights import JACCARD
+from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
+from regolith_studio.session.choices import Choices
+from regolith_studio.session.results import Results
+from regolith_studio.ui.theme import Theme
+from regolith_studio.ui.widgets.bar_plot import BarPlot, BarSeries
+from regolith_studio.ui.widgets.labels import plain_symbol
+
+KEYS = (*LOSS_KEYS, JACCARD)
+
+
+class ErrorBarsPanel(QWidget):
+    """Grouped bars; those of a coarsening that is being replaced are faint."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("error_bars")
+        self.plot = BarPlot("Descriptor", "Relative error [%]", "The errors appear when the fit is measured.")
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(self.plot)
+        self._shown: tuple[Results, Choices] | None = None
+        self._polyhedron: dict[str, float] = {}
+        self._polyhedron_of = ""
+
+    def show_results(self, results: Results, choices: Choices) -> None:
+        """Draw the errors of these results."""
+        self._shown = (results, choices)
+        if choices.selected != self._polyhedron_of:
+            self._polyhedron, self._polyhedron_of = {}, choices.selected
+        done = results.coarsened
+        if done is not None:
+            self._polyhedron = {**done.errors, JACCARD: done.jaccard_distance}
+        theme, target = self.plot.theme, "fit" if choices.target == "fit" else "particle"
+        series = [
+            BarSeries("Fit against particle", theme.fit, _percent(results.fit_errors)),
+            BarSeries(
+                f"Polyhedron against {target}", theme.polyhedron, _percent(self._polyhedron), done is None
+            ),
+        ]
+        self.plot.set_bars([*(plain_symbol(CATALOGUE[key].symbol) for key in LOSS_KEYS), "Jaccard"], series)
+        self.plot.remark.setText("" if done is None else f"loss (Eq. 9): {done.loss:.4g}")
+
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        self.plot.set_theme(theme)
+        if self._shown:
+            self.show_results(*self._shown)
+
+
+def _percent(errors: object) -> tuple[float, ...]:
+    values = dict(errors)  # type: ignore[call-overload]
+    return tuple(100.0 * values.get(key, math.nan) for key in KEYS)

@@ -1,0 +1,50 @@
+"""The loss (Eq. 9) step by step; the curve grows while the coarsening runs."""
+
+from itertools import accumulate
+
+from PySide6.QtWidgets import QVBoxLayout, QWidget
+
+from regolith_studio.session.results import Results
+from regolith_studio.ui.theme import Theme
+from regolith_studio.ui.widgets.curve_plot import Curve, CurvePlot
+
+
+class LossCurvePanel(QWidget):
+    """One curve."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("loss_curve")
+        self.plot = CurvePlot("Step", "Loss (Eq. 9)", "The loss appears when the coarsening begins.")
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(self.plot)
+        self._results: Results | None = None
+
+    def show_results(self, results: Results) -> None:
+        """Draw the history of these results."""
+        self._results = results
+        history = results.loss_history
+        if not history:
+            return
+        steps, losses = zip(*history, strict=True)
+        best = tuple(accumulate(losses, min))
+        theme = self.plot.theme
+        curves = [
+            Curve("present", theme.polyhedron, steps, losses, markers=len(steps) < 40),
+            Curve("best so far", theme.muted, steps, best, dash=True),
+        ]
+        self.plot.set_curves(curves)
+        progress = results.coarsening_progress
+        running = results.coarsened is None and progress is not None
+        self.plot.remark.setText(
+            f"step {progress.step} of {progress.steps}"
+            if running and progress
+            else f"lowest {min(losses):.4g}"
+        )
+
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        self.plot.set_theme(theme)
+        if self._results:
+            self.show_results(self._results)

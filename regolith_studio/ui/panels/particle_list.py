@@ -1,0 +1,235 @@
+"""The list of open particles: name, group, volume, sphericity, aspect ratio, health of the mesh."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from PySide6.QtCore import (
+    QAbstractTableModel,
+    QItemSelectionModel,
+    QModelIndex,
+    QPersistentModelIndex,
+    QSortFilterProxyModel,
+    Qt,
+    Signal,
+)
+from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QTableView, QVBoxLayout, QWidget
+
+from regolith_studio.session.results import ParticleEntry
+from regolith_studio.ui.icons import pixmap
+from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.widgets.labels import heading, remark
+
+Index = QModelIndex | QPersistentModelIndex
+NOWHERE = QModelIndex()
+SORT_ROLE = Qt.ItemDataRole.UserRole + 1
+_ICON = 15
+
+
+@dataclass(frozen=True)
+class Column:
+    """One column of the list.
+
+    Parameters
+    ----------
+    title
+        Above it, with the unit.
+    tip
+        What it means.
+    key
+        What it is sorted by.
+    text
+        What it shows.
+    """
+
+    title: str
+    tip: str
+    key: Callable[[ParticleEntry], Any]
+    text: Callable[[ParticleEntry], str]
+
+
+def _descriptor(key: str, form: str) -> tuple[Callable[[ParticleEntry], Any], Callable[[ParticleEntry], str]]:
+    def value(entry: ParticleEntry) -> float:
+        return float(entry.descriptors[key]) if entry.descriptors else float("-inf")
+
+    def text(entry: ParticleEntry) -> str:
+        return form.format(entry.descriptors[key]) if entry.descriptors else "…"
+
+    return value, text
+
+
+COLUMNS = (
+    Column("Particle", "Name and health of the mesh", lambda e: e.id, lambda e: e.id),
+    Column("Group", "Sample or size fraction", lambda e: e.particle.group, lambda e: e.particle.group),
+    Column("V [µm³]", "Volume", *_descriptor("volume", "{:,.4g}")),
+    Column("S", "Sphericity, Eq. 1 (Wadell)", *_descriptor("sphericity", "{:.3f}")),
+    Column("AR", "Aspect ratio, Eq. 2", *_descriptor("aspect_ratio", "{:.2f}")),
+)
+
+
+def health_icon_name(entry: ParticleEntry) -> str:
+    """Which icon tells the health of a particle's mesh."""
+    if entry.health is None:
+        return "unknown"
+    if not entry.health.sound:
+        return "unsound"
+    return "doubtful" if entry.health.problems or entry.particle.notes else "sound"
+
+
+def health_text(entry: ParticleEntry) -> str:
+    """All that is known about it, one sentence a line."""
+    if entry.health is None:
+        return "Being measured …"
+    sentences = (*entry.health.problems, *entry.particle.notes)
+    return "\n".join(sentences) or "A closed mesh without faults."
+
+
+class _Model(QAbstractTableModel):
+    def __init__(self, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.entries: tuple[ParticleEntry, ...] = ()
+        self.icons: dict[str, Any] = {}
+
+    def set_theme(self, theme: Theme) -> None:
+        colours = {
+            "sound": theme.good,
+            "doubtful": theme.doubtful,
+            "unsound": theme.bad,
+            "unknown": theme.muted,
+        }
+        self.icons = {name: pixmap(name, colour, _ICON) for name, colour in colours.items()}
+
+    def rowCount(self, parent: Index = NOWHERE) -> int:
+        return 0 if parent.isValid() else len(self.entries)
+
+    def columnCount(self, parent: Index = NOWHERE) -> int:
+        return 0 if parent.isValid() else len(COLUMNS)
+
+    def data(self, index: Index, role: int = Qt.ItemDataRole.DisplayRole) -> Any:
+        entry, column = self.entries[index.row()], COLUMNS[index.column()]
+        match role:
+            case Qt.ItemDataRole.DisplayRole:
+                return column.text(entry)
+            case Qt.ItemDataRole.DecorationRole if index.column() == 0:
+                return self.icons.get(health_icon_name(entry))
+            case Qt.ItemDataRole.ToolTipRole:
+                return health_text(entry)
+            case Qt.ItemDataRole.TextAlignmentRole if index.column() >= 2:
+                return int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+        return column.key(entry) if role == SORT_ROLE else None
+
+    def headerData(
+        self, section: int, orientation: Qt.Orientation, role: int = Qt.ItemDataRole.DisplayRole
+    ) -> Any:
+        if orientation == Qt.Orientation.Horizontal:
+            match role:
+                case Qt.ItemDataRole.DisplayRole:
+                    return COLUMNS[section].title
+                case Qt.ItemDataRole.ToolTipRole:
+                    return COLUMNS[section].tip
+        return None
+
+
+class ParticleListPanel(QWidget):
+    """Edits which particle is on screen."""
+
+    FIELDS = ("selected",)
+    valueChanged = Signal(dict)  # noqa: N815
+    editingFinished = Signal()  # noqa: N815
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("particle_list")
+        self._model = _Model(self)
+        self._model.set_theme(current_theme())
+        self._sorted = QSortFilterProxyModel(self)
+        self._sorted.setSourceModel(self._model)
+        self._sorted.setSortRole(SORT_ROLE)
+        self.table = self._make_table()
+        self._selected = ""
+        self._quiet = False
+        self.title = heading("Particles")
+        self.hint = remark("Drop mesh files or folders anywhere in the window to open them.")
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(self.title)
+        layout.addWidget(self.table, 1)
+        layout.addWidget(self.hint)
+        self.table.selectionModel().currentRowChanged.connect(self._clicked)
+
+    def value(self) -> dict[str, str]:
+        """The id of the particle on screen."""
+        return {"selected": self._selected}
+
+    def setValue(self, value: Mapping[str, Any]) -> None:
+        """Mark a particle as the one on screen."""
+        self._selected = value["selected"]
+        self._mark()
+
+    def entries(self) -> tuple[ParticleEntry, ...]:
+        """What is listed."""
+        return self._model.entries
+
+    def set_entries(self, entries: Sequence[ParticleEntry]) -> None:
+        """List other particles, or the same ones with more known about them."""
+        entries = tuple(entries)
+        same = [entry.id for entry in entries] == [entry.id for entry in self._model.entries]
+        self._quiet = True
+        if same:
+            self._model.entries = entries
+            last = self._model.index(max(0, len(entries) - 1), len(COLUMNS) - 1)
+            self._model.dataChanged.emit(self._model.index(0, 0), last)
+        else:
+            self._model.beginResetModel()
+            self._model.entries = entries
+            self._model.endResetModel()
+            grouped = any(entry.particle.group for entry in entries)
+            self.table.setColumnHidden(1, not grouped)
+        self._quiet = False
+        self._mark()
+        self.title.setText(f"Particles ({len(entries)})" if entries else "Particles")
+
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        self._model.set_theme(theme)
+        self.table.viewport().update()
+
+    def _make_table(self) -> QTableView:
+        table = QTableView()
+        table.setObjectName("particle_table")
+        table.setAccessibleName("Particles")
+        table.setModel(self._sorted)
+        table.setSortingEnabled(True)
+        table.horizontalHeader().setSortIndicator(-1, Qt.SortOrder.AscendingOrder)
+        table.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
+        table.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)
+        table.setShowGrid(False)
+        table.setTabKeyNavigation(False)
+        table.setWordWrap(False)
+        table.verticalHeader().hide()
+        table.verticalHeader().setDefaultSectionSize(table.fontMetrics().height() + 9)
+        header = table.horizontalHeader()
+        header.setHighlightSections(False)
+        header.setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
+        header.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
+        header.setMinimumSectionSize(34)
+        header.setDefaultAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
+        return table
+
+    def _mark(self) -> None:
+        row = next((r for r, entry in enumerate(self._model.entries) if entry.id == self._selected), -1)
+        if row < 0:
+            return
+        index = self._sorted.mapFromSource(self._model.index(row, 0))
+        self._quiet = True
+        flags = QItemSelectionModel.SelectionFlag
+        self.table.selectionModel().setCurrentIndex(index, flags.ClearAndSelect | flags.Rows)
+        self.table.scrollTo(index)
+        self._quiet = False
+
+    def _clicked(self, index: QModelIndex) -> None:
+        if self._quiet or not index.isValid():
+            return
+        self._selected = self._model.entries[self._sorted.mapToSource(index).row()].id
+        self.valueChanged.emit(self.value())
+        self.editingFinished.emit()

@@ -1,0 +1,86 @@
+"""What is running, in the status bar: title, progress, a button that stops it."""
+
+from collections.abc import Sequence
+
+from PySide6.QtCore import QTimer, Signal
+from PySide6.QtWidgets import QHBoxLayout, QProgressBar, QToolButton, QWidget
+
+from regolith_studio.session.tasks import Task
+from regolith_studio.ui.icons import icon
+from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.widgets.labels import ElidedLabel
+
+PATIENCE = 250
+"""Milliseconds that something must run before it is worth a progress bar."""
+IDLE = "Ready"
+
+
+class TasksPanel(QWidget):
+    """Shows the oldest of the running tasks; the others are counted."""
+
+    cancelRequested = Signal(int)  # noqa: N815
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("tasks")
+        self._tasks: tuple[Task, ...] = ()
+        self.text = ElidedLabel(IDLE)
+        self.text.setObjectName("tasks_text")
+        self.bar = QProgressBar()
+        self.bar.setAccessibleName("Progress")
+        self.bar.setFixedWidth(150)
+        self.bar.setFixedHeight(12)
+        self.bar.setTextVisible(False)
+        self.stop = QToolButton()
+        self.stop.setObjectName("tasks_stop")
+        self.stop.setAccessibleName("Stop")
+        self.stop.setToolTip("Stop what is running")
+        self.stop.setAutoRaise(True)
+        layout = QHBoxLayout(self)
+        layout.setContentsMargins(6, 1, 6, 1)
+        layout.addWidget(self.bar)
+        layout.addWidget(self.stop)
+        layout.addWidget(self.text, 1)
+        self._timer = QTimer(self, interval=PATIENCE, singleShot=True)
+        self._timer.timeout.connect(self._show)
+        self.stop.clicked.connect(self._request)
+        self.set_theme(current_theme())
+        self._show()
+
+    def value(self) -> tuple[Task, ...]:
+        """The tasks that are running."""
+        return self._tasks
+
+    def setValue(self, tasks: Sequence[Task]) -> None:
+        """Show these; short ones never appear."""
+        self._tasks = tuple(tasks)
+        if not self._tasks:
+            self._timer.stop()
+            self._show()
+        elif self.bar.isVisible():
+            self._show()
+        elif not self._timer.isActive():
+            self._timer.start()
+
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        self.stop.setIcon(icon("stop", theme.bad, theme.muted))
+
+    def _show(self) -> None:
+        busy = bool(self._tasks)
+        self.bar.setVisible(busy)
+        self.stop.setVisible(busy)
+        if not busy:
+            self.text.setText(IDLE)
+            return
+        first, others = self._tasks[0], len(self._tasks) - 1
+        self.bar.setRange(0, first.total)
+        self.bar.setValue(first.done)
+        count = f" ({first.done} of {first.total})" if first.total else ""
+        message = f": {first.message}" if first.message else ""
+        more = f"   and {others} more" if others else ""
+        self.text.setText(f"{first.title}{count}{message}{more}")
+
+    def _request(self) -> None:
+        if self._tasks:
+            self.cancelRequested.emit(self._tasks[0].id)

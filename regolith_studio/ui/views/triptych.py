@@ -1,0 +1,135 @@
+"""CT particle, fit and polyhedron side by side: the three views that are always there."""
+
+import numpy as np
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QSplitter, QWidget
+
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.scene import surfaces
+from regolith_studio.scene.distance import signed_distances
+from regolith_studio.session.results import ParticleEntry, Results
+from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.views.camera_link import CameraLink
+from regolith_studio.ui.views.factory import make_view
+from regolith_studio.ui.views.view_frame import ViewFrame
+
+NAMES = ("particle", "fit", "polyhedron")
+
+
+class Triptych(QSplitter):
+    """Three framed views under linked cameras.
+
+    Parameters
+    ----------
+    kind
+        ``live`` or ``image``.
+    """
+
+    def __init__(self, kind: str, parent: QWidget | None = None) -> None:
+        super().__init__(Qt.Orientation.Horizontal, parent)
+        self.setObjectName("triptych")
+        self.setChildrenCollapsible(False)
+        self._theme = current_theme()
+        self.frames = {name: ViewFrame(make_view(kind, self._theme.surroundings), name) for name in NAMES}
+        self.views = {name: frame.view for name, frame in self.frames.items()}
+        self.link = CameraLink(list(self.views.values()))
+        for frame in self.frames.values():
+            self.addWidget(frame)
+            frame.setMinimumWidth(150)
+        self.setSizes([1000, 1000, 1000])
+        self._shown: Mesh | None = None
+        self._polyhedron: object = None
+        self._fit: Mesh | None = None
+        self._heat = False
+        self.set_theme(self._theme)
+        self._empty_titles()
+
+    def show_particle(self, entry: ParticleEntry | None) -> None:
+        """Put a particle on screen; the other views wait for what belongs to it."""
+        if entry is None or entry.particle.mesh is self._shown:
+            return
+        mesh = self._shown = entry.particle.mesh
+        self._fit = self._polyhedron = None
+        for name in NAMES[1:]:
+            self.views[name].draw(surfaces.clear)
+        self._empty_titles()
+        self.views["particle"].draw(lambda plotter: surfaces.show_particle(plotter, mesh))
+        self.frames["particle"].set_texts(
+            "CT particle", f"{entry.id}: {_lengths(mesh.bounds)}, {len(mesh.faces):,} triangles"
+        )
+        self.link.frame(mesh.bounds)
+
+    def show_fit(self, mesh: Mesh | None, l_max: int) -> None:
+        """Show the surface of the fit."""
+        if mesh is None or self._shown is None:
+            return
+        self._fit = mesh
+        self.frames["fit"].set_texts(
+            f"Spherical-harmonics fit, l<sub>max</sub>&nbsp;=&nbsp;{l_max}",
+            f"{(l_max + 1) ** 2:,} coefficients, {len(mesh.faces):,} triangles",
+        )
+        self._draw_fit()
+
+    def show_polyhedron(self, results: Results) -> None:
+        """Show the newest polyhedron of the coarsening."""
+        found = results.coarsened or results.coarsening_progress
+        if found is None or found.polyhedron is None or found.polyhedron is self._polyhedron:
+            return
+        solid, centre = found.polyhedron, found.centre
+        self._polyhedron = solid
+        ink = self._theme.surroundings
+        self.views["polyhedron"].draw(lambda plotter: surfaces.show_polyhedron(plotter, solid, centre, ink))
+        self.frames["polyhedron"].set_texts(
+            f"Polyhedron, {solid.n_faces} facets",
+            f"{solid.n_vertices} vertices, {solid.n_triangles} triangles",
+        )
+
+    def set_heat(self, heat: bool) -> None:
+        """Colour the fit by its distance from the particle, or in its own colour."""
+        self._heat = heat
+        self._draw_fit()
+
+    def set_wireframe(self, wireframe: bool) -> None:
+        """Draw particle and fit as triangle meshes."""
+        for name in NAMES:
+            self.views[name].draw(lambda plotter: surfaces.set_wireframe(plotter, wireframe))
+
+    def reset_cameras(self) -> None:
+        """Show the particle whole again."""
+        if self._shown is not None:
+            self.link.frame(self._shown.bounds)
+
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        self._theme = theme
+        for name, frame in self.frames.items():
+            frame.view.set_surroundings(theme.surroundings)
+            frame.set_colour(getattr(theme, name))
+
+    def release(self) -> None:
+        """Give the graphics memory back."""
+        for view in self.views.values():
+            view.release()
+
+    def _draw_fit(self) -> None:
+        mesh, particle = self._fit, self._shown
+        if mesh is None or particle is None:
+            return
+        distances: FloatArray | None = signed_distances(mesh.vertices, particle) if self._heat else None
+        self.views["fit"].draw(lambda plotter: surfaces.show_fit(plotter, mesh, distances))
+        if distances is not None:
+            reach = float(np.abs(distances).max(initial=0.0))
+            self.frames["fit"].detail.setText(
+                f"distance from the particle: blue −{reach:.3g} µm, red +{reach:.3g} µm"
+            )
+
+    def _empty_titles(self) -> None:
+        self.frames["particle"].set_texts("CT particle")
+        self.frames["fit"].set_texts("Spherical-harmonics fit", "waiting for the coefficients …")
+        self.frames["polyhedron"].set_texts("Polyhedron", "waiting for the first one …")
+
+
+def _lengths(bounds: FloatArray) -> str:
+    """Size of the box along the axes."""
+    return " × ".join(f"{edge:.3g}" for edge in bounds[1] - bounds[0]) + " µm"

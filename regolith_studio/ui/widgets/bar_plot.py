@@ -1,0 +1,100 @@
+"""Grouped bars: some series over the same few categories."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pyqtgraph as pg
+from PySide6.QtCore import QPointF
+from PySide6.QtGui import QColor
+from PySide6.QtWidgets import QToolTip, QWidget
+
+from regolith_studio.ui.widgets.plot import Plot
+
+
+@dataclass(frozen=True)
+class BarSeries:
+    """One colour of bars.
+
+    Parameters
+    ----------
+    label
+        For the legend.
+    colour
+        Hexadecimal RGB.
+    values
+        One for each category; NaN for none.
+    faint
+        Drawn half transparent: of a result that is about to be replaced.
+    """
+
+    label: str
+    colour: str
+    values: tuple[float, ...]
+    faint: bool = False
+
+
+class BarPlot(Plot):
+    """Bars from zero, side by side within each category, with their values when pointed at."""
+
+    def __init__(
+        self, x: str, y: str, placeholder: str, unit: str = "%", parent: QWidget | None = None
+    ) -> None:
+        self._categories: tuple[str, ...] = ()
+        self._series: tuple[BarSeries, ...] = ()
+        self._items: list[object] = []
+        self._unit = unit
+        super().__init__(x, y, placeholder, parent)
+        self.canvas.scene().sigMouseMoved.connect(self._point)
+
+    @property
+    def series(self) -> tuple[BarSeries, ...]:
+        """What is drawn."""
+        return self._series
+
+    def set_bars(self, categories: Sequence[str], series: Sequence[BarSeries]) -> None:
+        """Draw these instead."""
+        self._categories, self._series = tuple(categories), tuple(series)
+        self.set_empty(not any(np.isfinite(each.values).any() for each in series))
+        self.redraw()
+
+    def redraw(self) -> None:
+        for item in self._items:
+            self.canvas.removeItem(item)
+        self._items = []
+        width = 0.76 / max(1, len(self._series))
+        for number, series in enumerate(self._series):
+            colour = QColor(series.colour)
+            colour.setAlpha(90 if series.faint else 255)
+            places = np.arange(len(series.values)) + (number - (len(self._series) - 1) / 2) * width
+            bars = pg.BarGraphItem(
+                x=places,
+                height=np.nan_to_num(series.values),
+                width=width * 0.92,
+                brush=colour,
+                pen=pg.mkPen(None),
+            )
+            self.canvas.addItem(bars)
+            self._items.append(bars)
+        self.canvas.getAxis("bottom").setTicks([list(enumerate(self._categories))])
+        tops = [value for each in self._series for value in each.values if np.isfinite(value)]
+        top = max(tops, default=1.0) * 1.12 or 1.0
+        self.canvas.setRange(
+            xRange=(-0.55, len(self._categories) - 0.45),
+            yRange=(0.0, top),
+            padding=0.0,
+            disableAutoRange=True,
+        )
+        self.set_legend([(each.colour, each.label) for each in self._series])
+
+    def _point(self, where: QPointF) -> None:
+        here = self.canvas.plotItem.vb.mapSceneToView(where)
+        category = round(here.x())
+        if not 0 <= category < len(self._categories) or here.y() < 0:
+            self.canvas.setToolTip("")
+            return
+        lines = [f"{each.label}: {each.values[category]:.3g} {self._unit}" for each in self._series]
+        text = "\n".join([self._categories[category], *lines])
+        if self.canvas.toolTip() != text:
+            QToolTip.hideText()
+            self.canvas.setToolTip(text)

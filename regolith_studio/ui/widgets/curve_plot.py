@@ -1,0 +1,95 @@
+"""Curves over a common axis."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pyqtgraph as pg
+from PySide6.QtWidgets import QWidget
+
+from regolith_studio.ui.widgets.plot import Plot
+
+
+@dataclass(frozen=True)
+class Curve:
+    """One line through points.
+
+    Parameters
+    ----------
+    label
+        For the legend; rich text; empty for no entry.
+    colour
+        Hexadecimal RGB.
+    x, y
+        The points; NaN breaks the line.
+    markers
+        Whether the points themselves are drawn.
+    dash
+        Whether the line is dashed.
+    """
+
+    label: str
+    colour: str
+    x: tuple[float, ...]
+    y: tuple[float, ...]
+    markers: bool = False
+    dash: bool = False
+
+
+class CurvePlot(Plot):
+    """Curves that grow: the axes follow what is drawn.
+
+    Parameters
+    ----------
+    log_y
+        Whether the y axis is logarithmic.
+    """
+
+    def __init__(
+        self, x: str, y: str, placeholder: str, log_y: bool = False, parent: QWidget | None = None
+    ) -> None:
+        self._curves: tuple[Curve, ...] = ()
+        self._items: list[pg.PlotDataItem] = []
+        self._marker: float | None = None
+        self._line: pg.InfiniteLine | None = None
+        super().__init__(x, y, placeholder, parent)
+        self.canvas.setLogMode(x=False, y=log_y)
+
+    @property
+    def curves(self) -> tuple[Curve, ...]:
+        """What is drawn."""
+        return self._curves
+
+    def set_curves(self, curves: Sequence[Curve]) -> None:
+        """Draw these instead."""
+        self._curves = tuple(curves)
+        self.set_empty(not any(curve.x for curve in curves))
+        self.redraw()
+
+    def set_marker(self, x: float | None) -> None:
+        """A vertical line at `x`, or none."""
+        self._marker = x
+        self._draw_marker()
+
+    def redraw(self) -> None:
+        while len(self._items) > len(self._curves):
+            self.canvas.removeItem(self._items.pop())
+        while len(self._items) < len(self._curves):
+            self._items.append(self.canvas.plot(antialias=True))
+        for item, curve in zip(self._items, self._curves, strict=True):
+            item.setData(np.asarray(curve.x, dtype=float), np.asarray(curve.y, dtype=float))
+            item.setPen(self.pen(curve.colour, dash=curve.dash))
+            item.setSymbol("o" if curve.markers else None)
+            item.setSymbolSize(5)
+            item.setSymbolBrush(curve.colour)
+            item.setSymbolPen(None)
+        self.set_legend([(curve.colour, curve.label) for curve in self._curves if curve.label])
+        self._draw_marker()
+
+    def _draw_marker(self) -> None:
+        if self._line is not None:
+            self.canvas.removeItem(self._line)
+            self._line = None
+        if self._marker is not None:
+            self._line = pg.InfiniteLine(self._marker, pen=self.pen(self.theme.muted, dash=True))
+            self.canvas.addItem(self._line, ignoreBounds=True)

@@ -1,0 +1,79 @@
+"""Texts: headings, remarks, and lines that shorten themselves instead of being cut."""
+
+import html
+import re
+
+from PySide6.QtCore import QSize, Qt
+from PySide6.QtGui import QPainter, QPaintEvent
+from PySide6.QtWidgets import QLabel, QSizePolicy, QWidget
+
+_SUBSCRIPT = re.compile(r"([A-Za-zΨ])_([A-Za-z0-9]+)")
+
+
+def rich_symbol(text: str) -> str:
+    """A symbol such as ``D_min`` as rich text with a real subscript."""
+    return _SUBSCRIPT.sub(r"\1<sub>\2</sub>", html.escape(text))
+
+
+def plain_symbol(text: str) -> str:
+    """A symbol such as ``D_min`` where no subscript can be set: ``Dmin``."""
+    return _SUBSCRIPT.sub(r"\1\2", text)
+
+
+def heading(text: str) -> QLabel:
+    """A label that begins a group."""
+    label = QLabel(text)
+    label.setProperty("role", "heading")
+    return label
+
+
+def remark(text: str = "", role: str = "remark") -> QLabel:
+    """A quiet line of several words that may wrap; `role` ``warning`` for what must be noticed."""
+    label = QLabel(text)
+    label.setProperty("role", role)
+    label.setWordWrap(True)
+    return label
+
+
+class ElidedLabel(QWidget):
+    """One line of plain text that ends in dots where there is no room; the whole text is the tool tip.
+
+    Parameters
+    ----------
+    role
+        ``heading`` or ``remark``, for the style sheet.
+    """
+
+    def __init__(self, text: str = "", role: str = "", parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._text = ""
+        self.setProperty("role", role)
+        self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+        self.setText(text)
+
+    def text(self) -> str:
+        """The whole text."""
+        return self._text
+
+    def setText(self, text: str) -> None:
+        """Show another text."""
+        if text != self._text:
+            self._text = text
+            self.setToolTip(text)
+            self.setAccessibleName(text)
+            self.update()
+
+    def sizeHint(self) -> QSize:
+        metrics = self.fontMetrics()
+        return QSize(metrics.horizontalAdvance(self._text) + 2, metrics.height() + 2)
+
+    def minimumSizeHint(self) -> QSize:
+        return QSize(20, self.fontMetrics().height() + 2)
+
+    def paintEvent(self, event: QPaintEvent) -> None:  # noqa: ARG002
+        painter = QPainter(self)
+        shown = self.fontMetrics().elidedText(self._text, Qt.TextElideMode.ElideRight, self.width())
+        flags = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
+        painter.setPen(self.palette().windowText().color())
+        painter.drawText(self.rect(), int(flags), shown)
+        painter.end()

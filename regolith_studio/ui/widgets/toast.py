@@ -1,0 +1,116 @@
+"""A sentence that appears in the corner of the window and goes away by itself."""
+
+from PySide6.QtCore import QEvent, QObject, Qt, QTimer
+from PySide6.QtWidgets import (
+    QDialog,
+    QDialogButtonBox,
+    QFrame,
+    QHBoxLayout,
+    QLabel,
+    QPlainTextEdit,
+    QPushButton,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+SECONDS_OF_A_NOTE = 6
+SECONDS_OF_A_PROBLEM = 20
+_MARGIN = 14
+
+
+class Toast(QFrame):
+    """Shows one sentence at a time at the lower right of its parent; the details only on demand."""
+
+    def __init__(self, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.setObjectName("toast")
+        self.setProperty("role", "toast")
+        self.setAutoFillBackground(True)
+        self._details = ""
+        self.sentence = QLabel()
+        self.sentence.setObjectName("toast_sentence")
+        self.sentence.setWordWrap(True)
+        self.sentence.setMinimumWidth(300)
+        self.sentence.setTextFormat(Qt.TextFormat.PlainText)
+        self.more = QPushButton("Details …")
+        self.more.setObjectName("toast_details")
+        self.more.clicked.connect(self._show_details)
+        dismiss = QToolButton()
+        dismiss.setText("✕")
+        dismiss.setAutoRaise(True)
+        dismiss.setAccessibleName("Close this message")
+        dismiss.clicked.connect(self.hide)
+        row = QHBoxLayout(self)
+        row.setContentsMargins(12, 8, 8, 8)
+        row.addWidget(self.sentence, 1)
+        row.addWidget(self.more)
+        row.addWidget(dismiss)
+        self._timer = QTimer(self, singleShot=True)
+        self._timer.timeout.connect(self.hide)
+        parent.installEventFilter(self)
+        self.hide()
+
+    def note(self, sentence: str, details: str = "") -> None:
+        """Say something that went well."""
+        self._say("note", sentence, details, SECONDS_OF_A_NOTE)
+
+    def problem(self, sentence: str, details: str = "") -> None:
+        """Say something that went wrong."""
+        self._say("problem", sentence, details, SECONDS_OF_A_PROBLEM)
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        if event.type() == QEvent.Type.Resize and self.isVisible():
+            self._place()
+        return super().eventFilter(watched, event)
+
+    def hideEvent(self, event: QEvent) -> None:
+        self._timer.stop()
+        super().hideEvent(event)  # type: ignore[arg-type]
+
+    def _say(self, mood: str, sentence: str, details: str, seconds: int) -> None:
+        self.setProperty("mood", mood)
+        self.style().unpolish(self)
+        self.style().polish(self)
+        self._details = details
+        self.sentence.setText(sentence)
+        self.more.setVisible(bool(details))
+        self.setAccessibleName(sentence)
+        self.show()
+        self._place()
+        self.raise_()
+        self._timer.start(1000 * seconds)
+
+    def _place(self) -> None:
+        parent = self.parentWidget()
+        assert parent is not None, "a toast is made with its parent"
+        width = min(560, parent.width() - 2 * _MARGIN)
+        self.resize(width, self.heightForWidth(width) if self.hasHeightForWidth() else 40)
+        self.move(parent.width() - self.width() - _MARGIN, parent.height() - self.height() - 40)
+
+    def _show_details(self) -> None:
+        self._timer.stop()
+        show_details(self.window(), self.sentence.text(), self._details)
+        self.hide()
+
+
+def show_details(parent: QWidget, sentence: str, details: str) -> None:
+    """A dialog with the whole report, to be read and copied."""
+    dialog = QDialog(parent)
+    dialog.setWindowTitle("What happened")
+    dialog.resize(680, 380)
+    layout = QVBoxLayout(dialog)
+    first = QLabel(sentence)
+    first.setWordWrap(True)
+    text = QPlainTextEdit(details)
+    text.setReadOnly(True)
+    text.setAccessibleName("Details")
+    buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close)
+    copy = buttons.addButton("Copy report", QDialogButtonBox.ButtonRole.ActionRole)
+    copy.clicked.connect(text.selectAll)
+    copy.clicked.connect(text.copy)
+    buttons.rejected.connect(dialog.reject)
+    for widget in (first, text, buttons):
+        layout.addWidget(widget)
+    dialog.exec()
+    dialog.deleteLater()
