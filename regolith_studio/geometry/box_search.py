@@ -17,6 +17,7 @@ import numpy as np
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.compiled import kernel
 from regolith_studio.geometry.hull_graph import HullGraph, Vector, along, extreme_vertex, hull_graph, walk_rim
+from regolith_studio.geometry.inlined import inlined
 from regolith_studio.geometry.rectangle import TIE, outline, polygon_area, smallest_rectangle
 
 STEEPEST = 2.5
@@ -87,7 +88,8 @@ def minimum_box(points: FloatArray, faces: IntArray) -> FloatArray:
         return search.axes
     at_face = np.empty(len(faces))
     for f in range(len(faces)):
-        at_face[f] = best_volume(graph, _row(graph.normals, f), search)
+        g = graph.facet[f]
+        at_face[f] = best_volume(graph, _row(graph.normals, f), search) if f == g else at_face[g]
     steepness = _steepness(graph, at_face, search.record[0])
     for h in range(len(graph.twin)):
         if h < graph.twin[h]:
@@ -195,7 +197,7 @@ def best_volume(graph: HullGraph, axis: Vector, search: Search) -> float:
     return float(volume)
 
 
-@kernel
+@inlined
 def shadow(graph: HullGraph, axis: Vector, first: Vector, second: Vector, search: Search) -> int:
     """Outline of the shadow along `axis` in `search`, in coordinates along `first` and `second`."""
     points, near, x, y = graph.points, search.near, search.x, search.y
@@ -207,7 +209,8 @@ def shadow(graph: HullGraph, axis: Vector, first: Vector, second: Vector, search
         x[i] = along(points, search.rim[i], first)
         y[i] = along(points, search.rim[i], second)
         leftmost = min(leftmost, x[i])
-    if n < 3 or leftmost > along(points, near[3], first) + ROUNDING:
+    lowest = along(points, near[3], first)
+    if n < 3 or leftmost > lowest + ROUNDING or max(_reversals(x, n), _reversals(y, n)) > 2:
         for i in range(len(points)):
             x[i], y[i] = along(points, i, first), along(points, i, second)
         corners = outline(x, y)
@@ -216,7 +219,22 @@ def shadow(graph: HullGraph, axis: Vector, first: Vector, second: Vector, search
     return n
 
 
-@kernel
+@inlined
+def _reversals(x: FloatArray, n: int) -> int:
+    """How often a closed sequence turns from rising to falling or back; 2 for a convex polygon."""
+    count, rising = 0, 0
+    first = 0
+    for i in range(n):
+        step = x[i] - x[i - 1 if i > 0 else n - 1]
+        way = 1 if step > ROUNDING else (-1 if step < -ROUNDING else rising)
+        if way != rising:
+            count += 1 if rising != 0 else 0
+            first = way if rising == 0 else first
+            rising = way
+    return count + (1 if rising != first else 0)
+
+
+@inlined
 def _frame(axis: Vector) -> tuple[Vector, Vector]:
     """Two unit vectors that make a right-handed frame with `axis`, in the order first, second, axis."""
     x, y, z = axis
@@ -236,17 +254,17 @@ def _frame(axis: Vector) -> tuple[Vector, Vector]:
     )
 
 
-@kernel
+@inlined
 def _row(rows: FloatArray, i: int) -> Vector:
     return float(rows[i, 0]), float(rows[i, 1]), float(rows[i, 2])
 
 
-@kernel
+@inlined
 def _dot(a: Vector, b: Vector) -> float:
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-@kernel
+@inlined
 def _mixed(a: Vector, share: float, b: Vector, other: float) -> Vector:
     """``share * a + other * b``."""
     return share * a[0] + other * b[0], share * a[1] + other * b[1], share * a[2] + other * b[2]

@@ -11,11 +11,15 @@ import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.compiled import kernel
+from regolith_studio.geometry.inlined import inlined
 
 Vector = tuple[float, float, float]
 
 SLIVER = 1e-14
 """A triangle of less area, at solid size 1, has no normal of its own."""
+
+COPLANAR = 1e-9
+"""Neighbouring faces whose normals differ by less, in radians, are one facet."""
 
 
 class HullGraph(NamedTuple):
@@ -26,7 +30,9 @@ class HullGraph(NamedTuple):
     points
         Vertices, shape (n, 3).
     normals
-        Outward unit normals of the faces, shape (m, 3).
+        Outward unit normals of the faces, shape (m, 3); the same for all faces of a plane facet.
+    facet
+        First face of the facet that each face belongs to, shape (m,).
     origin
         Vertex at which each half-edge starts, shape (3 m,).
     twin
@@ -37,6 +43,7 @@ class HullGraph(NamedTuple):
 
     points: FloatArray
     normals: FloatArray
+    facet: IntArray
     origin: IntArray
     twin: IntArray
     outgoing: IntArray
@@ -65,7 +72,9 @@ def hull_graph(points: FloatArray, faces: IntArray) -> HullGraph:
     outgoing = np.full(len(points), -1)
     for h in range(len(origin)):
         outgoing[origin[h]] = h
-    return HullGraph(points, _face_normals(points, faces, twin), origin, twin, outgoing)
+    normals = _face_normals(points, faces, twin)
+    facet = _facets(normals, twin)
+    return HullGraph(points, normals, facet, origin, twin, outgoing)
 
 
 @kernel
@@ -77,7 +86,7 @@ def _face_normals(points: FloatArray, faces: IntArray, twin: IntArray) -> FloatA
         vector = np.cross(
             points[faces[f, 1]] - points[faces[f, 0]], points[faces[f, 2]] - points[faces[f, 0]]
         )
-        length = np.sqrt(vector[0] ** 2 + vector[1] ** 2 + vector[2] ** 2)
+        length = np.sqrt(np.sum(vector**2))
         if length > 2.0 * SLIVER:
             normals[f] = vector / length
         else:
@@ -95,18 +104,38 @@ def _face_normals(points: FloatArray, faces: IntArray, twin: IntArray) -> FloatA
 
 
 @kernel
+def _facets(normals: FloatArray, twin: IntArray) -> IntArray:
+    """First face of the facet of each face; all faces of a facet get its normal."""
+    facet = np.full(len(normals), -1)
+    stack = np.empty(len(normals), np.int64)
+    for seed in range(len(normals)):
+        if facet[seed] >= 0:
+            continue
+        facet[seed], stack[0], n = seed, seed, 1
+        while n > 0:
+            n -= 1
+            face = stack[n]
+            for h in range(3 * face, 3 * face + 3):
+                f = twin[h] // 3
+                if f >= 0 and facet[f] < 0 and np.sum((normals[f] - normals[seed]) ** 2) < COPLANAR**2:
+                    facet[f], stack[n], normals[f] = seed, f, normals[seed]
+                    n += 1
+    return facet
+
+
+@inlined
 def after(h: int) -> int:
     """The next half-edge around the face of half-edge `h`."""
     return h - 2 if h % 3 == 2 else h + 1
 
 
-@kernel
+@inlined
 def along(rows: FloatArray, i: int, direction: Vector) -> float:
     """Scalar product of row `i` of an array of shape (n, 3) with `direction`."""
     return float(rows[i, 0] * direction[0] + rows[i, 1] * direction[1] + rows[i, 2] * direction[2])
 
 
-@kernel
+@inlined
 def extreme_vertex(graph: HullGraph, direction: Vector, start: int) -> int:
     """Vertex farthest along `direction`, by hill climbing from vertex `start`."""
     here = start
@@ -128,7 +157,7 @@ def extreme_vertex(graph: HullGraph, direction: Vector, start: int) -> int:
     return here
 
 
-@kernel
+@inlined
 def walk_rim(graph: HullGraph, axis: Vector, start: int, rim: IntArray) -> int:
     """Outline of the shadow along `axis`, counter-clockwise seen from its tip.
 
@@ -166,7 +195,7 @@ def walk_rim(graph: HullGraph, axis: Vector, start: int, rim: IntArray) -> int:
     return 0
 
 
-@kernel
+@inlined
 def _on_rim(graph: HullGraph, axis: Vector, h: int) -> bool:
     """Whether the face of half-edge `h` looks up and the one beyond looks down."""
     up = along(graph.normals, h // 3, axis) > 0.0

@@ -4,9 +4,13 @@ import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.compiled import kernel
+from regolith_studio.geometry.inlined import inlined
 
 TIE = 1e-9
 """Areas and volumes that differ by a smaller share are equal; the shorter longest side decides."""
+
+SHORTEST = 1e-12
+"""Sides of a polygon shorter than this, at solid size 1, have no direction of their own."""
 
 SLACK = 1e-13
 """Rounding that a caliper may climb over, at solid size 1."""
@@ -31,12 +35,12 @@ def outline(x: FloatArray, y: FloatArray) -> IntArray:
     return chain[:m]
 
 
-@kernel
+@inlined
 def _turn(x: FloatArray, y: FloatArray, a: int, b: int, c: int) -> float:
     return float((x[b] - x[a]) * (y[c] - y[a]) - (y[b] - y[a]) * (x[c] - x[a]))
 
 
-@kernel
+@inlined
 def polygon_area(x: FloatArray, y: FloatArray, n: int) -> float:
     """Area of a counter-clockwise polygon whose corners are the first `n` of `x` and `y`."""
     total = x[n - 1] * y[0] - x[0] * y[n - 1]
@@ -45,7 +49,7 @@ def polygon_area(x: FloatArray, y: FloatArray, n: int) -> float:
     return float(total / 2.0)
 
 
-@kernel
+@inlined
 def smallest_rectangle(x: FloatArray, y: FloatArray, n: int, result: FloatArray) -> None:
     """Rotating calipers around a convex counter-clockwise polygon.
 
@@ -57,24 +61,20 @@ def smallest_rectangle(x: FloatArray, y: FloatArray, n: int, result: FloatArray)
         Receives area, direction cosine and sine of one side, and the longer side's length.
     """
     result[0], result[3] = np.inf, np.inf
-    right = up = left = 0
-    started = False
+    right = up = left = -1
     for i in range(n):
         j = i + 1 if i + 1 < n else 0
         dx, dy = x[j] - x[i], y[j] - y[i]
         squared = dx * dx + dy * dy
-        if squared < 1e-24:
+        if squared < SHORTEST**2:
             continue
-        length = np.sqrt(squared)
-        dx, dy = dx / length, dy / length
-        if not started:
-            right = _farthest(x, y, n, dx, dy)
-            up = _farthest(x, y, n, -dy, dx)
-            left = _farthest(x, y, n, -dx, -dy)
-            started = True
+        shrink = 1.0 / np.sqrt(squared)
+        dx, dy = dx * shrink, dy * shrink
+        if right < 0:
+            right = up = left = i
         right = _advanced(x, y, n, right, dx, dy)
-        up = _advanced(x, y, n, up, -dy, dx)
-        left = _advanced(x, y, n, left, -dx, -dy)
+        up = _advanced(x, y, n, right if up == i else up, -dy, dx)
+        left = _advanced(x, y, n, up if left == i else left, -dx, -dy)
         wide = (x[right] - x[left]) * dx + (y[right] - y[left]) * dy
         high = (x[i] - x[up]) * dy - (y[i] - y[up]) * dx
         area = wide * high
@@ -84,24 +84,13 @@ def smallest_rectangle(x: FloatArray, y: FloatArray, n: int, result: FloatArray)
                 result[0], result[1], result[2], result[3] = area, dx, dy, longer
 
 
-@kernel
-def _farthest(x: FloatArray, y: FloatArray, n: int, dx: float, dy: float) -> int:
-    best = 0
-    for i in range(1, n):
-        if (x[i] - x[best]) * dx + (y[i] - y[best]) * dy > 0.0:
-            best = i
-    return best
-
-
-@kernel
+@inlined
 def _advanced(x: FloatArray, y: FloatArray, n: int, start: int, dx: float, dy: float) -> int:
     """The corner farthest along (dx, dy), walking counter-clockwise from `start`."""
-    here = best = start
+    here = start
     for _ in range(n):
         there = here + 1 if here + 1 < n else 0
         if (x[there] - x[here]) * dx + (y[there] - y[here]) * dy < -SLACK:
             break
         here = there
-        if (x[here] - x[best]) * dx + (y[here] - y[best]) * dy > 0.0:
-            best = here
-    return best
+    return here
