@@ -1,0 +1,183 @@
+"""Puts a dataset together from particles and the polyhedra that stand for them."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from importlib.metadata import PackageNotFoundError, version
+from typing import Protocol
+
+import regolith_studio
+from regolith_studio.dataset.alignment import aligned
+from regolith_studio.dataset.dataset import Dataset, Fidelity, Provenance, Representative
+from regolith_studio.dataset.size_distribution import (
+    DiscreteSizes,
+    SizeDistribution,
+    Weighting,
+    equivalent_diameter,
+    normalised_shares,
+)
+from regolith_studio.errors import InputError
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.geometry.particle import Particle
+
+PACKAGES = ("numpy", "scipy", "numba", "pyshtools", "scikit-image", "fast-simplification", "vtk")
+
+
+class CoarsenedShape(Protocol):
+    """What a dataset needs to know of a coarsened particle; ``coarsening.result.Coarsened`` has it."""
+
+    @property
+    def polyhedron(self) -> ConvexPolyhedron:
+        """About `centre`, in micrometres."""
+
+    @property
+    def centre(self) -> FloatArray:
+        """Where the polyhedron's origin lies in the particle's frame, shape (3,)."""
+
+    @property
+    def errors(self) -> Mapping[str, float]:
+        """Eq. 8."""
+
+    @property
+    def jaccard_distance(self) -> float:
+        """Eq. 7."""
+
+    @property
+    def loss(self) -> float:
+        """Eq. 9."""
+
+    @property
+    def method(self) -> str:
+        """Key of the method."""
+
+    @property
+    def n_faces_asked(self) -> int:
+        """Facets asked for."""
+
+    @property
+    def reason(self) -> str | None:
+        """Why a request was not met."""
+
+
+@dataclass(frozen=True)
+class ShapeClass:
+    """What a representative stands for.
+
+    Parameters
+    ----------
+    weight
+        Any positive number; the weights of all classes are divided by their sum.
+    sizes
+        F_i.
+    n_members
+        Number of particles in the class.
+    """
+
+    weight: float
+    sizes: SizeDistribution
+    n_members: int = 1
+
+
+def build_dataset(
+    entries: Sequence[tuple[Particle, CoarsenedShape]],
+    classes: Sequence[ShapeClass] | None = None,
+    *,
+    name: str = "dataset",
+    weighting: Weighting = "number",
+    sizes: SizeDistribution | None = None,
+    provenance: Provenance | None = None,
+) -> Dataset:
+    """A dataset in which each entry is a representative.
+
+    Parameters
+    ----------
+    entries
+        Particles in micrometres, and what they were coarsened to.
+    classes
+        Weight and sizes of each, for example of
+        :func:`~regolith_studio.dataset.representatives.choose_representatives`; by default each entry
+        stands for itself, with the same weight and its own size.
+    weighting
+        What the weights of `classes` count.
+    sizes
+        One size distribution for all classes, in place of their own.
+    provenance
+        Software versions are filled in where they are missing.
+
+    Raises
+    ------
+    InputError
+        If there is no entry or as many classes as entries are missing.
+    """
+    if not entries:
+        raise InputError("A dataset needs at least one particle.")
+    own = [_own_class(particle) for particle, _ in entries] if classes is None else list(classes)
+    if len(own) != len(entries):
+        raise InputError(f"{len(entries)} particles need as many classes, got {len(own)}.")
+    weights = normalised_shares([one.weight for one in own])
+    names = unique_names(particle.name for particle, _ in entries)
+    representatives = tuple(
+        _representative(title, particle, shape, replace(one, weight=weight, sizes=sizes or one.sizes))
+        for title, (particle, shape), one, weight in zip(names, entries, own, weights, strict=True)
+    )
+    story = provenance or Provenance()
+    return Dataset(
+        name=name,
+        representatives=representatives,
+        weighting=weighting,
+        provenance=story if story.software else replace(story, software=software_versions()),
+    )
+
+
+def software_versions() -> dict[str, str]:
+    """Versions of the program and of the packages that its numbers come from."""
+    found = {"regolith-studio": regolith_studio.__version__}
+    for package in PACKAGES:
+        try:
+            found[package] = version(package)
+        except PackageNotFoundError:
+            continue
+    return found
+
+
+def unique_names(names: Iterable[str]) -> tuple[str, ...]:
+    """The names, later ones of the same name with -2, -3 ... behind."""
+    taken: set[str] = set()
+    result = []
+    for name in names:
+        candidate, number = name, 1
+        while candidate in taken:
+            number += 1
+            candidate = f"{name}-{number}"
+        taken.add(candidate)
+        result.append(candidate)
+    return tuple(result)
+
+
+def _own_class(particle: Particle) -> ShapeClass:
+    return ShapeClass(1.0, DiscreteSizes.empirical([equivalent_diameter(particle.mesh.volume)]))
+
+
+def _representative(
+    name: str, particle: Particle, coarsened: CoarsenedShape, own: ShapeClass
+) -> Representative:
+    shape, frame = aligned(coarsened.polyhedron, coarsened.centre)
+    fidelity = Fidelity(
+        method=coarsened.method,
+        n_faces_asked=coarsened.n_faces_asked,
+        errors=dict(coarsened.errors),
+        jaccard_distance=coarsened.jaccard_distance,
+        loss=coarsened.loss,
+        reason=coarsened.reason,
+    )
+    return Representative(
+        name=name,
+        shape=shape,
+        weight=own.weight,
+        sizes=own.sizes,
+        frame=frame,
+        n_members=own.n_members,
+        fidelity=fidelity,
+        group=particle.group,
+        source=particle.source,
+    )

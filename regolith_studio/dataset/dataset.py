@@ -1,0 +1,203 @@
+"""The dataset of section 2.5 as a value: representative shapes P_i, class weights, size distributions."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from regolith_studio.dataset.alignment import Frame
+from regolith_studio.dataset.size_distribution import (
+    WEIGHT_TOLERANCE,
+    SizeDistribution,
+    Weighting,
+    normalised_shares,
+)
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.geometry.particle import Source
+
+SHAPE_TOLERANCE = 1e-9
+"""How far a shape's volume may be from 1, and its centroid from the origin."""
+
+Setting = bool | int | float | str | None
+
+
+@dataclass(frozen=True)
+class Fidelity:
+    """How a shape was coarsened and how well it stands for its particle.
+
+    Parameters
+    ----------
+    method
+        Key of the coarsening method.
+    n_faces_asked
+        Facets asked for; the shape tells how many there are.
+    errors
+        Relative error of each descriptor of the loss (Eq. 8).
+    jaccard_distance
+        Eq. 7 (the paper's IoU): 0 same, 1 disjoint.
+    loss
+        Eq. 9.
+    reason
+        Why a request was not met, in one sentence, or ``None``.
+    """
+
+    method: str
+    n_faces_asked: int
+    errors: Mapping[str, float]
+    jaccard_distance: float
+    loss: float
+    reason: str | None = None
+
+
+@dataclass(frozen=True)
+class Representative:
+    """One class i of a dataset.
+
+    Parameters
+    ----------
+    name
+        Of the particle that was chosen; unique within the dataset.
+    shape
+        Unit volume, centroid at the origin, principal axes along x, y, z.
+    weight
+        alpha_i.
+    sizes
+        F_i, of equivalent diameters in micrometres.
+    frame
+        How the shape lay in its particle.
+    n_members
+        Number of particles that the class stands for.
+    fidelity
+        How it was coarsened, or ``None`` where the particle is a polyhedron already.
+    group, source
+        Of the particle.
+    """
+
+    name: str
+    shape: ConvexPolyhedron
+    weight: float
+    sizes: SizeDistribution
+    frame: Frame
+    n_members: int = 1
+    fidelity: Fidelity | None = None
+    group: str = ""
+    source: Source | None = None
+
+    def __post_init__(self) -> None:
+        volume, centroid = self.shape.volume, self.shape.centroid
+        if abs(volume - 1.0) > SHAPE_TOLERANCE or np.abs(centroid).max() > SHAPE_TOLERANCE:
+            raise ValueError(
+                f"the shape of {self.name} must have unit volume and its centroid at the origin, "
+                f"got {volume!r} and {centroid.tolist()}"
+            )
+
+
+@dataclass(frozen=True)
+class CoarseningRecord:
+    """What was asked of the coarsening of all shapes.
+
+    Parameters
+    ----------
+    method, n_faces, seed
+        As asked.
+    target
+        ``particle`` or ``fit``: what was imitated.
+    preset, weights
+        Name of the preset, if one was used, and the loss weights of Eq. 9.
+    settings
+        Of the method, by name.
+    """
+
+    method: str
+    n_faces: int
+    seed: int
+    target: str = "particle"
+    preset: str | None = None
+    weights: Mapping[str, float] = field(default_factory=dict)
+    settings: Mapping[str, Setting] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Provenance:
+    """How a dataset came about (the metadata of section 2.5).
+
+    Parameters
+    ----------
+    description
+        Free text.
+    processing_steps
+        One sentence a step, in order.
+    seed
+        Of what was drawn at random.
+    model
+        Stochastic model of the shapes, or ``None`` for measured ones.
+    l_max
+        Highest degree of the spherical harmonics.
+    angular_power_spectrum
+        A_l for l = 0..l_max, in square micrometres: variance per order at degree l (real orthonormal
+        harmonics).
+    coarsening
+        What was asked of the coarsening.
+    software
+        Versions by package name.
+    """
+
+    description: str = ""
+    processing_steps: tuple[str, ...] = ()
+    seed: int | None = None
+    model: str | None = None
+    l_max: int | None = None
+    angular_power_spectrum: tuple[float, ...] | None = None
+    coarsening: CoarseningRecord | None = None
+    software: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Dataset:
+    """Representative particles with weights and sizes.
+
+    Parameters
+    ----------
+    name
+        As the user calls it.
+    representatives
+        At least one; their weights add up to 1.
+    weighting
+        Whether the class weights count particles or their volume.
+    provenance
+        Where all this comes from.
+    """
+
+    name: str
+    representatives: tuple[Representative, ...]
+    weighting: Weighting = "number"
+    provenance: Provenance = field(default_factory=Provenance)
+
+    def __post_init__(self) -> None:
+        names = [representative.name for representative in self.representatives]
+        if not names:
+            raise ValueError("a dataset needs at least one representative")
+        if len(set(names)) != len(names):
+            raise ValueError("representatives must have different names")
+        if (
+            min(r.weight for r in self.representatives) < 0.0
+            or abs(self.weights.sum() - 1.0) > WEIGHT_TOLERANCE
+        ):
+            raise ValueError(f"weights must not be negative and add up to 1, got {self.weights.tolist()}")
+
+    def __len__(self) -> int:
+        return len(self.representatives)
+
+    @property
+    def weights(self) -> FloatArray:
+        """Class weights alpha_i as stated, shape (n,)."""
+        return np.array([representative.weight for representative in self.representatives])
+
+    def class_weights(self, weighting: Weighting) -> FloatArray:
+        """Class weights that count particles (``number``) or their volume, shape (n,)."""
+        if weighting == self.weighting:
+            return self.weights
+        cubes = np.array([representative.sizes.mean_cube() for representative in self.representatives])
+        factors = cubes / cubes.max() if weighting == "volume" else cubes.min() / cubes
+        return np.array(normalised_shares(self.weights * factors))

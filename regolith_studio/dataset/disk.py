@@ -1,0 +1,150 @@
+"""A folder that is replaced as a whole: whoever looks sees the old content or the new, never a mix.
+
+The new content is written into a hidden folder beside the target and brought to the disk (fsync);
+then the two folders change places in one step of the operating system. Where a system cannot swap
+(neither Linux nor macOS), the old folder is moved aside first; :func:`recovered` puts it back if the
+program dies in between.
+"""
+
+import contextlib
+import ctypes
+import glob
+import os
+import shutil
+import sys
+import time
+import uuid
+from collections.abc import Callable, Mapping
+from functools import cache
+from pathlib import Path
+
+_RENAME_SWAP = 2  # RENAME_EXCHANGE of Linux's renameat2 and RENAME_SWAP of macOS's renamex_np
+_AT_FDCWD = -100
+
+LEFTOVER_AGE = 3600.0
+"""Seconds after which what an interrupted write has left is taken for dead and removed."""
+
+
+def replace_folder(target: Path, files: Mapping[str, bytes]) -> None:
+    """Make `target` hold exactly `files` (relative POSIX paths), in one step.
+
+    Raises
+    ------
+    OSError
+        If something cannot be written; `target` is then as it was.
+    """
+    target.parent.mkdir(parents=True, exist_ok=True)
+    fresh = target.with_name(f".{target.name}.{uuid.uuid4().hex[:12]}.regolith-new")
+    try:
+        _fill(fresh, files)
+        _put_in_place(fresh, target)
+    except BaseException:
+        remove_quietly(fresh)
+        raise
+    remove_quietly(fresh)
+    _clear_old_leftovers(target)
+    with contextlib.suppress(OSError):
+        sync_folder(target.parent)
+
+
+def recovered(target: Path) -> Path:
+    """`target`, put back first if a replacement was interrupted where folders cannot be swapped."""
+    aside = _aside(target)
+    if not target.exists() and aside.is_dir():
+        with contextlib.suppress(OSError):
+            os.rename(aside, target)  # noqa: PTH104 - all steps on the disk go through os
+    return target
+
+
+def leftovers(target: Path) -> list[Path]:
+    """Hidden folders beside `target` that interrupted writes have left, or that others are writing."""
+    return sorted(target.parent.glob(f".{glob.escape(target.name)}.????????????.regolith-new"))
+
+
+def _clear_old_leftovers(target: Path) -> None:
+    for folder in leftovers(target):
+        with contextlib.suppress(OSError):
+            if time.time() - folder.stat().st_mtime > LEFTOVER_AGE:
+                remove_quietly(folder)
+
+
+def remove_quietly(folder: Path) -> None:
+    """Remove a folder of ours if it is there; what cannot be removed stays."""
+    shutil.rmtree(folder, ignore_errors=True)
+
+
+def write_file(path: Path, content: bytes) -> None:
+    """Write a new file and bring it to the disk."""
+    handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o666)
+    try:
+        rest = memoryview(content)
+        while rest:
+            rest = rest[os.write(handle, rest) :]
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
+def sync_folder(folder: Path) -> None:
+    """Bring a folder's list of names to the disk, where the system can."""
+    if os.name == "nt":
+        return
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
+def _fill(folder: Path, files: Mapping[str, bytes]) -> None:
+    os.mkdir(folder)  # noqa: PTH102
+    folders = {folder}
+    for name, content in files.items():
+        path = folder.joinpath(*name.split("/"))
+        if path.parent not in folders:
+            os.mkdir(path.parent)  # noqa: PTH102
+            folders.add(path.parent)
+        write_file(path, content)
+    for inner in sorted(folders, key=lambda one: len(one.parts), reverse=True):
+        sync_folder(inner)
+
+
+def _put_in_place(fresh: Path, target: Path) -> None:
+    """Move `fresh` to `target`; afterwards `fresh` holds the old content, if there was any."""
+    if not target.exists():
+        os.rename(fresh, target)  # noqa: PTH104
+        return
+    if swap_folders(fresh, target):
+        return
+    aside = _aside(target)
+    remove_quietly(aside)
+    os.rename(target, aside)  # noqa: PTH104
+    try:
+        os.rename(fresh, target)  # noqa: PTH104
+    except OSError:
+        os.rename(aside, target)  # noqa: PTH104
+        raise
+    remove_quietly(aside)
+
+
+def swap_folders(first: Path, second: Path) -> bool:
+    """Let two folders change places in one step; False where system or file system cannot."""
+    swap = _system_swap()
+    return swap is not None and swap(os.fsencode(first), os.fsencode(second)) == 0
+
+
+@cache
+def _system_swap() -> Callable[[bytes, bytes], int] | None:
+    try:
+        library = ctypes.CDLL(None, use_errno=True)
+        if sys.platform == "darwin":
+            apple = library.renamex_np
+            return lambda first, second: int(apple(first, second, _RENAME_SWAP))
+        linux = library.renameat2
+    except (OSError, AttributeError, TypeError):
+        return None
+    return lambda first, second: int(linux(_AT_FDCWD, first, _AT_FDCWD, second, _RENAME_SWAP))
+
+
+def _aside(target: Path) -> Path:
+    return target.with_name(f".{target.name}.regolith-old")

@@ -1,0 +1,209 @@
+"""Between the dataset as a value and its ``dataset.json``."""
+
+import hashlib
+from typing import Any
+
+import numpy as np
+from pydantic import ValidationError
+
+from regolith_studio.dataset.alignment import Frame
+from regolith_studio.dataset.dataset import (
+    CoarseningRecord,
+    Dataset,
+    Fidelity,
+    Provenance,
+    Representative,
+)
+from regolith_studio.dataset.schema import FORMAT, SCHEMA_VERSION, DatasetDocument, RepresentativeRecord
+from regolith_studio.dataset.strict_json import strict_json, tidy_json
+from regolith_studio.errors import DatasetError, RegolithError
+from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.geometry.half_spaces import HalfSpaces
+from regolith_studio.geometry.particle import Source
+from regolith_studio.imaging.stl import stl_bytes
+
+
+def mesh_files(dataset: Dataset) -> dict[str, bytes]:
+    """Relative path and content of the STL file of each representative, in order."""
+    digits = max(4, len(str(len(dataset) - 1)))
+    return {
+        f"meshes/particle_{index:0{digits}d}.stl": stl_bytes(
+            representative.shape.mesh, f"regolith-studio unit-volume shape {index:0{digits}d}"
+        )
+        for index, representative in enumerate(dataset.representatives)
+    }
+
+
+def document_text(dataset: Dataset, files: dict[str, bytes]) -> str:
+    """The content of ``dataset.json``, the same for the same dataset.
+
+    Raises
+    ------
+    DatasetError
+        If the dataset holds what the schema forbids, such as an error that is not finite.
+    """
+    records = [
+        _record(representative, file, content)
+        for representative, (file, content) in zip(dataset.representatives, files.items(), strict=True)
+    ]
+    content = {
+        "format": FORMAT,
+        "schema_version": SCHEMA_VERSION,
+        "name": dataset.name,
+        "length_unit": "um",
+        "shape_unit": "unit volume",
+        "size_measure": "equivalent diameter",
+        "vertical_axis": "z",
+        "weighting": dataset.weighting,
+        "representatives": records,
+        "metadata": _metadata(dataset.provenance),
+    }
+    try:
+        text = tidy_json(content)
+    except ValueError as error:
+        raise DatasetError(f"The dataset cannot be written: {error}.") from error
+    parsed_document(text, "The new dataset.json")
+    return text
+
+
+def parsed_document(text: str, where: str) -> DatasetDocument:
+    """The checked content of a ``dataset.json``.
+
+    Raises
+    ------
+    DatasetError
+        Naming the first place where it breaks the schema.
+    """
+    content = strict_json(text, where)
+    if not isinstance(content, dict) or content.get("format") != FORMAT:
+        raise DatasetError(f"{where} is not a dataset of Regolith Studio: its format is not {FORMAT!r}.")
+    if content.get("schema_version") != SCHEMA_VERSION:
+        raise DatasetError(
+            f"{where} has schema version {content.get('schema_version')!r}; "
+            f"this program reads version {SCHEMA_VERSION}."
+        )
+    try:
+        return DatasetDocument.model_validate_json(text)
+    except ValidationError as error:
+        raise DatasetError(f"{where} breaks the schema: {_first(error)}.") from error
+
+
+def dataset_of(document: DatasetDocument, where: str) -> Dataset:
+    """The dataset that a document describes.
+
+    Raises
+    ------
+    DatasetError
+        If half-spaces bound no unit volume or a frame is none.
+    """
+    return Dataset(
+        name=document.name,
+        representatives=tuple(_representative(record, where) for record in document.representatives),
+        weighting=document.weighting,
+        provenance=_provenance(document),
+    )
+
+
+def shape_of(record: RepresentativeRecord) -> ConvexPolyhedron:
+    """The polyhedron of the record's half-spaces, exactly as it was written.
+
+    Raises
+    ------
+    GeometryError
+        If they bound no volume.
+    """
+    planes = HalfSpaces(np.array(record.half_spaces.normals), np.array(record.half_spaces.offsets))
+    return ConvexPolyhedron.from_half_spaces(planes)
+
+
+def _representative(record: RepresentativeRecord, where: str) -> Representative:
+    try:
+        return Representative(
+            name=record.name,
+            shape=shape_of(record),
+            weight=record.weight,
+            sizes=record.sizes,
+            frame=Frame(
+                np.array(record.frame.rotation), np.array(record.frame.centroid_um), record.frame.scale_um
+            ),
+            n_members=record.n_members,
+            fidelity=None if record.fidelity is None else Fidelity(**record.fidelity.model_dump()),
+            group=record.group,
+            source=None if record.source is None else Source(**record.source.model_dump()),
+        )
+    except (RegolithError, ValueError) as error:
+        raise DatasetError(f"{where}: the representative {record.name} cannot be used: {error}") from error
+
+
+def _provenance(document: DatasetDocument) -> Provenance:
+    fields = document.metadata.model_dump()
+    coarsening = fields.pop("coarsening")
+    return Provenance(
+        angular_power_spectrum=fields.pop("angular_power_spectrum_um2"),
+        coarsening=None if coarsening is None else CoarseningRecord(**coarsening),
+        **fields,
+    )
+
+
+def _record(representative: Representative, file: str, content: bytes) -> dict[str, Any]:
+    shape, frame = representative.shape, representative.frame
+    fidelity, source = representative.fidelity, representative.source
+    return {
+        "name": representative.name,
+        "group": representative.group,
+        "weight": representative.weight,
+        "n_members": representative.n_members,
+        "sizes": representative.sizes.model_dump(mode="json"),
+        "mesh": {
+            "file": file,
+            "sha256": hashlib.sha256(content).hexdigest(),
+            "n_faces": shape.n_faces,
+            "n_vertices": shape.n_vertices,
+            "n_triangles": shape.n_triangles,
+        },
+        "half_spaces": {
+            "normals": shape.half_spaces.normals.tolist(),
+            "offsets": shape.half_spaces.offsets.tolist(),
+        },
+        "frame": {
+            "rotation": frame.rotation.tolist(),
+            "centroid_um": frame.centroid.tolist(),
+            "scale_um": frame.scale,
+        },
+        "fidelity": None if fidelity is None else _plain(vars(fidelity)),
+        "source": None if source is None else _plain(vars(source)),
+    }
+
+
+def _metadata(provenance: Provenance) -> dict[str, Any]:
+    fields = _plain(vars(provenance))
+    fields["angular_power_spectrum_um2"] = fields.pop("angular_power_spectrum")
+    if provenance.coarsening is not None:
+        fields["coarsening"] = _plain(vars(provenance.coarsening))
+    return fields
+
+
+def _plain(fields: dict[str, Any]) -> dict[str, Any]:
+    """Mappings as dictionaries and numpy's numbers as Python's."""
+    plain: dict[str, Any] = {}
+    for key, value in fields.items():
+        if hasattr(value, "items"):
+            plain[key] = {name: _number(inner) for name, inner in value.items()}
+        elif isinstance(value, tuple):
+            plain[key] = [_number(inner) for inner in value]
+        else:
+            plain[key] = _number(value)
+    return plain
+
+
+def _number(value: Any) -> Any:
+    return value.item() if isinstance(value, np.generic) else value
+
+
+def _first(error: ValidationError) -> str:
+    """Place and reason of the first of a validation's errors."""
+    first = error.errors(include_url=False)[0]
+    place = ""
+    for part in first["loc"]:
+        place += f"[{part}]" if isinstance(part, int) else f".{part}" if place else part
+    return f"{place or 'the whole'}: {first['msg']}"

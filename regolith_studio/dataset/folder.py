@@ -1,0 +1,137 @@
+"""A dataset as a folder: ``dataset.json``, ``meshes/*.stl`` and a README, written as a whole (2.5)."""
+
+import hashlib
+from pathlib import Path
+
+from regolith_studio.dataset.dataset import Dataset
+from regolith_studio.dataset.disk import recovered, replace_folder
+from regolith_studio.dataset.document import dataset_of, document_text, mesh_files, parsed_document
+from regolith_studio.dataset.readme_text import readme_text
+from regolith_studio.dataset.schema import DatasetDocument
+from regolith_studio.errors import DatasetError
+
+DOCUMENT, README = "dataset.json", "README.txt"
+LARGEST_DOCUMENT = 200_000_000
+LARGEST_MESH = 50_000_000
+
+
+def write_dataset(folder: Path | str, dataset: Dataset, *, overwrite: bool = True) -> Path:
+    """Write the dataset; the folder then holds it and nothing else, or is as it was before.
+
+    Parameters
+    ----------
+    folder
+        New, empty, or holding a dataset of this program and nothing else.
+    overwrite
+        Whether a dataset that is there already may be replaced.
+
+    Returns
+    -------
+    Path
+        The folder.
+
+    Raises
+    ------
+    DatasetError
+        If the folder holds anything else, or something cannot be written.
+    """
+    target = Path(folder).resolve()
+    files = dataset_files(dataset)
+    try:
+        recovered(target)
+        _check_replaceable(target, overwrite)
+        replace_folder(target, files)
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise DatasetError(f"The dataset could not be written to {target}: {reason}.") from error
+    return target
+
+
+def dataset_files(dataset: Dataset) -> dict[str, bytes]:
+    """Every file of the folder by its relative path, the same bytes for the same dataset."""
+    meshes = mesh_files(dataset)
+    texts = {DOCUMENT: document_text(dataset, meshes), README: readme_text(dataset)}
+    return meshes | {name: text.encode("utf-8") for name, text in texts.items()}
+
+
+def read_dataset(folder: Path | str) -> Dataset:
+    """The dataset of a folder; shapes from their exact half-spaces, meshes checked against their hashes.
+
+    Raises
+    ------
+    DatasetError
+        If the folder holds no dataset, or one that is broken, with the place named.
+    """
+    target = recovered(Path(folder).resolve())
+    document = read_document(target)
+    for record in document.representatives:
+        if hashlib.sha256(read_mesh_bytes(target, record.mesh.file)).hexdigest() != record.mesh.sha256:
+            raise DatasetError(f"{target / record.mesh.file} is not the file that dataset.json describes.")
+    return dataset_of(document, str(target / DOCUMENT))
+
+
+def read_document(folder: Path) -> DatasetDocument:
+    """The checked ``dataset.json`` of a folder.
+
+    Raises
+    ------
+    DatasetError
+        If it is missing, too large or breaks the schema.
+    """
+    path = folder / DOCUMENT
+    try:
+        text = _read(path, LARGEST_DOCUMENT).decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise DatasetError(f"{path} is not text in UTF-8.") from error
+    return parsed_document(text, str(path))
+
+
+def read_mesh_bytes(folder: Path, file: str) -> bytes:
+    """Content of a mesh file whose relative path the schema has admitted.
+
+    Raises
+    ------
+    DatasetError
+        If it is missing, too large, or leads out of the folder by a link.
+    """
+    path = folder.joinpath(*file.split("/"))
+    if not path.resolve().is_relative_to(folder.resolve()):
+        raise DatasetError(f"{path} leads out of the dataset's folder.")
+    return _read(path, LARGEST_MESH)
+
+
+def foreign_files(folder: Path, document: DatasetDocument) -> list[str]:
+    """Files and folders below `folder` that do not belong to its dataset, as relative POSIX paths."""
+    own = {DOCUMENT, README, "meshes", *(record.mesh.file for record in document.representatives)}
+    found = {path.relative_to(folder).as_posix() for path in folder.rglob("*")}
+    return sorted(found - own)
+
+
+def _check_replaceable(target: Path, overwrite: bool) -> None:
+    if not target.exists():
+        return
+    if not target.is_dir():
+        raise DatasetError(f"{target} is a file; a dataset is written into a folder.")
+    if not any(target.iterdir()):
+        return
+    try:
+        document = read_document(target)
+    except DatasetError as error:
+        raise DatasetError(
+            f"{target} is not empty and holds no dataset that could be replaced; choose another folder."
+        ) from error
+    if foreign := foreign_files(target, document):
+        raise DatasetError(
+            f"{target} also holds files that are not the dataset's ({foreign[0]}); nothing was overwritten."
+        )
+    if not overwrite:
+        raise DatasetError(f"{target} holds a dataset already; nothing was overwritten.")
+
+
+def _read(path: Path, largest: int) -> bytes:
+    try:
+        if path.stat().st_size > largest:
+            raise DatasetError(f"{path} is larger than {largest // 1_000_000} MB.")
+        return path.read_bytes()
+    except OSError as error:
+        raise DatasetError(f"{path} cannot be read: {error.strerror or error}.") from error

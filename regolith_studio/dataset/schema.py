@@ -1,0 +1,182 @@
+"""What ``dataset.json`` holds, field by field; the published JSON Schema is made from this.
+
+Run ``python -m regolith_studio.dataset.schema FILE`` to write ``resources/schema/dataset.schema.json`` anew.
+"""
+
+import json
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from regolith_studio.dataset.size_distribution import WEIGHT_TOLERANCE, AnySizes, Weighting
+
+FORMAT = "regolith-studio-dataset"
+SCHEMA_VERSION = 1
+MESH_PATH = r"^meshes/[A-Za-z0-9_][A-Za-z0-9_.-]*\.stl$"
+
+Sha256 = Annotated[str, Field(pattern=r"^[0-9a-f]{64}$", description="SHA-256 of the file's bytes.")]
+Triple = tuple[float, float, float]
+Scalar = bool | int | float | str | None
+
+
+class Record(BaseModel):
+    """Base of all records: frozen, no unknown fields, no infinities, no silent conversions."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+
+
+class MeshRecord(Record):
+    """The STL file of a representative: the facets cut into triangles, outward normals, float32."""
+
+    file: Annotated[
+        str, Field(pattern=MESH_PATH, description="Relative to dataset.json, with forward slashes.")
+    ]
+    sha256: Sha256
+    n_faces: Annotated[int, Field(ge=4, description="Polygonal facets, which is what n faces means.")]
+    n_vertices: Annotated[int, Field(ge=4)]
+    n_triangles: Annotated[int, Field(ge=4)]
+
+
+class HalfSpacesRecord(Record):
+    """The shape exactly: all x with <normal_i, x> <= offset_i, dimensionless, unit volume."""
+
+    normals: tuple[Triple, ...] = Field(min_length=4, description="Outward unit normals.")
+    offsets: tuple[Annotated[float, Field(gt=0.0)], ...] = Field(min_length=4)
+
+    @model_validator(mode="after")
+    def _fits(self) -> Self:
+        if len(self.normals) != len(self.offsets):
+            raise ValueError(f"{len(self.normals)} normals need as many offsets, got {len(self.offsets)}")
+        return self
+
+
+class FrameRecord(Record):
+    """Where the shape lay in its particle: x_shape = rotation (x_particle - centroid) / scale."""
+
+    rotation: tuple[Triple, Triple, Triple] = Field(description="Row by row.")
+    centroid_um: Triple
+    scale_um: Annotated[float, Field(gt=0.0, description="Cube root of the polyhedron's volume.")]
+
+
+class FidelityRecord(Record):
+    """How well the shape stands for its particle."""
+
+    method: str
+    n_faces_asked: int
+    errors: dict[str, float] = Field(description="Relative error of each descriptor (Eq. 8).")
+    jaccard_distance: float = Field(description="Eq. 7; 0 same, 1 disjoint.")
+    loss: float = Field(description="Eq. 9.")
+    reason: str | None = Field(description="Why a request was not met.")
+
+
+class SourceRecord(Record):
+    """A file that was measured, as the user named it."""
+
+    path: str
+    sha256: str
+    unit: str = Field(description="Length unit that the file's numbers were taken in.")
+
+
+class RepresentativeRecord(Record):
+    """One class: a unit-volume shape, its weight alpha_i and its size distribution F_i."""
+
+    name: Annotated[str, Field(min_length=1)]
+    group: str
+    weight: Annotated[float, Field(ge=0.0, le=1.0)]
+    n_members: Annotated[int, Field(ge=1, description="Particles that the class stands for.")]
+    sizes: AnySizes
+    mesh: MeshRecord
+    half_spaces: HalfSpacesRecord
+    frame: FrameRecord
+    fidelity: FidelityRecord | None
+    source: SourceRecord | None
+
+
+class CoarseningRecordModel(Record):
+    """What was asked of the coarsening of all shapes."""
+
+    method: str
+    n_faces: int
+    seed: int
+    target: str = Field(description="particle, or fit: what was imitated.")
+    preset: str | None
+    weights: dict[str, float] = Field(description="Loss weights of Eq. 9.")
+    settings: dict[str, Scalar]
+
+
+class MetadataRecord(Record):
+    """How the dataset came about."""
+
+    description: str
+    processing_steps: tuple[str, ...]
+    seed: int | None
+    model: str | None = Field(description="Stochastic model of the shapes; null for measured ones.")
+    l_max: Annotated[int, Field(ge=0)] | None
+    angular_power_spectrum_um2: tuple[Annotated[float, Field(ge=0.0)], ...] | None = Field(
+        description="A_l, l = 0..l_max, variance per order (real orthonormal, no Condon-Shortley phase)."
+    )
+    coarsening: CoarseningRecordModel | None
+    software: dict[str, str] = Field(description="Versions by package.")
+
+
+class DatasetDocument(Record):
+    """A dataset of representative particles (section 2.5)."""
+
+    format: Literal["regolith-studio-dataset"]
+    schema_version: Literal[1]
+    name: str
+    length_unit: Literal["um"] = Field(description="Of all lengths whose key ends in _um.")
+    shape_unit: Literal["unit volume"] = Field(description="Shapes have volume 1 and no length unit.")
+    size_measure: Literal["equivalent diameter"] = Field(
+        description="Diameter of the ball of the same volume."
+    )
+    vertical_axis: Literal["z"]
+    weighting: Weighting = Field(
+        description="Whether weights count particles, or their volume (mass, at one density)."
+    )
+    representatives: tuple[RepresentativeRecord, ...] = Field(min_length=1)
+    metadata: MetadataRecord
+
+    @model_validator(mode="after")
+    def _fits(self) -> Self:
+        total = sum(record.weight for record in self.representatives)
+        if abs(total - 1.0) > WEIGHT_TOLERANCE:
+            raise ValueError(f"weights must add up to 1 within {WEIGHT_TOLERANCE}, they add up to {total!r}")
+        for key, values in (
+            ("names", [record.name for record in self.representatives]),
+            ("mesh files", [record.mesh.file.casefold() for record in self.representatives]),
+        ):
+            if len(set(values)) != len(values):
+                raise ValueError(f"{key} of representatives must differ")
+        return self
+
+
+def json_schema() -> dict[str, Any]:
+    """The published schema, JSON Schema 2020-12."""
+    schema = DatasetDocument.model_json_schema()
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "$id": f"{FORMAT}-{SCHEMA_VERSION}",
+        **schema,
+    }
+
+
+def schema_text() -> str:
+    """The published schema as the file has it."""
+    return json.dumps(json_schema(), indent=2, sort_keys=True) + "\n"
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Write the schema to the file named on the command line."""
+    if len(arguments) != 1:
+        sys.stderr.write("usage: python -m regolith_studio.dataset.schema FILE\n")
+        return 2
+    Path(arguments[0]).write_text(schema_text(), encoding="utf-8", newline="\n")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

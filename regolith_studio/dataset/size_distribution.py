@@ -1,0 +1,299 @@
+"""Size distributions F_i of section 2.5: of equivalent diameters, in micrometres.
+
+Each says whether its shares count particles (``number``) or their volume (``volume``; at one
+density the same as mass). The two differ by a factor d^3: ``weighted`` converts.
+"""
+
+from abc import abstractmethod
+from collections.abc import Sequence
+from typing import Annotated, Literal, Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+from scipy.special import gamma, gammainc, gammaincc, ndtr, ndtri
+
+from regolith_studio.errors import InputError
+from regolith_studio.geometry.arrays import FloatArray
+
+Weighting = Literal["number", "volume"]
+Diameter = Annotated[float, Field(gt=0.0, description="Equivalent diameter in micrometres.")]
+Share = Annotated[float, Field(ge=0.0, le=1.0)]
+
+WEIGHT_TOLERANCE = 1e-12
+"""How far a sum of shares may be from 1."""
+
+
+class SizeDistribution(BaseModel):
+    """A distribution of equivalent diameters; frozen, and the same in memory and in JSON."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+
+    weighting: Weighting = Field("number", description="What a share counts: particles, or their volume.")
+
+    @abstractmethod
+    def cdf(self, diameters: ArrayLike) -> FloatArray:
+        """Share at or below each diameter (µm), of any shape."""
+
+    @abstractmethod
+    def quantile(self, probabilities: ArrayLike) -> FloatArray:
+        """Smallest diameter (µm) with at least each share at or below it."""
+
+    @abstractmethod
+    def moment(self, power: float) -> float:
+        """Mean of d^power, in µm^power."""
+
+    @abstractmethod
+    def _by_cube(self, power: int, weighting: Weighting) -> "SizeDistribution":
+        """The distribution whose density is proportional to d^power times this one's."""
+
+    def weighted(self, weighting: Weighting) -> "SizeDistribution":
+        """The same particles, counted by number or by volume.
+
+        Raises
+        ------
+        InputError
+            If the conversion has no finite answer.
+        """
+        if weighting == self.weighting:
+            return self
+        return self._by_cube(3 if weighting == "volume" else -3, weighting)
+
+    def mean_cube(self) -> float:
+        """Mean of d^3 over particles, in µm^3."""
+        return self.moment(3) if self.weighting == "number" else 1.0 / self.moment(-3)
+
+
+class DiscreteSizes(SizeDistribution):
+    """Certain diameters with their shares: measured particles, or the classes of the paper's Table 1."""
+
+    type: Literal["discrete"] = "discrete"
+    diameters_um: tuple[Diameter, ...] = Field(min_length=1, description="Strictly ascending.")
+    shares: tuple[Share, ...] = Field(description="Share of each diameter; the sum is 1.")
+
+    @model_validator(mode="after")
+    def _fits(self) -> Self:
+        _check_ascending(self.diameters_um)
+        _check_shares(self.shares, len(self.diameters_um))
+        return self
+
+    @classmethod
+    def empirical(cls, diameters: ArrayLike, weighting: Weighting = "number") -> "DiscreteSizes":
+        """Of measured diameters (µm), each with the same share; equal ones are joined."""
+        values, counts = np.unique(np.asarray(diameters, dtype=np.float64), return_counts=True)
+        return cls.of(values, counts, weighting)
+
+    @classmethod
+    def of(cls, diameters: ArrayLike, amounts: ArrayLike, weighting: Weighting = "number") -> "DiscreteSizes":
+        """Of ascending diameters (µm) and amounts that need not add up to 1."""
+        values = np.asarray(diameters, dtype=np.float64).tolist()
+        return cls(weighting=weighting, diameters_um=tuple(values), shares=normalised_shares(amounts))
+
+    def cdf(self, diameters: ArrayLike) -> FloatArray:
+        place = np.searchsorted(self.diameters_um, np.asarray(diameters, dtype=np.float64), side="right")
+        return np.asarray(np.concatenate([[0.0], _rising(self.shares)])[place])
+
+    def quantile(self, probabilities: ArrayLike) -> FloatArray:
+        place = np.searchsorted(_rising(self.shares), np.asarray(probabilities, dtype=np.float64))
+        return np.asarray(np.array(self.diameters_um)[np.minimum(place, len(self.shares) - 1)])
+
+    def moment(self, power: float) -> float:
+        return float(np.array(self.diameters_um) ** power @ np.array(self.shares))
+
+    def _by_cube(self, power: int, weighting: Weighting) -> "DiscreteSizes":
+        scaled = np.array(self.diameters_um) / max(self.diameters_um)
+        return DiscreteSizes.of(self.diameters_um, np.array(self.shares) * scaled**power, weighting)
+
+
+class SieveSizes(SizeDistribution):
+    """Shares between neighbouring sieve openings, even within each class: F is piecewise linear."""
+
+    type: Literal["sieve"] = "sieve"
+    openings_um: tuple[Diameter, ...] = Field(min_length=2, description="Strictly ascending.")
+    shares: tuple[Share, ...] = Field(description="Share between each opening and the next; the sum is 1.")
+
+    @model_validator(mode="after")
+    def _fits(self) -> Self:
+        _check_ascending(self.openings_um)
+        _check_shares(self.shares, len(self.openings_um) - 1)
+        return self
+
+    @classmethod
+    def of(cls, openings: ArrayLike, amounts: ArrayLike, weighting: Weighting = "number") -> "SieveSizes":
+        """Of ascending openings (µm) and amounts that need not add up to 1."""
+        values = np.asarray(openings, dtype=np.float64).tolist()
+        return cls(weighting=weighting, openings_um=tuple(values), shares=normalised_shares(amounts))
+
+    def cdf(self, diameters: ArrayLike) -> FloatArray:
+        return np.asarray(
+            np.interp(
+                np.asarray(diameters, dtype=np.float64),
+                self.openings_um,
+                np.concatenate([[0.0], _rising(self.shares)]),
+            )
+        )
+
+    def quantile(self, probabilities: ArrayLike) -> FloatArray:
+        rising, openings = np.concatenate([[0.0], _rising(self.shares)]), np.array(self.openings_um)
+        wanted = np.asarray(probabilities, dtype=np.float64)
+        upper = np.clip(np.searchsorted(rising, wanted), 1, len(openings) - 1)
+        step = np.maximum(rising[upper] - rising[upper - 1], np.finfo(float).tiny)
+        share = np.clip((wanted - rising[upper - 1]) / step, 0.0, 1.0)
+        return np.asarray(openings[upper - 1] + share * (openings[upper] - openings[upper - 1]))
+
+    def moment(self, power: float) -> float:
+        return float(_interval_means(np.array(self.openings_um), power) @ np.array(self.shares))
+
+    def refined(self, parts: int) -> "SieveSizes":
+        """The same distribution with each class cut into `parts`, evenly in ln d."""
+        pairs = zip(self.openings_um[:-1], self.openings_um[1:], strict=True)
+        inner = [np.geomspace(low, high, parts, endpoint=False)[1:] for low, high in pairs]
+        openings = np.sort(np.concatenate([self.openings_um, *inner]))
+        return SieveSizes.of(openings, np.diff(self.cdf(openings)), self.weighting)
+
+    def _by_cube(self, power: int, weighting: Weighting) -> "SieveSizes":
+        """What is even within a class is not even in the other count: the classes are cut finer first."""
+        fine = self.refined(24) if len(self.shares) < 200 else self
+        openings = np.array(fine.openings_um)
+        means = _interval_means(openings / openings[-1], power)
+        return SieveSizes.of(openings, np.array(fine.shares) * means, weighting)
+
+
+class LogNormalSizes(SizeDistribution):
+    """Normal distribution of ln d."""
+
+    type: Literal["log-normal"] = "log-normal"
+    median_um: Diameter
+    log_deviation: Annotated[float, Field(gt=0.0, le=5.0, description="Standard deviation of ln d.")]
+
+    def cdf(self, diameters: ArrayLike) -> FloatArray:
+        values = np.maximum(np.asarray(diameters, dtype=np.float64), 0.0)
+        with np.errstate(divide="ignore"):
+            return np.asarray(ndtr(np.log(values / self.median_um) / self.log_deviation))
+
+    def quantile(self, probabilities: ArrayLike) -> FloatArray:
+        return np.asarray(
+            self.median_um * np.exp(self.log_deviation * ndtri(np.asarray(probabilities, dtype=np.float64)))
+        )
+
+    def moment(self, power: float) -> float:
+        return float(self.median_um**power * np.exp((power * self.log_deviation) ** 2 / 2))
+
+    def _by_cube(self, power: int, weighting: Weighting) -> "LogNormalSizes":
+        """Hatch and Choate: the median moves by exp(power sigma^2), sigma stays."""
+        median = self.median_um * float(np.exp(power * self.log_deviation**2))
+        return LogNormalSizes(weighting=weighting, median_um=median, log_deviation=self.log_deviation)
+
+
+class RosinRammlerSizes(SizeDistribution):
+    """F(d) = 1 - exp(-(d / scale)^shape), cut off at a smallest and a largest diameter."""
+
+    type: Literal["rosin-rammler"] = "rosin-rammler"
+    scale_um: Diameter = Field(description="Diameter below which 63.2 % lie, before the cut.")
+    shape: Annotated[float, Field(gt=0.0, le=100.0)]
+    smallest_um: Diameter
+    largest_um: Diameter
+
+    @model_validator(mode="after")
+    def _fits(self) -> Self:
+        _check_ascending((self.smallest_um, self.largest_um))
+        low, high = self._limits
+        if not high - low > 1e-9:
+            raise ValueError("hardly anything lies between the smallest and the largest diameter")
+        return self
+
+    def cdf(self, diameters: ArrayLike) -> FloatArray:
+        low, high = self._limits
+        inside = np.clip(np.asarray(diameters, dtype=np.float64), self.smallest_um, self.largest_um)
+        return np.asarray((self._uncut(inside) - low) / (high - low))
+
+    def quantile(self, probabilities: ArrayLike) -> FloatArray:
+        low, high = self._limits
+        share = low + np.asarray(probabilities, dtype=np.float64) * (high - low)
+        values = self.scale_um * (-np.log1p(-np.minimum(share, 1 - 1e-16))) ** (1 / self.shape)
+        return np.asarray(np.clip(values, self.smallest_um, self.largest_um))
+
+    def moment(self, power: float) -> float:
+        """By the incomplete gamma function; by a fine sum where its argument is not positive."""
+        low, high = self._limits
+        order = 1 + power / self.shape
+        if order <= 0:
+            return self.as_classes(4000).moment(power)
+        a, b = ((d / self.scale_um) ** self.shape for d in (self.smallest_um, self.largest_um))
+        between = (
+            gammainc(order, b) - gammainc(order, a)
+            if a < order
+            else gammaincc(order, a) - gammaincc(order, b)
+        )
+        return float(self.scale_um**power * gamma(order) * between / (high - low))
+
+    def as_classes(self, count: int = 400) -> SieveSizes:
+        """The same distribution as sieve classes between evenly spaced logarithms of the diameter."""
+        openings = np.geomspace(self.smallest_um, self.largest_um, count + 1)
+        openings[[0, -1]] = self.smallest_um, self.largest_um
+        return SieveSizes.of(openings, np.diff(self.cdf(openings)), self.weighting)
+
+    def _by_cube(self, power: int, weighting: Weighting) -> SieveSizes:
+        """No closed form: as 400 sieve classes."""
+        return self.as_classes()._by_cube(power, weighting)
+
+    def _uncut(self, diameters: ArrayLike) -> FloatArray:
+        return np.asarray(-np.expm1(-((np.asarray(diameters) / self.scale_um) ** self.shape)))
+
+    @property
+    def _limits(self) -> tuple[float, float]:
+        low, high = self._uncut([self.smallest_um, self.largest_um])
+        return float(low), float(high)
+
+
+AnySizes = Annotated[
+    DiscreteSizes | SieveSizes | LogNormalSizes | RosinRammlerSizes, Field(discriminator="type")
+]
+"""Every kind of size distribution, told apart by its ``type``."""
+
+
+def normalised_shares(amounts: ArrayLike) -> tuple[float, ...]:
+    """Amounts divided by their sum, which then is 1 within :data:`WEIGHT_TOLERANCE`.
+
+    Raises
+    ------
+    InputError
+        If an amount is negative or all are zero.
+    """
+    values = np.asarray(amounts, dtype=np.float64)
+    if not np.isfinite(values).all() or (values < 0).any() or not values.sum() > 0:
+        raise InputError("Weights must not be negative, and at least one must be positive.")
+    shares = values / values.sum()
+    return tuple((shares / shares.sum()).tolist())
+
+
+def equivalent_diameter(volume: float) -> float:
+    """Diameter of the ball of `volume`."""
+    return float((6.0 * volume / np.pi) ** (1 / 3))
+
+
+def _rising(shares: Sequence[float]) -> FloatArray:
+    """Cumulative shares that end at exactly 1."""
+    total = np.cumsum(shares)
+    total[-1] = 1.0
+    return np.asarray(np.minimum(total, 1.0))
+
+
+def _interval_means(openings: FloatArray, power: float) -> FloatArray:
+    """Mean of d^power over each interval between openings."""
+    low, high = openings[:-1], openings[1:]
+    if power == -1:
+        return np.asarray(np.log(high / low) / (high - low))
+    return np.asarray((high ** (power + 1) - low ** (power + 1)) / (power + 1) / (high - low))
+
+
+def _check_ascending(diameters: Sequence[float]) -> None:
+    if not (np.diff(diameters) > 0).all():
+        raise ValueError("diameters must be strictly ascending")
+
+
+def _check_shares(shares: Sequence[float], count: int) -> None:
+    if len(shares) != count:
+        raise ValueError(f"{count} shares are needed, got {len(shares)}")
+    if abs(sum(shares) - 1.0) > WEIGHT_TOLERANCE:
+        raise ValueError(f"shares must add up to 1, they add up to {sum(shares)!r}")

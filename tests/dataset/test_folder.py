@@ -1,0 +1,147 @@
+"""The dataset folder: what is written is read back exactly, and nothing foreign is overwritten."""
+
+import hashlib
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+
+from regolith_studio.dataset.folder import read_dataset, write_dataset
+from regolith_studio.dataset.validation import validate_dataset
+from regolith_studio.errors import DatasetError
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {
+        p.relative_to(folder).as_posix(): p.read_bytes() for p in sorted(folder.rglob("*")) if p.is_file()
+    }
+
+
+def test_that_a_dataset_comes_back_as_it_was(tmp_path: Path, make_dataset) -> None:
+    dataset = make_dataset()
+    back = read_dataset(write_dataset(tmp_path / "set", dataset))
+    assert (back.name, back.weighting, back.provenance) == (
+        dataset.name,
+        dataset.weighting,
+        dataset.provenance,
+    )
+    for one, other in zip(dataset.representatives, back.representatives, strict=True):
+        assert np.array_equal(one.shape.half_spaces.normals, other.shape.half_spaces.normals)
+        assert np.array_equal(one.shape.half_spaces.offsets, other.shape.half_spaces.offsets)
+        assert np.array_equal(one.shape.vertices, other.shape.vertices)
+        assert one.shape.facets == other.shape.facets
+        assert np.array_equal(one.frame.rotation, other.frame.rotation)
+        assert (one.weight, one.sizes, one.fidelity, one.source) == (
+            other.weight,
+            other.sizes,
+            other.fidelity,
+            other.source,
+        )
+
+
+def test_that_the_same_dataset_gives_the_same_bytes_and_so_does_the_one_read_back(
+    tmp_path, make_dataset
+) -> None:
+    write_dataset(tmp_path / "a", make_dataset())
+    write_dataset(tmp_path / "b", make_dataset())
+    write_dataset(tmp_path / "c", read_dataset(tmp_path / "a"))
+    assert contents(tmp_path / "a") == contents(tmp_path / "b") == contents(tmp_path / "c")
+
+
+def test_that_the_folder_holds_the_promised_files(tmp_path: Path, make_dataset) -> None:
+    folder = write_dataset(tmp_path / "set", make_dataset())
+    assert list(contents(folder)) == [
+        "README.txt",
+        "dataset.json",
+        "meshes/particle_0000.stl",
+        "meshes/particle_0001.stl",
+        "meshes/particle_0002.stl",
+    ]
+    document = json.loads((folder / "dataset.json").read_text(encoding="utf-8"))
+    assert document["schema_version"] == 1
+    assert document["length_unit"] == "um"
+    for record in document["representatives"]:
+        content = (folder / record["mesh"]["file"]).read_bytes()
+        assert hashlib.sha256(content).hexdigest() == record["mesh"]["sha256"]
+    assert "volume 1" in (folder / "README.txt").read_text(encoding="utf-8")
+
+
+def test_that_a_stranger_reads_closed_convex_meshes_of_unit_volume(tmp_path: Path, make_dataset) -> None:
+    dataset = make_dataset()
+    folder = write_dataset(tmp_path / "set", dataset)
+    for index, representative in enumerate(dataset.representatives):
+        mesh = trimesh.load_mesh(folder / "meshes" / f"particle_{index:04d}.stl")
+        assert mesh.is_watertight
+        assert mesh.is_winding_consistent
+        assert mesh.volume == pytest.approx(1.0, abs=1e-6)
+        assert mesh.convex_hull.volume == pytest.approx(1.0, abs=1e-6)
+        assert np.abs(mesh.center_mass).max() < 1e-6
+        assert len(mesh.faces) == representative.shape.n_triangles
+
+
+def test_that_a_written_dataset_has_no_problems(tmp_path: Path, make_dataset) -> None:
+    assert validate_dataset(write_dataset(tmp_path / "set", make_dataset())) == []
+
+
+def test_that_an_older_dataset_is_replaced_as_a_whole(tmp_path: Path, make_dataset) -> None:
+    write_dataset(tmp_path / "set", make_dataset(count=5))
+    write_dataset(tmp_path / "set", make_dataset(count=2, first=10))
+    assert len(read_dataset(tmp_path / "set")) == 2
+    assert validate_dataset(tmp_path / "set") == []
+    assert [p.name for p in tmp_path.iterdir()] == ["set"]
+
+
+def test_that_a_dataset_can_be_kept_from_being_replaced(tmp_path: Path, make_dataset) -> None:
+    folder = write_dataset(tmp_path / "set", make_dataset())
+    before = contents(folder)
+    with pytest.raises(DatasetError, match="holds a dataset already"):
+        write_dataset(folder, make_dataset(first=10), overwrite=False)
+    assert contents(folder) == before
+
+
+def test_that_an_empty_folder_is_used_and_missing_parents_are_made(tmp_path: Path, make_dataset) -> None:
+    (tmp_path / "empty").mkdir()
+    write_dataset(tmp_path / "empty", make_dataset())
+    write_dataset(tmp_path / "a" / "b" / "c", make_dataset())
+    assert validate_dataset(tmp_path / "empty") == validate_dataset(tmp_path / "a" / "b" / "c") == []
+
+
+@pytest.mark.parametrize("name", ["notes.txt", "meshes/other.stl", ".hidden", "meshes/sub/x"])
+def test_that_a_folder_with_foreign_files_is_not_overwritten(tmp_path: Path, make_dataset, name: str) -> None:
+    folder = write_dataset(tmp_path / "set", make_dataset())
+    (folder / name).parent.mkdir(exist_ok=True)
+    (folder / name).write_text("mine")
+    before = contents(folder)
+    with pytest.raises(DatasetError, match="not the dataset's"):
+        write_dataset(folder, make_dataset(first=10))
+    assert contents(folder) == before
+    assert any(name.split("/")[-1] in problem for problem in validate_dataset(folder))
+
+
+def test_that_a_folder_of_something_else_and_a_file_are_not_overwritten(tmp_path: Path, make_dataset) -> None:
+    (tmp_path / "photos").mkdir()
+    (tmp_path / "photos" / "moon.png").write_bytes(b"x")
+    (tmp_path / "file").write_text("x")
+    with pytest.raises(DatasetError, match="choose another folder"):
+        write_dataset(tmp_path / "photos", make_dataset())
+    with pytest.raises(DatasetError, match="is a file"):
+        write_dataset(tmp_path / "file", make_dataset())
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["file", "photos"]
+
+
+def test_that_a_link_to_a_folder_is_followed(tmp_path: Path, make_dataset) -> None:
+    (tmp_path / "real").mkdir()
+    (tmp_path / "link").symlink_to(tmp_path / "real")
+    write_dataset(tmp_path / "link", make_dataset())
+    assert validate_dataset(tmp_path / "real") == []
+    assert (tmp_path / "link").is_symlink()
+
+
+def test_that_errors_which_are_not_finite_are_not_written(tmp_path: Path, make_dataset) -> None:
+    dataset = make_dataset()
+    dataset.representatives[0].fidelity.errors["volume"] = float("nan")
+    with pytest.raises(DatasetError, match="cannot be written"):
+        write_dataset(tmp_path / "set", dataset)
+    assert not (tmp_path / "set").exists()
