@@ -19,7 +19,6 @@ from regolith_studio.descriptors.describe import Descriptors, describe
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.geometry.overlap import jaccard_distance
 
 DEFAULT_METHOD = "quadric"
 DEFAULT_PRESET = "all"
@@ -141,7 +140,7 @@ def _measured(
     polyhedron = ConvexPolyhedron.from_half_spaces(target.in_particle_unit(unit.half_spaces))
     achieved = describe(unit)
     errors = relative_errors(target.descriptors, achieved)
-    overlap = jaccard_distance(target.mesh, unit)
+    overlap = target.jaccard_distance(unit.half_spaces)
     return Coarsened(
         polyhedron=polyhedron,
         centre=target.centre,

@@ -3,21 +3,19 @@
 from collections.abc import Generator, Mapping
 from dataclasses import dataclass, field
 
-import fast_simplification
 import numpy as np
 
 from regolith_studio.coarsening.loss import loss
 from regolith_studio.coarsening.progress import MethodStep
 from regolith_studio.coarsening.result import MethodResult
+from regolith_studio.coarsening.start import decimated_hull, quadric_half_spaces
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import JACCARD, LossWeights
 from regolith_studio.descriptors.comparison import relative_errors
 from regolith_studio.descriptors.describe import describe
-from regolith_studio.errors import GeometryError, InputError
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.geometry.overlap import jaccard_distance
 
 
 @dataclass(frozen=True)
@@ -33,48 +31,6 @@ class QuadricSettings:
     restore_volume: bool = field(default=False, metadata={"label": "Restore the volume"})
 
 
-def decimated_hull(target: Target, n_faces: int) -> Mesh:
-    """The convex hull of the unit-volume particle, decimated to `n_faces` triangles.
-
-    Quadric edge collapse as in fast-simplification. The result is closed but as a rule not convex.
-
-    Raises
-    ------
-    InputError
-        If the hull has fewer triangles than asked for.
-    """
-    hull = target.mesh.hull
-    if len(hull.faces) < n_faces:
-        raise InputError(
-            f"The particle's convex hull has {len(hull.faces)} triangles only, fewer than the {n_faces} faces"
-            " asked for."
-        )
-    points, faces = fast_simplification.simplify(
-        hull.vertices.copy(), hull.faces.astype(np.int32), target_count=n_faces
-    )
-    return Mesh(points, faces)
-
-
-def quadric_half_spaces(target: Target, n_faces: int) -> HalfSpaces:
-    """The half-spaces of the decimated hull's triangles (the start of section 2.4).
-
-    Where two triangles lie in one plane, the plane counts once.
-
-    Raises
-    ------
-    GeometryError
-        If the decimated hull does not hold the particle's centroid inside all of its planes.
-    """
-    mesh = decimated_hull(target, n_faces)
-    sound = mesh.face_areas > 1e-12
-    normals = mesh.face_area_vectors[sound] / mesh.face_areas[sound, None]
-    offsets = np.einsum("ij,ij->i", normals, mesh.triangles[sound, 0])
-    inside = offsets > 1e-6
-    if np.count_nonzero(inside) < 4:
-        raise GeometryError("The decimated convex hull does not hold the particle's centroid inside.")
-    return HalfSpaces(normals[inside], offsets[inside])
-
-
 def variants(target: Target, n_faces: int) -> dict[str, dict[str, float]]:
     """Errors of the three readings of the baseline: ``mesh``, ``half_spaces``, ``volume_restored``."""
     half_spaces = quadric_half_spaces(target, n_faces)
@@ -86,8 +42,8 @@ def variants(target: Target, n_faces: int) -> dict[str, dict[str, float]]:
         "volume_restored": restored,
     }
     table = {name: dict(relative_errors(target.descriptors, describe(s))) for name, s in solids.items()}
-    table["half_spaces"][JACCARD] = jaccard_distance(target.mesh, polyhedron)
-    table["volume_restored"][JACCARD] = jaccard_distance(target.mesh, restored)
+    table["half_spaces"][JACCARD] = target.jaccard_distance(polyhedron.half_spaces)
+    table["volume_restored"][JACCARD] = target.jaccard_distance(restored.half_spaces)
     return table
 
 

@@ -1,0 +1,86 @@
+"""Coordinates of small moves of planes: one shift and two tilts each.
+
+Plane i turns about its pivot: n' = normalise(n + (t1 e1 + t2 e2) / rho), h' = <n', pivot> + s, with
+tangents e1, e2 and a lever rho, so that all three coordinates are lengths. The plane's speed at x is
+w(x) = ds - <dt1 e1 + dt2 e2, x - pivot> / rho.
+"""
+
+import numpy as np
+
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.compiled import kernel
+
+
+@kernel
+def tangents_of(normals: FloatArray) -> FloatArray:
+    """Two tangents of each plane, shape (n, 2, 3)."""
+    frames = np.empty((len(normals), 2, 3))
+    for i in range(len(normals)):
+        helper = np.zeros(3)
+        helper[np.argmin(np.abs(normals[i]))] = 1.0
+        first = np.cross(normals[i], helper)
+        frames[i, 0] = first / np.sqrt(np.sum(first * first))
+        frames[i, 1] = np.cross(normals[i], frames[i, 0])
+    return frames
+
+
+@kernel
+def carried(frames: FloatArray, normals: FloatArray) -> FloatArray:
+    """Tangents carried over to new normals without twist."""
+    moved = np.empty(frames.shape)
+    for i in range(len(normals)):
+        first = frames[i, 0] - np.sum(frames[i, 0] * normals[i]) * normals[i]
+        moved[i, 0] = first / np.sqrt(np.sum(first * first))
+        moved[i, 1] = np.cross(normals[i], moved[i, 0])
+    return moved
+
+
+@kernel
+def levers_of(area: FloatArray, least: float) -> FloatArray:
+    """rho of each plane: the radius of its facet, but not below `least`."""
+    return np.maximum(np.sqrt(np.maximum(area, 0.0) / np.pi), least)
+
+
+@kernel
+def gradient_of(charge: FloatArray, frames: FloatArray, levers: FloatArray) -> FloatArray:
+    """Derivative with respect to the coordinates (s, t1, t2) of every plane, shape (3 n,)."""
+    n = len(charge)
+    gradient = np.empty(3 * n)
+    for i in range(n):
+        gradient[3 * i] = charge[i, 0]
+        for k in range(2):
+            gradient[3 * i + 1 + k] = (
+                -(
+                    charge[i, 1] * frames[i, k, 0]
+                    + charge[i, 2] * frames[i, k, 1]
+                    + charge[i, 3] * frames[i, k, 2]
+                )
+                / levers[i]
+            )
+    return gradient
+
+
+@kernel
+def moved(
+    normals: FloatArray,
+    pivots: FloatArray,
+    offsets: FloatArray,
+    frames: FloatArray,
+    levers: FloatArray,
+    step: FloatArray,
+) -> tuple[FloatArray, FloatArray]:
+    """Normals and offsets after a step in the coordinates (s, t1, t2) of every plane, shape (3 n,)."""
+    n = len(normals)
+    turned = np.empty((n, 3))
+    shifted = np.empty(n)
+    for i in range(n):
+        t1, t2 = step[3 * i + 1] / levers[i], step[3 * i + 2] / levers[i]
+        length = np.sqrt(1.0 + t1 * t1 + t2 * t2)
+        for c in range(3):
+            turned[i, c] = (normals[i, c] + t1 * frames[i, 0, c] + t2 * frames[i, 1, c]) / length
+        shifted[i] = step[3 * i] + offsets[i] / length
+        tilt = 0.0
+        for c in range(3):
+            tilt += (turned[i, c] - normals[i, c] / length) * pivots[i, c]
+        shifted[i] += tilt
+    return turned, shifted

@@ -1,0 +1,81 @@
+"""Descriptors and loss of half-spaces by the compiled core, for methods that ask thousands of times."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from regolith_studio.coarsening.core.box_search import SAMPLE_ANGLE
+from regolith_studio.coarsening.core.evaluate import AREA, LONGEST, SHARED, SHORTEST, VOLUME, evaluate
+from regolith_studio.coarsening.core.intersection import FINE
+from regolith_studio.coarsening.loss import loss
+from regolith_studio.coarsening.target import Target
+from regolith_studio.coarsening.weights import JACCARD, LossWeights
+from regolith_studio.descriptors.comparison import relative_errors
+from regolith_studio.geometry.arrays import FloatArray
+
+BOX_KEYS = ("min_diameter", "max_diameter", "aspect_ratio")
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """Errors of one polyhedron against the target.
+
+    Parameters
+    ----------
+    errors
+        Relative error of each descriptor (Eq. 8); NaN where it was not asked for.
+    jaccard_distance
+        Eq. 7; NaN where it was not asked for.
+    loss
+        Eq. 9.
+    """
+
+    errors: dict[str, float]
+    jaccard_distance: float
+    loss: float
+
+
+class LossFunction:
+    """Eq. 9 as a function of half-spaces; terms with weight 0 are not evaluated unless `everything`."""
+
+    def __init__(self, target: Target, weights: LossWeights, everything: bool = False) -> None:
+        self._target = target
+        self._weights = weights
+        self._box = everything or any(weights[key] for key in BOX_KEYS)
+        self._overlap = everything or bool(weights[JACCARD])
+
+    def __call__(
+        self, normals: FloatArray, offsets: FloatArray, sample_angle: float = SAMPLE_ANGLE
+    ) -> Evaluation | None:
+        """Errors and loss, or ``None`` where the half-spaces bound no proper polyhedron."""
+        rays = self._target.rays
+        status, values = evaluate(
+            normals,
+            offsets,
+            rays.directions,
+            rays.first,
+            rays.distance,
+            rays.sign,
+            rays.weight,
+            self._box,
+            self._overlap,
+            sample_angle,
+        )
+        if status != FINE or values[SHORTEST] <= 0.0:
+            return None
+        return self._judged(values)
+
+    def _judged(self, values: FloatArray) -> Evaluation:
+        volume, area, shared = float(values[VOLUME]), float(values[AREA]), float(values[SHARED])
+        shortest, longest = float(values[SHORTEST]), float(values[LONGEST])
+        found = {
+            "volume": volume,
+            "sphericity": float(np.cbrt(np.pi) * (6 * volume) ** (2 / 3) / area),
+            "min_diameter": shortest,
+            "max_diameter": longest,
+            "aspect_ratio": longest / shortest,
+            "convex_hull_volume": volume,
+        }
+        errors = relative_errors(self._target.descriptors, found)
+        jaccard = 1.0 - shared / (1.0 + volume - shared)
+        return Evaluation(errors, jaccard, loss(self._weights, errors, jaccard))

@@ -1,0 +1,49 @@
+"""The start of every method: the convex hull, decimated by quadric error (section 2.4)."""
+
+import fast_simplification
+import numpy as np
+
+from regolith_studio.coarsening.target import Target
+from regolith_studio.errors import GeometryError, InputError
+from regolith_studio.geometry.half_spaces import HalfSpaces
+from regolith_studio.geometry.mesh import Mesh
+
+
+def decimated_hull(target: Target, n_faces: int) -> Mesh:
+    """The convex hull of the unit-volume particle, decimated to `n_faces` triangles.
+
+    Quadric edge collapse as in fast-simplification. The result is closed but as a rule not convex.
+
+    Raises
+    ------
+    InputError
+        If the hull has fewer triangles than asked for.
+    """
+    hull = target.mesh.hull
+    if len(hull.faces) < n_faces:
+        raise InputError(
+            f"The particle's convex hull has {len(hull.faces)} triangles only, fewer than the {n_faces} faces"
+            " asked for."
+        )
+    points, faces = fast_simplification.simplify(
+        hull.vertices.copy(), hull.faces.astype(np.int32), target_count=n_faces
+    )
+    return Mesh(points, faces)
+
+
+def quadric_half_spaces(target: Target, n_faces: int) -> HalfSpaces:
+    """The half-spaces of the decimated hull's triangles (the start of section 2.4).
+
+    Raises
+    ------
+    GeometryError
+        If the decimated hull does not hold the particle's centroid inside all of its planes.
+    """
+    mesh = decimated_hull(target, n_faces)
+    sound = mesh.face_areas > 1e-12
+    normals = mesh.face_area_vectors[sound] / mesh.face_areas[sound, None]
+    offsets = np.einsum("ij,ij->i", normals, mesh.triangles[sound, 0])
+    inside = offsets > 1e-6
+    if np.count_nonzero(inside) < 4:
+        raise GeometryError("The decimated convex hull does not hold the particle's centroid inside.")
+    return HalfSpaces(normals[inside], offsets[inside])
