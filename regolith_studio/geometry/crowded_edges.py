@@ -57,7 +57,7 @@ def wedge_neighbours(vertices: FloatArray, faces: IntArray, table: EdgeTable, ac
 
 
 def _wedges(ring: list[int], table: EdgeTable) -> list[tuple[int, int]]:
-    """Forward half-edges of a ring in angular order, each with the backward one before it; innermost first."""
+    """Forward half-edges of a ring in angular order, each with the backward one before it."""
     pairs = []
     place = 0
     while len(ring) > 1 and place < len(ring):

@@ -9,6 +9,7 @@ import hashlib
 import os
 import signal
 import sys
+import time
 import warnings
 from collections.abc import Callable
 from pathlib import Path
@@ -35,7 +36,13 @@ def read_mesh_file(request: dict[str, Any]) -> Message:
     return Message(header, (parsed.vertices.astype("<f8"), parsed.faces.astype("<i8")))
 
 
-TASKS: dict[str, Task] = {"mesh": read_mesh_file}
+def sleep(_request: dict[str, Any]) -> Message:
+    """Hang, as a parser does on a file made to that end; the tests ask for it."""
+    time.sleep(3600.0)
+    return Message({})
+
+
+TASKS: dict[str, Task] = {"mesh": read_mesh_file, "sleep": sleep}
 """What the child can be asked for; another kind of file is another row."""
 
 

@@ -197,7 +197,7 @@ def _end(process: subprocess.Popen[bytes]) -> None:
 
 def _why_dead(path: Path, timed_out: bool, seconds: float) -> str:
     if timed_out:
-        return f"{path.name} was given up after {seconds:.0f} s: it is damaged, or far larger than it looks."
+        return f"{path.name} was given up after {seconds:.2g} s: it is damaged, or far larger than it looks."
     return f"{path.name} is damaged: it ended the process that tried to read it; export it again."
 
 

@@ -10,6 +10,8 @@ from regolith_studio.readers.mesh_format import MeshFormat, ParsedMesh
 from regolith_studio.readers.polygons import triangulated
 
 _KEYWORD = re.compile(rb"\s*((?:ST)?C?N?4?n?OFF)(?![A-Za-z])", re.ASCII)
+MOST_ROWS = 1 << 40
+
 _COMMENT = re.compile(rb"#[^\r\n]*")
 
 
@@ -43,8 +45,8 @@ def _counts(rows: list[list[bytes]]) -> tuple[int, int, list[list[bytes]]]:
         n_vertices, n_faces = int(words[0]), int(words[1])
     except (IndexError, ValueError):
         raise FileError("is not an OFF: the counts of vertices and faces are missing at its top.") from None
-    if n_vertices < 0 or n_faces < 0:
-        raise FileError(f"is not an OFF: it counts {n_vertices} vertices and {n_faces} faces.")
+    if not (0 <= n_vertices < MOST_ROWS and 0 <= n_faces < MOST_ROWS):
+        raise FileError(f"is not an OFF: it counts {n_vertices:.3g} vertices and {n_faces:.3g} faces.")
     taken = 3 if len(rows[0]) == 1 else 1
     if len(rows[0]) == 2 and n_vertices and len(rows) > 1 and len(rows[1]) == 1:
         taken = 2

@@ -68,6 +68,7 @@ def _parse_binary(data: bytes) -> ParsedMesh:
 
 
 def _parse_ascii(data: bytes) -> ParsedMesh:
+    data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
     words = _SOLID_LINE.sub(b"", data).lower().split()
     whole, rest = divmod(len(words), len(_FACET))
     if not words:
