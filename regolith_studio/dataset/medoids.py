@@ -1,0 +1,140 @@
+"""k-medoids: the k points of a population whose summed distance to all points is least.
+
+BUILD (Kaufman and Rousseeuw 1990) finds a start, eager swaps (FasterPAM, Schubert and Rousseeuw
+2021) improve it: each candidate's gain against all medoids at once in one pass over the points.
+"""
+
+import numpy as np
+from scipy.spatial.distance import cdist
+
+from regolith_studio.errors import InputError
+from regolith_studio.geometry.arrays import FloatArray, IntArray
+from regolith_studio.geometry.compiled import kernel
+
+LARGEST_TABLE = 5000
+"""Larger populations are searched on a random subset of this size, so that the table fits the memory."""
+
+
+def k_medoids(
+    points: FloatArray, k: int, weights: FloatArray | None = None, seed: int = 0
+) -> tuple[IntArray, IntArray]:
+    """Medoids and the class of each point.
+
+    Parameters
+    ----------
+    points
+        Shape (n, d); distances are Euclidean.
+    k
+        Number of medoids, 1 to n.
+    weights
+        How much each point counts, shape (n,); 1 by default.
+    seed
+        Chooses the subset of populations beyond :data:`LARGEST_TABLE`; smaller ones need no chance.
+
+    Returns
+    -------
+    tuple
+        Indices of the medoids in ascending order, shape (k,), and for each point the position of its
+        nearest medoid, shape (n,).
+
+    Raises
+    ------
+    InputError
+        If k is not between 1 and n.
+    """
+    n = len(points)
+    if not 1 <= k <= n:
+        raise InputError(f"Between 1 and {n} representatives can be chosen from {n} particles, got {k}.")
+    counted = np.ones(n) if weights is None else np.asarray(weights, dtype=np.float64)
+    subset = np.arange(n)
+    if n > LARGEST_TABLE:
+        generator = np.random.default_rng(np.random.SeedSequence(seed))
+        subset = np.sort(generator.choice(n, max(LARGEST_TABLE, k), replace=False))
+    table = cdist(points[subset], points[subset])
+    chosen = build_medoids(table, counted[subset], k)
+    if 1 < k < len(subset):
+        swap_medoids(table, counted[subset], chosen)
+    medoids = np.sort(subset[chosen])
+    nearest = cdist(points, points[medoids]).argmin(axis=1)
+    nearest[medoids] = np.arange(k)
+    return medoids.astype(np.int64), nearest.astype(np.int64)
+
+
+@kernel
+def build_medoids(table: FloatArray, weights: FloatArray, k: int) -> IntArray:
+    """BUILD: add k times the point that lowers the weighted sum of distances most; shape (k,)."""
+    n = len(table)
+    nearest = np.full(n, np.inf)
+    taken = np.zeros(n, dtype=np.bool_)
+    chosen = np.empty(k, dtype=np.int64)
+    for step in range(k):
+        best, best_total = -1, np.inf
+        for candidate in range(n):
+            if taken[candidate]:
+                continue
+            total = 0.0
+            for point in range(n):
+                total += weights[point] * min(nearest[point], table[candidate, point])
+            if best < 0 or total < best_total:
+                best, best_total = candidate, total
+        chosen[step] = best
+        taken[best] = True
+        for point in range(n):
+            nearest[point] = min(nearest[point], table[best, point])
+    return chosen
+
+
+@kernel
+def swap_medoids(table: FloatArray, weights: FloatArray, chosen: IntArray) -> int:
+    """Swap medoids of `chosen` (changed in place) for better points until none is left; number of swaps."""
+    n, k = len(table), len(chosen)
+    first, second = np.empty(n), np.empty(n)
+    owner = np.empty(n, dtype=np.int64)
+    loss, change = np.empty(k), np.empty(k)
+    _two_nearest(table, weights, chosen, first, second, owner, loss)
+    scale = max(np.sum(weights * first), 1e-300)
+    swaps, quiet, candidate = 0, 0, 0
+    while quiet < n and swaps < 100 * n:
+        shared = 0.0
+        change[:] = loss
+        for point in range(n):
+            distance, mine = table[candidate, point], owner[point]
+            if distance < first[point]:
+                shared += weights[point] * (distance - first[point])
+                change[mine] += weights[point] * (first[point] - second[point])
+            elif distance < second[point]:
+                change[mine] += weights[point] * (distance - second[point])
+        best = np.argmin(change)
+        quiet += 1
+        if change[best] + shared < -1e-12 * scale:
+            chosen[best] = candidate
+            _two_nearest(table, weights, chosen, first, second, owner, loss)
+            swaps, quiet = swaps + 1, 0
+        candidate = (candidate + 1) % n
+    return swaps
+
+
+@kernel
+def _two_nearest(
+    table: FloatArray,
+    weights: FloatArray,
+    chosen: IntArray,
+    first: FloatArray,
+    second: FloatArray,
+    owner: IntArray,
+    loss: FloatArray,
+) -> None:
+    """Distances to each point's two nearest medoids, its owner, and what losing each medoid would cost."""
+    loss[:] = 0.0
+    for point in range(len(table)):
+        first[point] = second[point] = np.inf
+        owner[point] = 0
+        for medoid in range(len(chosen)):
+            distance = table[chosen[medoid], point]
+            if distance < first[point]:
+                second[point] = first[point]
+                first[point] = distance
+                owner[point] = medoid
+            elif distance < second[point]:
+                second[point] = distance
+        loss[owner[point]] += weights[point] * (second[point] - first[point])
