@@ -1,0 +1,151 @@
+"""Coefficients as other programs print them: complex ``l m Re Im`` rows, and SHTOOLS' ``l m C S``.
+
+Pure functions of arrays of numbers. Reading a file that nobody vouches for belongs to ``readers``.
+"""
+
+from math import isqrt
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from regolith_studio.errors import InputError
+from regolith_studio.geometry.arrays import FloatArray, IntArray
+from regolith_studio.harmonics.coefficients import ShCoefficients, degrees, orders
+
+HIGHEST_TABLE_DEGREE = 200
+SYMMETRY_TOLERANCE = 1e-4
+"""Largest violation of a_{l,-m} = (-1)^m conj(a_lm), as a share of the largest coefficient."""
+
+
+def from_complex_rows(rows: ArrayLike) -> ShCoefficients:
+    """From rows ``l m Re Im`` of orthonormal complex harmonics with the Condon-Shortley phase.
+
+    That is the convention of ``scipy.special.sph_harm_y`` and of the particle tables of NIST lineage.
+    Rows may come in any order; those of m < 0 may be missing, coefficients that are not given are zero.
+
+    Parameters
+    ----------
+    rows
+        Shape (n, 4).
+
+    Raises
+    ------
+    InputError
+        If a number is missing or not finite, l and m are no degree and order, a row comes twice, or the
+        rows of +m and -m contradict each other, so that the radius would not be real.
+    """
+    table, degree, order = _checked_rows(rows, 4)
+    values = table[:, 2] + 1j * table[:, 3]
+    l_max = int(degree.max())
+    full = np.zeros((l_max + 1) ** 2, dtype=np.complex128)
+    full[degree**2 + degree + order] = values
+    _check_symmetry(full, degree, order)
+    return ShCoefficients(_real_from_complex(full))
+
+
+def complex_rows(coefficients: ShCoefficients) -> FloatArray:
+    """Rows ``l m Re Im``, m = -l .. l, shape ((l_max + 1)^2, 4): inverse of :func:`from_complex_rows`."""
+    degree, order = degrees(len(coefficients)), orders(len(coefficients))
+    size = np.abs(order)
+    sign = np.where(size % 2, -1.0, 1.0)
+    cosine = coefficients.values[degree**2 + degree + size]
+    sine = np.where(size > 0, coefficients.values[degree**2 + degree - size], 0.0)
+    scale = np.where(size > 0, 1 / np.sqrt(2), 1.0)
+    mirrored = np.where(order < 0, sign, 1.0)
+    real = sign * scale * cosine * mirrored
+    imaginary = -sign * scale * sine * mirrored * np.where(order < 0, -1.0, 1.0)
+    return np.column_stack([degree, order, real, imaginary])
+
+
+def from_shtools_rows(rows: ArrayLike, norm: str = "4pi") -> ShCoefficients:
+    """From rows ``l m C S`` (m >= 0) of SHTOOLS: real, without the Condon-Shortley phase.
+
+    Parameters
+    ----------
+    rows
+        Shape (n, 4).
+    norm
+        ``4pi`` (the default of SHTOOLS, where C_00 is the mean radius) or ``ortho``.
+
+    Raises
+    ------
+    InputError
+        If a number is not finite, l and m are no degree and order, a row comes twice, or the
+        normalisation is unknown.
+    """
+    if norm not in ("4pi", "ortho"):
+        raise InputError(f"The normalisation must be 4pi or ortho, got {norm!r}.")
+    table, degree, order = _checked_rows(rows, 4)
+    if (order < 0).any():
+        raise InputError("A table of SHTOOLS has no negative orders m.")
+    values = np.zeros((int(degree.max()) + 1) ** 2)
+    values[degree**2 + degree + order] = table[:, 2]
+    wave = order > 0
+    values[(degree**2 + degree - order)[wave]] = table[wave, 3]
+    return ShCoefficients(values * (np.sqrt(4 * np.pi) if norm == "4pi" else 1.0))
+
+
+def shtools_rows(coefficients: ShCoefficients, norm: str = "4pi") -> FloatArray:
+    """Rows ``l m C S``, m >= 0, shape (n, 4): inverse of :func:`from_shtools_rows`."""
+    degree, order = degrees(len(coefficients)), orders(len(coefficients))
+    keep = order >= 0
+    degree, order = degree[keep], order[keep]
+    values = coefficients.values / (np.sqrt(4 * np.pi) if norm == "4pi" else 1.0)
+    sine = np.where(order > 0, values[degree**2 + degree - order], 0.0)
+    return np.column_stack([degree, order, values[degree**2 + degree + order], sine])
+
+
+def _checked_rows(rows: ArrayLike, width: int) -> tuple[FloatArray, IntArray, IntArray]:
+    """The rows, their degrees and their orders."""
+    table = np.asarray(rows, dtype=np.float64)
+    if table.ndim != 2 or table.shape[1] != width or not len(table):
+        raise InputError(f"A table of coefficients needs {width} numbers a row, got shape {table.shape}.")
+    broken = np.flatnonzero(~np.isfinite(table).all(axis=1))
+    if len(broken):
+        first = "  ".join(f"{number:g}" for number in table[broken[0]])
+        raise InputError(
+            f"{len(broken)} of {len(table)} rows hold a number that is not finite, the first is row "
+            f"{broken[0] + 1}: {first}."
+        )
+    degree, order = table[:, 0].astype(np.int64), table[:, 1].astype(np.int64)
+    wrong = (degree != table[:, 0]) | (order != table[:, 1]) | (np.abs(order) > degree)
+    wrong |= degree > HIGHEST_TABLE_DEGREE
+    if wrong.any():
+        row = int(np.flatnonzero(wrong)[0])
+        raise InputError(
+            f"Row {row + 1} begins with {table[row, 0]:g} {table[row, 1]:g}: expected a degree l from 0 to "
+            f"{HIGHEST_TABLE_DEGREE} and an order m from -l to l."
+        )
+    index, counts = np.unique(degree**2 + degree + order, return_counts=True)
+    if (counts > 1).any():
+        k = int(index[counts > 1][0])
+        raise InputError(f"The row l = {isqrt(k)}, m = {k - isqrt(k) ** 2 - isqrt(k)} comes more than once.")
+    return table, degree, order
+
+
+def _check_symmetry(full: np.ndarray, degree: IntArray, order: IntArray) -> None:
+    """Refuse rows of +m and -m that contradict each other; fill in what only -m gave."""
+    given = np.zeros(len(full), dtype=np.bool_)
+    given[degree**2 + degree + order] = True
+    every_degree, every_order = degrees(len(full)), orders(len(full))
+    mirror = every_degree**2 + every_degree - every_order
+    expected = np.where(every_order % 2, -1.0, 1.0) * np.conj(full[mirror])
+    only_mirror = ~given & given[mirror]
+    full[only_mirror] = expected[only_mirror]
+    gap = np.abs(full - expected) * (given & given[mirror])
+    if gap.max() > SYMMETRY_TOLERANCE * np.abs(full).max():
+        k = int(gap.argmax())
+        raise InputError(
+            f"The rows l = {every_degree[k]}, m = {abs(every_order[k])} and m = {-abs(every_order[k])} "
+            "contradict each other: the radius would not be a real number."
+        )
+
+
+def _real_from_complex(full: np.ndarray) -> FloatArray:
+    """Real coefficients (n,) of complex ones (n,): c_cos = (-1)^m sqrt2 Re, c_sin = -(-1)^m sqrt2 Im."""
+    degree, order = degrees(len(full)), orders(len(full))
+    size = np.abs(order)
+    half = full[degree**2 + degree + size]
+    sign = np.where(size % 2, -1.0, 1.0) * np.sqrt(2)
+    values = np.where(order > 0, sign * half.real, -sign * half.imag)
+    return np.asarray(np.where(order == 0, half.real, values))

@@ -1,0 +1,245 @@
+"""What a chosen l_max means for the descriptors of a sample (section 3.1, Eq. 10, Fig. 3)."""
+
+from collections.abc import Callable, Generator, Iterable, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
+from regolith_studio.descriptors.describe import describe
+from regolith_studio.errors import InputError, RegolithError
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.harmonics.fit import fit_harmonics
+from regolith_studio.harmonics.surface import DEFAULT_LEVEL, gallery
+from regolith_studio.studies.progress import StudyProgress
+from regolith_studio.studies.tables import Column, Table
+
+DEFAULT_DEGREES = tuple(range(1, 21))
+N_RESAMPLES = 1000
+
+Mapper = Callable[[Callable[[Mesh], "FloatArray | str"], Iterable[Mesh]], Iterable["FloatArray | str"]]
+"""Anything that maps a picklable function in order: ``map``, or ``imap`` of a process pool."""
+
+
+@dataclass(frozen=True, eq=False)
+class LmaxStudy:
+    """Relative errors of descriptors of fits cut at several degrees.
+
+    Parameters
+    ----------
+    degrees
+        Values of l_max, ascending.
+    keys
+        Descriptors, of ``CATALOGUE``.
+    names, groups
+        Of the particles that could be fitted.
+    errors
+        (D(fit) - D(particle)) / D(particle), shape (particles, degrees, keys); NaN where the fit has a
+        negative radius and bounds no solid.
+    failures
+        Name and sentence of each particle that could not be fitted.
+    confidence, seed
+        Of the bootstrap bands.
+    """
+
+    degrees: tuple[int, ...]
+    keys: tuple[str, ...]
+    names: tuple[str, ...]
+    groups: tuple[str, ...]
+    errors: FloatArray
+    failures: tuple[tuple[str, str], ...] = ()
+    confidence: float = 0.95
+    seed: int = 0
+    _bands: dict[str, FloatArray] = field(default_factory=dict, repr=False)
+
+    def __post_init__(self) -> None:
+        errors = np.array(self.errors, dtype=np.float64)
+        errors = errors.reshape(len(self.names), len(self.degrees), len(self.keys))
+        errors.flags.writeable = False
+        object.__setattr__(self, "errors", errors)
+
+    def __reduce__(self) -> tuple[Callable[..., "LmaxStudy"], tuple[Any, ...]]:
+        fields = (self.degrees, self.keys, self.names, self.groups, self.errors)
+        return LmaxStudy, (*fields, self.failures, self.confidence, self.seed)
+
+    @property
+    def group_names(self) -> tuple[str, ...]:
+        """The groups in the order in which they first appear."""
+        return tuple(dict.fromkeys(self.groups))
+
+    def of_group(self, group: str | None) -> FloatArray:
+        """Errors of one group, or of all particles if ``None``, shape (members, degrees, keys)."""
+        if group is None:
+            return self.errors
+        return self.errors[[name == group for name in self.groups]]
+
+    def rmsre(self, group: str | None = None) -> FloatArray:
+        """RMSRE of Eq. 10, shape (degrees, keys); NaN where no particle has a value."""
+        members = self.of_group(group)
+        return resampled_rmsre(members, np.ones((1, len(members))))[0]
+
+    def bands(self, group: str | None = None) -> FloatArray:
+        """Ends of the bootstrap band over particles, shape (2, degrees, keys)."""
+        name = "" if group is None else f"group {group}"
+        if name not in self._bands:
+            members = self.of_group(group)
+            rng = np.random.default_rng(np.random.SeedSequence(self.seed))
+            weights = rng.multinomial(len(members), np.full(len(members), 1 / len(members)), N_RESAMPLES)
+            tail = 50 * (1 - self.confidence)
+            spread = resampled_rmsre(members, weights)
+            self._bands[name] = np.asarray(np.nanpercentile(spread, [tail, 100 - tail], axis=0))
+        return self._bands[name]
+
+    def n_used(self, group: str | None = None) -> tuple[int, ...]:
+        """Number of particles with a fit at each degree."""
+        return tuple(int(n) for n in np.isfinite(self.of_group(group)).all(axis=2).sum(axis=0))
+
+    def smallest_l_max(self, tolerance: float, group: str | None = None) -> int | None:
+        """Smallest l_max at which the RMSRE of every descriptor is below `tolerance`, or ``None``."""
+        for degree, row in zip(self.degrees, self.rmsre(group), strict=True):
+            if (row < tolerance).all():
+                return degree
+        return None
+
+
+def resampled_rmsre(errors: FloatArray, weights: ArrayLike) -> FloatArray:
+    """RMSRE with each particle counted as often as each row of `weights` says.
+
+    Parameters
+    ----------
+    errors
+        Shape (n, degrees, keys); NaN is left out.
+    weights
+        Shape (b, n). The result has shape (b, degrees, keys).
+    """
+    counts = np.asarray(weights, dtype=np.float64)
+    present = np.isfinite(errors)
+    squares = np.where(present, errors, 0.0) ** 2
+    sums = np.tensordot(counts, squares, axes=1)
+    members = np.tensordot(counts, present.astype(np.float64), axes=1)
+    means = np.divide(sums, members, out=np.full_like(sums, np.nan), where=members > 0)
+    return np.asarray(np.sqrt(means))
+
+
+def lmax_errors(
+    mesh: Mesh,
+    degrees: Sequence[int] = DEFAULT_DEGREES,
+    level: int = DEFAULT_LEVEL,
+    keys: Sequence[str] = LOSS_KEYS,
+    rule: str = "volume",
+    reference: str = "sphere",
+) -> FloatArray:
+    """Relative errors of the descriptors of one particle's fit, shape (degrees, keys).
+
+    One fit to the highest degree, cut at each; the surfaces are meshed on ``icosphere(level)`` and
+    measured by the same routines as the particle. NaN where a fit has a negative radius.
+
+    Raises
+    ------
+    RegolithError
+        If the particle cannot be measured or fitted.
+    """
+    wanted = describe(mesh, keys)
+    fit = fit_harmonics(mesh, max(degrees), rule=rule, reference=reference)
+    errors = np.full((len(degrees), len(keys)), np.nan)
+    for row, (_, surface) in enumerate(gallery(fit, degrees, level)):
+        if surface is not None:
+            found = describe(surface, keys)
+            errors[row] = [found[key] / wanted[key] - 1 for key in keys]
+    return errors
+
+
+def lmax_study(
+    particles: Sequence[Particle],
+    degrees: Sequence[int] = DEFAULT_DEGREES,
+    level: int = DEFAULT_LEVEL,
+    keys: Sequence[str] = LOSS_KEYS,
+    mapper: Mapper = map,
+    seed: int = 0,
+    **fit_options: str,
+) -> Generator[StudyProgress, None, LmaxStudy]:
+    """Fit every particle and compare its descriptors with those of the fits cut at `degrees`.
+
+    Yields a :class:`StudyProgress` a particle, whose `partial` is the :class:`LmaxStudy` so far, and
+    returns the study. A particle that cannot be fitted is listed in `failures` and stops nothing.
+
+    Parameters
+    ----------
+    mapper
+        ``map``, or the ordered lazy map of a process pool.
+    fit_options
+        ``rule`` and ``reference`` of :func:`fit_harmonics`.
+
+    Raises
+    ------
+    InputError
+        If there is no particle or no degree, or no particle can be fitted.
+    """
+    if not particles or not degrees:
+        raise InputError("A study of l_max needs at least one particle and one degree.")
+    chosen = tuple(sorted(set(degrees)))
+    work = partial(errors_or_reason, degrees=chosen, level=level, keys=tuple(keys), **fit_options)
+    study = LmaxStudy(chosen, tuple(keys), (), (), np.empty((0, len(chosen), len(keys))), seed=seed)
+    outcomes = mapper(work, (particle.mesh for particle in particles))
+    for done, (particle, outcome) in enumerate(zip(particles, outcomes, strict=True), start=1):
+        study = _with_outcome(study, particle, outcome)
+        yield StudyProgress(done, len(particles), particle.name, study if study.names else None)
+    if not study.names:
+        raise InputError(f"None of the {len(particles)} particles can be fitted: {study.failures[0][1]}")
+    return study
+
+
+def errors_or_reason(mesh: Mesh, **options: Any) -> FloatArray | str:
+    """:func:`lmax_errors`, or the sentence that says why there are none; for process pools."""
+    try:
+        return lmax_errors(mesh, **options)
+    except RegolithError as error:
+        return str(error)
+
+
+def _with_outcome(study: LmaxStudy, particle: Particle, outcome: FloatArray | str) -> LmaxStudy:
+    if isinstance(outcome, str):
+        return replace(study, failures=(*study.failures, (particle.name, outcome)), _bands={})
+    return replace(
+        study,
+        names=(*study.names, particle.name),
+        groups=(*study.groups, particle.group),
+        errors=np.concatenate([study.errors, outcome[None]]),
+        _bands={},
+    )
+
+
+def rmsre_table(study: LmaxStudy) -> Table:
+    """Fig. 3 as numbers: a row for each group, l_max and descriptor."""
+    rows = []
+    for group in study.group_names:
+        values, (low, high), used = study.rmsre(group), study.bands(group), study.n_used(group)
+        for d, degree in enumerate(study.degrees):
+            for k, key in enumerate(study.keys):
+                numbers = (100 * values[d, k], 100 * low[d, k], 100 * high[d, k])
+                rows.append((group, degree, key, CATALOGUE[key].symbol, *numbers, used[d]))
+    percent = [Column(name, "%") for name in ("rmsre", "rmsre_low", "rmsre_high")]
+    columns = (*map(Column, ("group", "l_max", "descriptor", "symbol")), *percent, Column("n_particles"))
+    notes = (
+        "Root mean square over particles of (D(particle) - D(fit)) / D(particle); exact bounding boxes.",
+        f"Bands: {study.confidence:.0%}, {N_RESAMPLES} resamples of the particles, seed {study.seed}.",
+        *(f"{name} was left out: {reason}" for name, reason in study.failures),
+    )
+    return Table("RMSRE of the descriptors against l_max", columns, tuple(rows), notes)
+
+
+def particle_table(study: LmaxStudy) -> Table:
+    """Relative error of every descriptor of every particle at every l_max."""
+    rows = [
+        (name, group, degree, *study.errors[i, d])
+        for i, (name, group) in enumerate(zip(study.names, study.groups, strict=True))
+        for d, degree in enumerate(study.degrees)
+    ]
+    columns = (Column("name"), Column("group"), Column("l_max"), *map(Column, study.keys))
+    note = "(D(fit) - D(particle)) / D(particle); empty where the fit has a negative radius."
+    return Table("Relative errors of the descriptors of each fit", columns, tuple(rows), (note,))
