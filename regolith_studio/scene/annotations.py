@@ -70,7 +70,7 @@ class ScaleBar:
         self._bar.SetMapper(mapper)
         self._bar.GetProperty().SetLineWidth(2.0)
         self._label = vtkTextActor()
-        self._label.GetTextProperty().SetFontSize(14)
+        self._label.GetTextProperty().SetFontSize(12)
         self._label.GetTextProperty().SetFontFamilyToArial()
         self._label.GetTextProperty().SetJustificationToCentered()
         self.set_ink(surroundings)
@@ -139,19 +139,26 @@ def show_title(plotter: Any, title: str, surroundings: Surroundings = palette.PA
 
 
 def show_colour_scale(plotter: Any, mapper: Any, title: str, surroundings: Surroundings) -> None:
-    """The scale of the distance map, at the lower right, in micrometres."""
+    """The scale of a colour map, at the right."""
     plotter.add_scalar_bar(
         title=title,
         mapper=mapper,
         color=surroundings.ink,
         n_labels=3,
-        fmt="%.3g",
+        fmt="%.2g",
         vertical=True,
-        width=0.06,
-        height=0.36,
-        position_x=0.84,
-        position_y=0.06,
-        label_font_size=12,
-        title_font_size=12,
+        width=0.05,
+        height=0.34,
+        position_x=0.86,
+        position_y=0.04,
+        label_font_size=11,
+        title_font_size=11,
+        unconstrained_font_size=True,
         render=False,
     )
+
+
+def hide_colour_scale(plotter: Any) -> None:
+    """Take the scale away, if there is one."""
+    for title in tuple(plotter.scalar_bars.keys()):
+        plotter.remove_scalar_bar(title, render=False)

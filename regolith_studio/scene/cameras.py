@@ -48,8 +48,8 @@ DIRECTIONS: Mapping[str, Direction] = MappingProxyType(
     }
 )
 
-MARGIN = 1.22
-"""Half the height of the picture over the radius of what it frames; leaves room for title and scale bar."""
+MARGIN = 1.16
+"""Half the shorter side of the picture over the radius of what it frames."""
 
 
 @dataclass(frozen=True)
@@ -95,28 +95,28 @@ def apply_pose(plotter: Any, pose: CameraPose) -> None:
 
 
 def framing_pose(
-    bounds: ArrayLike, direction: str = "isometric", aspect: float = 1.0, margin: float = MARGIN
+    points: ArrayLike, direction: str = "isometric", aspect: float = 1.0, margin: float = MARGIN
 ) -> CameraPose:
-    """The pose that shows a box whole, whichever way it is turned.
+    """The pose that shows points whole, whichever way they are turned.
 
     Parameters
     ----------
-    bounds
-        Lowest and highest corner, shape (2, 3).
+    points
+        Vertices, or corners of a box, shape (n, 3).
     direction
         A key of :data:`DIRECTIONS`.
     aspect
         Width of the picture over its height.
     margin
-        Half the shorter side of the picture over the radius of the box.
+        Half the shorter side of the picture over the radius of the sphere about all points.
     """
-    box = np.asarray(bounds, dtype=np.float64)
-    centre = box.mean(axis=0)
-    radius = max(float(np.linalg.norm(box[1] - box[0])) / 2, 1e-12)
+    places = np.asarray(points, dtype=np.float64)
+    centre = (places.min(axis=0) + places.max(axis=0)) / 2
+    radius = max(float(np.linalg.norm(places - centre, axis=1).max()), 1e-12)
     view = DIRECTIONS[direction]
     towards = np.asarray(view.towards_eye) / np.linalg.norm(view.towards_eye)
     eye = centre + 4.0 * radius * towards
-    scale = 0.8 * radius * margin / min(1.0, max(aspect, 1e-3))
+    scale = radius * margin / min(1.0, max(aspect, 1e-3))
     return CameraPose(_vector(eye), _vector(centre), view.up, scale)
 
 

@@ -49,7 +49,7 @@ def three_views(
     width, height = VIEW_SIZE
     plotter = pv.Plotter(off_screen=True, shape=(1, 3), window_size=[3 * width, height], border=False)
     try:
-        pose = cameras.framing_pose(particle.bounds, direction, width / height)
+        pose = cameras.framing_pose(particle.vertices, direction, width / height)
         bars = []
         for column, title in enumerate(titles):
             plotter.subplot(0, column)

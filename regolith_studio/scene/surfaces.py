@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.scene import palette
+from regolith_studio.scene import annotations, palette
 from regolith_studio.scene.palette import Material, Surroundings
 
 SURFACE = "surface"
@@ -26,7 +26,11 @@ def show_particle(plotter: Any, mesh: Mesh) -> None:
 
 
 def show_fit(
-    plotter: Any, mesh: Mesh, distances: FloatArray | None = None, span: float | None = None
+    plotter: Any,
+    mesh: Mesh,
+    distances: FloatArray | None = None,
+    span: float | None = None,
+    surroundings: Surroundings = palette.LIGHT,
 ) -> None:
     """The fit, in its own colour or coloured by its distance from the particle.
 
@@ -40,12 +44,15 @@ def show_fit(
         Signed distance of each vertex from the particle, shape (n,), positive outside.
     span
         Distance at both ends of the colour map; the largest distance if not given.
+    surroundings
+        Whose ink the scale of the map is written with.
     """
     surface = _smooth(mesh)
     if distances is not None:
         surface.point_data["distance"] = distances
     actor = _show_surface(plotter, surface, palette.FIT_MATERIAL, smooth=True)
     mapper = actor.mapper
+    annotations.hide_colour_scale(plotter)
     mapper.scalar_visibility = distances is not None
     if distances is not None:
         reach = span if span is not None else float(np.abs(distances).max(initial=0.0))
@@ -53,6 +60,7 @@ def show_fit(
         mapper.scalar_range = (-reach or -1.0, reach or 1.0)
         mapper.SetScalarModeToUsePointFieldData()
         mapper.SelectColorArray("distance")
+        annotations.show_colour_scale(plotter, mapper, "µm", surroundings)
 
 
 def show_polyhedron(
@@ -81,6 +89,7 @@ def show_polyhedron(
 
 def clear(plotter: Any) -> None:
     """Show no surface."""
+    annotations.hide_colour_scale(plotter)
     for name in (SURFACE, OUTLINE):
         if name in plotter.actors:
             plotter.actors[name].SetVisibility(False)

@@ -7,6 +7,7 @@ from PySide6.QtCore import QObject
 from PySide6.QtWidgets import QDialog, QFileDialog, QWidget
 
 from regolith_studio.errors import RegolithError
+from regolith_studio.session.plan import Kind
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.session.recipe import SAMPLE, Recipe
 from regolith_studio.session.session import Session
@@ -101,6 +102,10 @@ class Commands(QObject):
     def redo(self) -> None:
         """Take it again."""
         self._session.redo()
+
+    def start_study(self, kind: Kind) -> None:
+        """Run a study over all open particles."""
+        self._try(lambda: self._session.start_study(kind))
 
     def stop(self, task_id: int) -> None:
         """Stop one task."""

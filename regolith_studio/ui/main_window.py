@@ -5,16 +5,11 @@ from functools import partial
 from pathlib import Path
 from typing import cast
 
-from PySide6.QtCore import Qt, QTimer
-from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent
+from PySide6.QtCore import QTimer
+from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QGuiApplication
 from PySide6.QtWidgets import (
     QApplication,
     QMainWindow,
-    QScrollArea,
-    QSplitter,
-    QTabWidget,
-    QVBoxLayout,
-    QWidget,
 )
 
 from regolith_studio.scene.cameras import DIRECTIONS
@@ -23,15 +18,13 @@ from regolith_studio.session.session import Session
 from regolith_studio.ui.actions import Actions
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.dialogs.help import about_dialog, shortcuts_dialog
+from regolith_studio.ui.layout import CONTROLS_WIDTH, padded, scrolled_column, side_by_side, stacked
 from regolith_studio.ui.panels.coarsening import CoarseningPanel
-from regolith_studio.ui.panels.descriptor_table import DescriptorTablePanel
-from regolith_studio.ui.panels.error_bars import ErrorBarsPanel
 from regolith_studio.ui.panels.fit import FitPanel
 from regolith_studio.ui.panels.loss import LossPanel
-from regolith_studio.ui.panels.loss_curve import LossCurvePanel
 from regolith_studio.ui.panels.particle_list import ParticleListPanel
-from regolith_studio.ui.panels.spectrum import SpectrumPanel
 from regolith_studio.ui.panels.tasks import TasksPanel
+from regolith_studio.ui.plot_area import PlotArea
 from regolith_studio.ui.theme import apply_theme, current_theme
 from regolith_studio.ui.views.triptych import Triptych
 from regolith_studio.ui.widgets.toast import Toast
@@ -60,13 +53,9 @@ class MainWindow(QMainWindow):
         self.particles, self.fit = ParticleListPanel(), FitPanel()
         self.coarsening, self.loss = CoarseningPanel(), LossPanel()
         self.triptych = Triptych(views)
-        self.error_bars, self.table = ErrorBarsPanel(), DescriptorTablePanel()
-        self.loss_curve, self.spectrum = LossCurvePanel(), SpectrumPanel()
+        self.plots = PlotArea()
         self.tasks = TasksPanel()
-        self._panels = (
-            *(self.particles, self.fit, self.coarsening, self.loss, self.tasks),
-            *(self.error_bars, self.table, self.loss_curve, self.spectrum),
-        )
+        self._themed = (self.particles, self.coarsening, self.plots, self.tasks, self.triptych)
         self._place()
         self.toast = Toast(self)
         self.commands = Commands(session, preferences, self.toast, self)
@@ -77,33 +66,10 @@ class MainWindow(QMainWindow):
         self.resize(1480, 900)
 
     def _place(self) -> None:
-        controls = QWidget()
-        column = QVBoxLayout(controls)
-        column.setSpacing(18)
-        column.setContentsMargins(4, 8, 10, 8)
-        for panel in (self.fit, self.coarsening, self.loss):
-            column.addWidget(panel)
-        column.addStretch(1)
-        scroll = QScrollArea()
-        scroll.setWidgetResizable(True)
-        scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        scroll.setWidget(controls)
-        scroll.setMinimumWidth(270)
-        left = QWidget()
-        inner = QVBoxLayout(left)
-        inner.setContentsMargins(10, 8, 2, 8)
-        inner.addWidget(self.particles)
-        plots = _splitter(
-            Qt.Orientation.Horizontal,
-            [
-                _tabs("plots_left", [(self.error_bars, "Errors"), (self.table, "Descriptors")]),
-                _tabs("plots_right", [(self.loss_curve, "Loss"), (self.spectrum, "Spectrum")]),
-            ],
-            [1, 1],
-        )
-        middle = _splitter(Qt.Orientation.Vertical, [self.triptych, plots], [3, 2])
-        middle.setContentsMargins(4, 8, 4, 8)
-        self.setCentralWidget(_splitter(Qt.Orientation.Horizontal, [left, middle, scroll], [250, 900, 290]))
+        middle = stacked([self.triptych, self.plots], [520, 300], stretch=0)
+        controls = scrolled_column([self.fit, self.coarsening, self.loss])
+        parts = [padded(self.particles, 10, 10, 2, 8), padded(middle, 2, 10, 2, 8), controls]
+        self.setCentralWidget(side_by_side(parts, [285, 900, CONTROLS_WIDTH], stretch=1))
         self.statusBar().addWidget(self.tasks, 1)
         self.statusBar().setSizeGripEnabled(False)
 
@@ -128,23 +94,17 @@ class MainWindow(QMainWindow):
         wiring.refresh("particles", lambda: self.particles.set_entries(session.particles))
         wiring.refresh("particles choices", lambda: self.triptych.show_particle(session.selected))
         wiring.refresh("fit", lambda: self.fit.set_findings(session.results.fit))
-        wiring.refresh(
-            "surface", lambda: self.triptych.show_fit(session.results.surface, session.choices.l_max)
-        )
+        wiring.refresh("surface", self._show_fit)
         wiring.refresh("coarsening", self._show_coarsening)
-        wiring.refresh(
-            "descriptors coarsening choices",
-            lambda: self.error_bars.show_results(session.results, session.choices),
-        )
-        wiring.refresh("descriptors coarsening", lambda: self.table.show_results(session.results))
-        wiring.refresh("fit choices", lambda: self.spectrum.show_results(session.results, session.choices))
         wiring.refresh("tasks", lambda: self.tasks.setValue(session.tasks))
         wiring.refresh("tasks", self.commands.show_tasks)
         wiring.refresh("choices", self._show_undo)
         wiring.hear("failed", lambda failure: self.toast.problem(failure.sentence, failure.details))
         wiring.hear("problems", lambda problems: self.toast.note(problems[0], "\n".join(problems)))
         wiring.hear("exported", self.commands.tell_exported)
+        self.plots.wire(session, wiring, self.commands)
         self.tasks.cancelRequested.connect(self.commands.stop)
+        QGuiApplication.styleHints().colorSchemeChanged.connect(self._apply_theme)
         self.menus.recent.aboutToShow.connect(self._list_recent)
 
     def _show_fit(self) -> None:
@@ -153,7 +113,6 @@ class MainWindow(QMainWindow):
     def _show_coarsening(self) -> None:
         results = self.session.results
         self.triptych.show_polyhedron(results)
-        self.loss_curve.show_results(results)
         self.coarsening.set_outcome(results.coarsened.reason if results.coarsened else None)
 
     def _show_undo(self) -> None:
@@ -168,9 +127,9 @@ class MainWindow(QMainWindow):
     def _apply_theme(self) -> None:
         theme = current_theme()
         apply_theme(cast(QApplication, QApplication.instance()), theme)
-        for part in (*self._panels, self.triptych, self.menus):
-            if hasattr(part, "set_theme"):
-                part.set_theme(theme)
+        self.menus.set_theme(theme)
+        for part in self._themed:
+            part.set_theme(theme)
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
         if any(url.isLocalFile() for url in event.mimeData().urls()):
@@ -182,27 +141,9 @@ class MainWindow(QMainWindow):
         QTimer.singleShot(0, self, lambda: self.commands.open_paths(paths))
 
     def closeEvent(self, event: QCloseEvent) -> None:
+        QGuiApplication.styleHints().colorSchemeChanged.disconnect(self._apply_theme)
         self.hide()
         self.wiring.cut()
         self.session.close()
         self.triptych.release()
         event.accept()
-
-
-def _tabs(name: str, pages: list[tuple[QWidget, str]]) -> QTabWidget:
-    tabs = QTabWidget()
-    tabs.setObjectName(name)
-    tabs.setDocumentMode(False)
-    for page, title in pages:
-        tabs.addTab(page, title)
-    return tabs
-
-
-def _splitter(direction: Qt.Orientation, parts: list[QWidget], sizes: list[int]) -> QSplitter:
-    splitter = QSplitter(direction)
-    splitter.setChildrenCollapsible(False)
-    splitter.setHandleWidth(6)
-    for part in parts:
-        splitter.addWidget(part)
-    splitter.setSizes(sizes)
-    return splitter

@@ -23,8 +23,8 @@ class Theme:
         Whether letters are lighter than the ground.
     window, base, raised, border
         Grounds of the window, of lists and plots, of buttons; lines between them.
-    text, muted, accent
-        Letters, side remarks, what is selected.
+    text, muted, accent, selected
+        Letters, side remarks, what can be used, what is selected in a list.
     particle, fit, polyhedron
         The same three things in every plot and title.
     good, doubtful, bad
@@ -41,6 +41,7 @@ class Theme:
     text: str
     muted: str
     accent: str
+    selected: str
     particle: str
     fit: str
     polyhedron: str
@@ -59,6 +60,7 @@ LIGHT = Theme(
     text="#1f242b",
     muted="#66707d",
     accent="#0067a3",
+    selected="#d3e6f4",
     particle="#8d8a84",
     fit=palette.FIT,
     polyhedron=palette.POLYHEDRON,
@@ -76,6 +78,7 @@ DARK = Theme(
     text="#e4e7eb",
     muted="#9aa4b0",
     accent="#3d9be0",
+    selected="#25455f",
     particle="#a9a59d",
     fit="#56b4e9",
     polyhedron="#f0b13a",
@@ -144,9 +147,10 @@ QToolBar QToolButton:checked {{ background: {theme.base}; border-color: {theme.b
 QFrame[role="card"] {{ background: {theme.base}; border: 1px solid {theme.border}; border-radius: 5px; }}
 QFrame[role="toast"] {{ background: {theme.raised}; border: 1px solid {theme.bad}; border-radius: 6px; }}
 QFrame[role="toast"][mood="note"] {{ border-color: {theme.accent}; }}
-QTableView {{ border: 1px solid {theme.border}; border-radius: 5px; gridline-color: transparent; }}
+QTableView {{ border: 1px solid {theme.border}; border-radius: 5px; gridline-color: transparent;
+    selection-background-color: {theme.selected}; selection-color: {theme.text}; }}
 QHeaderView::section {{ background: {theme.window}; color: {theme.muted}; border: none;
-    border-bottom: 1px solid {theme.border}; padding: 4px 5px; }}
+    border-bottom: 1px solid {theme.border}; padding: 4px 3px; }}
 QTabWidget::pane {{ border: 1px solid {theme.border}; border-radius: 5px; background: {theme.base};
     top: -1px; }}
 QTabBar::tab {{ padding: 5px 11px; color: {theme.muted}; border: 1px solid transparent; border-bottom: none;

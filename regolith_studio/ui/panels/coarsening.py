@@ -16,9 +16,9 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.coarsening.coarsen import FACES_LIMITS
 from regolith_studio.coarsening.methods import METHODS
-from regolith_studio.session.choices import TARGETS
 from regolith_studio.ui.icons import icon
 from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.widgets.collapsible import Collapsible
 from regolith_studio.ui.widgets.labels import heading, remark
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
 from regolith_studio.ui.widgets.settings_form import SettingsForm
@@ -31,6 +31,7 @@ FACES = NumberSpec(
     limit=FACES_LIMITS[1],
     tip="Half-spaces of Eq. 5; n facets in general position have 2n−4 vertices and 4n−12 triangles.",
 )
+TARGET_LABELS = {"fit": "Spherical-harmonics fit", "particle": "CT particle"}
 SEED_LIMIT = 2**31 - 1
 
 
@@ -47,7 +48,7 @@ class CoarseningPanel(QWidget):
         self.n_faces = NumberSlider(FACES)
         self.n_faces.slider.setObjectName("n_faces_slider")
         self.n_faces.field.setObjectName("n_faces")
-        self.target = _combo("target", "What is imitated", TARGETS)
+        self.target = _combo("target", "What is imitated", TARGET_LABELS)
         self.method = _combo("method", "Coarsening method", {k: m.label for k, m in METHODS.items()})
         self.seed = _seed_field()
         self.dice = QToolButton()
@@ -55,7 +56,11 @@ class CoarseningPanel(QWidget):
         self.dice.setToolTip("Next seed: the same method with other random numbers")
         self.dice.setAccessibleName("Next seed")
         self._forms: dict[str, SettingsForm] = {}
-        self._settings = QVBoxLayout()
+        inside = QWidget()
+        self._settings = QVBoxLayout(inside)
+        self._settings.setContentsMargins(14, 0, 0, 0)
+        self.more = Collapsible("Settings of the method", inside)
+        self.more.button.setObjectName("method_settings")
         self.outcome = remark(role="warning")
         self.outcome.hide()
         self.set_theme(current_theme())
@@ -110,7 +115,7 @@ class CoarseningPanel(QWidget):
         layout.addWidget(heading("Coarsened polyhedron"))
         layout.addWidget(self.n_faces)
         layout.addLayout(form)
-        layout.addLayout(self._settings)
+        layout.addWidget(self.more)
         layout.addWidget(self.outcome)
 
     def _connect(self) -> None:
@@ -137,7 +142,8 @@ class CoarseningPanel(QWidget):
             form.valueChanged.connect(lambda _: self._announce("settings"))
             self._settings.addWidget(form)
         for name, form in self._forms.items():
-            form.setVisible(name == key and not form.is_empty())
+            form.setVisible(name == key)
+        self.more.setVisible(bool(key) and not self._forms[key].is_empty())
 
 
 def _combo(name: str, accessible: str, entries: Mapping[str, str]) -> QComboBox:

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 
 from PySide6.QtCore import Qt
+from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import (
     QAbstractItemView,
     QHeaderView,
@@ -12,17 +13,13 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from regolith_studio.descriptors.catalogue import CATALOGUE, Descriptor
+from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.session.results import Results
 from regolith_studio.ui.widgets.labels import plain_symbol
 
-_POWERS = {0: "", 1: " [µm]", 2: " [µm²]", 3: " [µm³]", 5: " [µm⁵]"}
+_UNITS = {0: "", 1: " [µm]", 2: " [µm²]", 3: " [µm³]", 5: " [µm⁵]"}
 COLUMNS = ("Particle", "Fit", "Polyhedron")
-
-
-def row_title(row: Descriptor) -> str:
-    """Label, symbol and unit of one descriptor."""
-    return f"{row.label} {plain_symbol(row.symbol)}{_POWERS.get(row.dimension, '')}"
+_ROOM_FOR_LABELS = 440
 
 
 class DescriptorTablePanel(QWidget):
@@ -31,24 +28,23 @@ class DescriptorTablePanel(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setObjectName("descriptor_table")
-        self._keys = [key for key, row in CATALOGUE.items() if not row.costly and row.dimension in _POWERS]
+        self._keys = [key for key, row in CATALOGUE.items() if not row.costly and row.dimension in _UNITS]
         self.table = QTableWidget(len(self._keys), len(COLUMNS))
         self.table.setAccessibleName("Descriptors")
         self.table.setHorizontalHeaderLabels(COLUMNS)
-        self.table.setVerticalHeaderLabels([row_title(CATALOGUE[key]) for key in self._keys])
         self.table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
         self.table.setSelectionMode(QAbstractItemView.SelectionMode.NoSelection)
         self.table.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self.table.setShowGrid(False)
         self.table.setFrameShape(self.table.Shape.NoFrame)
-        self.table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
-        self.table.verticalHeader().setDefaultSectionSize(self.table.fontMetrics().height() + 6)
-        for number, key in enumerate(self._keys):
-            if (item := self.table.verticalHeaderItem(number)) is not None:
-                item.setToolTip(CATALOGUE[key].formula)
+        header, rows = self.table.horizontalHeader(), self.table.verticalHeader()
+        header.setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
+        header.setDefaultAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+        rows.setDefaultSectionSize(self.table.fontMetrics().height() + 6)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(self.table)
+        self._name_rows()
 
     def show_results(self, results: Results) -> None:
         """Fill the table from these results."""
@@ -57,6 +53,18 @@ class DescriptorTablePanel(QWidget):
         for column, values in enumerate(found):
             for row, key in enumerate(self._keys):
                 self.table.setItem(row, column, _cell(values, key))
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._name_rows()
+
+    def _name_rows(self) -> None:
+        for number, key in enumerate(self._keys):
+            row = CATALOGUE[key]
+            short = plain_symbol(row.symbol) + _UNITS[row.dimension]
+            item = QTableWidgetItem(f"{row.label} {short}" if self.width() > _ROOM_FOR_LABELS else short)
+            item.setToolTip(f"{row.label}: {row.formula}")
+            self.table.setVerticalHeaderItem(number, item)
 
 
 def _cell(values: Mapping[str, float] | None, key: str) -> QTableWidgetItem:

@@ -55,8 +55,10 @@ class FitPanel(QWidget):
         """Say what the radius function of a ``HarmonicFit`` cannot represent."""
         if fit is None:
             self.findings.setText("Not fitted yet.")
+            self.findings.show()
             self.warnings.hide()
             return
+        self.findings.setVisible(not fit.warnings)
         self.findings.setText(
             f"{fit.hidden_surface_share:.1%} of the surface is hidden from the star point; "
             f"{fit.unrepresentable_volume_share:.1%} of the volume cannot be represented."

@@ -13,12 +13,13 @@ from PySide6.QtCore import (
     Qt,
     Signal,
 )
-from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QTableView, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.ui.icons import pixmap
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.widgets.labels import heading, remark
+from regolith_studio.ui.widgets.table import ListTable
 
 Index = QModelIndex | QPersistentModelIndex
 NOWHERE = QModelIndex()
@@ -53,7 +54,7 @@ def _descriptor(key: str, form: str) -> tuple[Callable[[ParticleEntry], Any], Ca
         return float(entry.descriptors[key]) if entry.descriptors else float("-inf")
 
     def text(entry: ParticleEntry) -> str:
-        return form.format(entry.descriptors[key]) if entry.descriptors else "…"
+        return form.format(entry.descriptors[key]).replace("e+0", "e") if entry.descriptors else "…"
 
     return value, text
 
@@ -61,7 +62,7 @@ def _descriptor(key: str, form: str) -> tuple[Callable[[ParticleEntry], Any], Ca
 COLUMNS = (
     Column("Particle", "Name and health of the mesh", lambda e: e.id, lambda e: e.id),
     Column("Group", "Sample or size fraction", lambda e: e.particle.group, lambda e: e.particle.group),
-    Column("V [µm³]", "Volume", *_descriptor("volume", "{:,.4g}")),
+    Column("V [µm³]", "Volume", *_descriptor("volume", "{:.3g}")),
     Column("S", "Sphericity, Eq. 1 (Wadell)", *_descriptor("sphericity", "{:.3f}")),
     Column("AR", "Aspect ratio, Eq. 2", *_descriptor("aspect_ratio", "{:.2f}")),
 )
@@ -173,6 +174,8 @@ class ParticleListPanel(QWidget):
     def set_entries(self, entries: Sequence[ParticleEntry]) -> None:
         """List other particles, or the same ones with more known about them."""
         entries = tuple(entries)
+        if entries == self._model.entries:
+            return
         same = [entry.id for entry in entries] == [entry.id for entry in self._model.entries]
         self._quiet = True
         if same:
@@ -183,10 +186,11 @@ class ParticleListPanel(QWidget):
             self._model.beginResetModel()
             self._model.entries = entries
             self._model.endResetModel()
-            grouped = any(entry.particle.group for entry in entries)
-            self.table.setColumnHidden(1, not grouped)
+            groups = {entry.particle.group for entry in entries}
+            self.table.setColumnHidden(1, len(groups) < 2)
         self._quiet = False
         self._mark()
+        self.table.fit_columns()
         self.title.setText(f"Particles ({len(entries)})" if entries else "Particles")
 
     def set_theme(self, theme: Theme) -> None:
@@ -194,26 +198,13 @@ class ParticleListPanel(QWidget):
         self._model.set_theme(theme)
         self.table.viewport().update()
 
-    def _make_table(self) -> QTableView:
-        table = QTableView()
+    def _make_table(self) -> ListTable:
+        table = ListTable()
         table.setObjectName("particle_table")
         table.setAccessibleName("Particles")
         table.setModel(self._sorted)
         table.setSortingEnabled(True)
         table.horizontalHeader().setSortIndicator(-1, Qt.SortOrder.AscendingOrder)
-        table.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
-        table.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)
-        table.setShowGrid(False)
-        table.setTabKeyNavigation(False)
-        table.setWordWrap(False)
-        table.verticalHeader().hide()
-        table.verticalHeader().setDefaultSectionSize(table.fontMetrics().height() + 9)
-        header = table.horizontalHeader()
-        header.setHighlightSections(False)
-        header.setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
-        header.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
-        header.setMinimumSectionSize(34)
-        header.setDefaultAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
         return table
 
     def _mark(self) -> None:
@@ -224,7 +215,7 @@ class ParticleListPanel(QWidget):
         self._quiet = True
         flags = QItemSelectionModel.SelectionFlag
         self.table.selectionModel().setCurrentIndex(index, flags.ClearAndSelect | flags.Rows)
-        self.table.scrollTo(index)
+        self.table.scrollTo(self._sorted.index(index.row(), 0))
         self._quiet = False
 
     def _clicked(self, index: QModelIndex) -> None:

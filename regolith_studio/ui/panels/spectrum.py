@@ -23,7 +23,9 @@ class SpectrumPanel(QWidget):
         super().__init__(parent)
         self.setObjectName("spectrum")
         self.plot = Plot(
-            "Degree l", "Amplitude √A_l / c₀₀ [%]", "The spectrum appears when the particle is fitted."
+            "Degree l",
+            "Amplitude √A<sub>l</sub> / c<sub>00</sub> [%]",
+            "The spectrum appears when the particle is fitted.",
         )
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)

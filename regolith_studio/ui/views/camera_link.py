@@ -35,11 +35,11 @@ class CameraLink:
         if linked:
             self._spread(self._views[0])
 
-    def frame(self, bounds: ArrayLike) -> None:
-        """Show a box whole in every view, from the direction chosen last."""
+    def frame(self, points: ArrayLike) -> None:
+        """Show points whole in every view, from the direction chosen last."""
         for view in self._views:
             width, height = view.widget.width(), view.widget.height()
-            view.set_pose(framing_pose(bounds, self._direction, width / max(height, 1)))
+            view.set_pose(framing_pose(points, self._direction, width / max(height, 1)))
 
     def look_from(self, direction: str) -> None:
         """Look from a standard direction, at the same point and scale."""

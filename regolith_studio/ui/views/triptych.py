@@ -1,5 +1,7 @@
 """CT particle, fit and polyhedron side by side: the three views that are always there."""
 
+import html
+
 import numpy as np
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QSplitter, QWidget
@@ -56,18 +58,20 @@ class Triptych(QSplitter):
         self._empty_titles()
         self.views["particle"].draw(lambda plotter: surfaces.show_particle(plotter, mesh))
         self.frames["particle"].set_texts(
-            "CT particle", f"{entry.id}: {_lengths(mesh.bounds)}, {len(mesh.faces):,} triangles"
+            f"CT particle, {html.escape(entry.id)}", f"{_lengths(mesh.bounds)}, {len(mesh.faces):,} triangles"
         )
-        self.link.frame(mesh.bounds)
+        self.link.frame(mesh.vertices)
 
     def show_fit(self, mesh: Mesh | None, l_max: int) -> None:
         """Show the surface of the fit."""
         if mesh is None or self._shown is None:
             return
         self._fit = mesh
+        degree = f"l<sub>max</sub>&nbsp;=&nbsp;{l_max}"
         self.frames["fit"].set_texts(
-            f"Spherical-harmonics fit, l<sub>max</sub>&nbsp;=&nbsp;{l_max}",
+            f"Spherical-harmonics fit, {degree}",
             f"{(l_max + 1) ** 2:,} coefficients, {len(mesh.faces):,} triangles",
+            f"Harmonics fit, {degree}",
         )
         self._draw_fit()
 
@@ -98,7 +102,7 @@ class Triptych(QSplitter):
     def reset_cameras(self) -> None:
         """Show the particle whole again."""
         if self._shown is not None:
-            self.link.frame(self._shown.bounds)
+            self.link.frame(self._shown.vertices)
 
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
@@ -116,13 +120,12 @@ class Triptych(QSplitter):
         mesh, particle = self._fit, self._shown
         if mesh is None or particle is None:
             return
+        ink = self._theme.surroundings
         distances: FloatArray | None = signed_distances(mesh.vertices, particle) if self._heat else None
-        self.views["fit"].draw(lambda plotter: surfaces.show_fit(plotter, mesh, distances))
+        self.views["fit"].draw(lambda plotter: surfaces.show_fit(plotter, mesh, distances, None, ink))
         if distances is not None:
             reach = float(np.abs(distances).max(initial=0.0))
-            self.frames["fit"].detail.setText(
-                f"distance from the particle: blue −{reach:.3g} µm, red +{reach:.3g} µm"
-            )
+            self.frames["fit"].detail.setText(f"at most {reach:.3g} µm from the particle")
 
     def _empty_titles(self) -> None:
         self.frames["particle"].set_texts("CT particle")

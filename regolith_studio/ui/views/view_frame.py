@@ -1,10 +1,13 @@
 """A view with its title above it."""
 
 from PySide6.QtCore import Qt
+from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
 from regolith_studio.ui.views.protocol import SceneView
 from regolith_studio.ui.widgets.labels import ElidedLabel
+
+_PADDING = 9
 
 
 class ViewFrame(QFrame):
@@ -23,6 +26,7 @@ class ViewFrame(QFrame):
         self.setObjectName(f"view_{name}")
         self.setProperty("role", "card")
         self.view = view
+        self._titles = ("", "")
         self._mark = QLabel()
         self._title = QLabel()
         self._title.setTextFormat(Qt.TextFormat.RichText)
@@ -31,12 +35,12 @@ class ViewFrame(QFrame):
         self.detail = ElidedLabel(role="remark")
         view.widget.setObjectName(f"scene_{name}")
         row = QHBoxLayout()
-        row.setContentsMargins(9, 6, 9, 0)
+        row.setContentsMargins(_PADDING, 6, _PADDING, 0)
         row.setSpacing(5)
         row.addWidget(self._mark)
         row.addWidget(self._title, 1)
         under = QHBoxLayout()
-        under.setContentsMargins(9, 0, 9, 4)
+        under.setContentsMargins(_PADDING, 0, _PADDING, 4)
         under.addWidget(self.detail)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(1, 1, 1, 1)
@@ -49,8 +53,20 @@ class ViewFrame(QFrame):
         """Colour of the mark before the title: the same as in the plots."""
         self._mark.setText(f'<span style="color:{colour}">&#9632;</span>')
 
-    def set_texts(self, title: str, detail: str = "") -> None:
-        """Title as rich text, and the quiet line."""
-        self._title.setText(title)
+    def set_texts(self, title: str, detail: str = "", short: str = "") -> None:
+        """Title as rich text, the quiet line, and a title for views too narrow for the first one."""
+        self._titles = (title, short or title)
+        self._choose_title()
         self.detail.setText(detail)
         self.view.widget.setAccessibleName(f"{title}. {detail}")
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._choose_title()
+
+    def _choose_title(self) -> None:
+        room = self.width() - 2 * _PADDING - 8 - self._mark.sizeHint().width()
+        for title in self._titles:
+            self._title.setText(title)
+            if self._title.sizeHint().width() <= room:
+                return

@@ -87,6 +87,7 @@ class Plot(QWidget):
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
         self.theme = theme
+        self.canvas.setBackground(theme.base)
         small = QFont(self.font())
         small.setPointSizeF(max(6.0, self.font().pointSizeF() - 1.0))
         for side in ("bottom", "left"):

@@ -10,6 +10,8 @@ from typing import Any
 from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import QCheckBox, QComboBox, QDoubleSpinBox, QFormLayout, QLineEdit, QSpinBox, QWidget
 
+from regolith_studio.ui.widgets.labels import rich_symbol
+
 Scalar = bool | int | float | str
 
 
@@ -34,9 +36,11 @@ class SettingsForm(QWidget):
             editor.setAccessibleName(label)
             editor.setToolTip(str(each.metadata.get("tip", "")))
             _signal(editor).connect(lambda *_: self.valueChanged.emit(self.value()))
-            form.addRow("" if isinstance(editor, QCheckBox) else label, editor)
             if isinstance(editor, QCheckBox):
                 editor.setText(label)
+                form.addRow(editor)
+            else:
+                form.addRow(rich_symbol(label), editor)
 
     def value(self) -> dict[str, Scalar]:
         """Settings that are not at their default, by name."""

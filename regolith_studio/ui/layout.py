@@ -1,0 +1,70 @@
+"""Ways of placing parts beside each other."""
+
+from collections.abc import Sequence
+
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QScrollArea, QSizePolicy, QSplitter, QTabWidget, QVBoxLayout, QWidget
+
+CONTROLS_WIDTH = 290
+
+
+def side_by_side(parts: Sequence[QWidget], sizes: Sequence[int], stretch: int) -> QSplitter:
+    """Parts in a row with movable borders; the one numbered `stretch` takes what room is left."""
+    return _splitter(Qt.Orientation.Horizontal, parts, sizes, stretch)
+
+
+def stacked(parts: Sequence[QWidget], sizes: Sequence[int], stretch: int) -> QSplitter:
+    """Parts in a column with movable borders."""
+    return _splitter(Qt.Orientation.Vertical, parts, sizes, stretch)
+
+
+def tabs(name: str, pages: Sequence[tuple[QWidget, str]]) -> QTabWidget:
+    """Pages of which one is seen."""
+    made = QTabWidget()
+    made.setObjectName(name)
+    made.setMinimumHeight(120)
+    made.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Ignored)
+    for page, title in pages:
+        made.addTab(page, title)
+    return made
+
+
+def scrolled_column(panels: Sequence[QWidget]) -> QScrollArea:
+    """Panels below each other, with a scroll bar where they do not fit."""
+    inside = QWidget()
+    column = QVBoxLayout(inside)
+    column.setSpacing(20)
+    column.setContentsMargins(4, 10, 12, 10)
+    for panel in panels:
+        column.addWidget(panel)
+    column.addStretch(1)
+    area = QScrollArea()
+    area.setObjectName("controls")
+    area.setWidgetResizable(True)
+    area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+    area.setWidget(inside)
+    area.setMinimumWidth(CONTROLS_WIDTH - 30)
+    area.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+    return area
+
+
+def padded(part: QWidget, left: int, top: int, right: int, bottom: int) -> QWidget:
+    """A part with room around it."""
+    frame = QWidget()
+    layout = QVBoxLayout(frame)
+    layout.setContentsMargins(left, top, right, bottom)
+    layout.addWidget(part)
+    return frame
+
+
+def _splitter(
+    direction: Qt.Orientation, parts: Sequence[QWidget], sizes: Sequence[int], stretch: int
+) -> QSplitter:
+    made = QSplitter(direction)
+    made.setChildrenCollapsible(False)
+    made.setHandleWidth(7)
+    for number, part in enumerate(parts):
+        made.addWidget(part)
+        made.setStretchFactor(number, 1 if number == stretch else 0)
+    made.setSizes(list(sizes))
+    return made

@@ -1,0 +1,60 @@
+"""RMSRE of the descriptors against l_max over all open particles (Fig. 3 of the paper)."""
+
+from typing import Any
+
+import numpy as np
+from PySide6.QtWidgets import QVBoxLayout, QWidget
+
+from regolith_studio.descriptors.catalogue import CATALOGUE
+from regolith_studio.scene.palette import DESCRIPTOR_COLOURS
+from regolith_studio.ui.theme import Theme
+from regolith_studio.ui.widgets.curve_plot import Curve, CurvePlot
+from regolith_studio.ui.widgets.labels import rich_symbol
+from regolith_studio.ui.widgets.study_frame import StudyFrame
+
+WAITING = "Root mean squared relative error of each descriptor against l_max, as in Fig. 3 of the paper."
+
+
+class LmaxStudyPanel(QWidget):
+    """A curve a descriptor, and a line at the l_max chosen now."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("lmax_study")
+        self.plot = CurvePlot("Maximum degree l<sub>max</sub>", "RMSRE [%]", WAITING)
+        self.frame = StudyFrame("lmax_study", self.plot)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(self.frame)
+        self._study: Any = None
+
+    def show_study(self, study: Any, outdated: bool) -> None:
+        """Draw an ``LmaxStudy``, or nothing."""
+        self._study = study
+        if study is None:
+            self.plot.set_curves([])
+            self.frame.set_remark("")
+            return
+        values = 100.0 * np.asarray(study.rmsre())
+        degrees = tuple(float(degree) for degree in study.degrees)
+        curves = [
+            Curve(
+                rich_symbol(CATALOGUE[key].symbol),
+                DESCRIPTOR_COLOURS[number % len(DESCRIPTOR_COLOURS)],
+                degrees,
+                tuple(values[:, number]),
+                markers=True,
+            )
+            for number, key in enumerate(study.keys)
+        ]
+        self.plot.set_curves(curves)
+        count = f"{len(study.names)} particles"
+        self.frame.set_remark(f"{count}; computed with other choices" if outdated else count)
+
+    def show_l_max(self, l_max: int) -> None:
+        """Mark the degree chosen now."""
+        self.plot.set_marker(float(l_max))
+
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        self.plot.set_theme(theme)

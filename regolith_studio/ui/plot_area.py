@@ -1,0 +1,77 @@
+"""The plots below the views: errors and descriptors on the left, what is computed on the right."""
+
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QSplitter, QWidget
+
+from regolith_studio.session.plan import Kind
+from regolith_studio.session.session import Session
+from regolith_studio.ui.commands import Commands
+from regolith_studio.ui.layout import tabs
+from regolith_studio.ui.panels.descriptor_table import DescriptorTablePanel
+from regolith_studio.ui.panels.error_bars import ErrorBarsPanel
+from regolith_studio.ui.panels.lmax_study import LmaxStudyPanel
+from regolith_studio.ui.panels.loss_curve import LossCurvePanel
+from regolith_studio.ui.panels.spectrum import SpectrumPanel
+from regolith_studio.ui.theme import Theme
+from regolith_studio.ui.wiring import Wiring
+
+
+class PlotArea(QSplitter):
+    """Two groups of pages side by side."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(Qt.Orientation.Horizontal, parent)
+        self.setChildrenCollapsible(False)
+        self.setHandleWidth(7)
+        self.error_bars, self.table = ErrorBarsPanel(), DescriptorTablePanel()
+        self.loss_curve, self.spectrum = LossCurvePanel(), SpectrumPanel()
+        self.lmax_study = LmaxStudyPanel()
+        self.left = tabs("plots_left", [(self.error_bars, "Errors"), (self.table, "Descriptors")])
+        self.right = tabs(
+            "plots_right",
+            [
+                (self.loss_curve, "Loss"),
+                (self.spectrum, "Spectrum"),
+                (self.lmax_study, "RMSRE over l_max"),
+            ],
+        )
+        for number, group in enumerate((self.left, self.right)):
+            self.addWidget(group)
+            self.setStretchFactor(number, 1)
+        self.setSizes([1000, 1000])
+
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        for panel in (self.error_bars, self.loss_curve, self.spectrum, self.lmax_study):
+            panel.set_theme(theme)
+
+    def wire(self, session: Session, wiring: Wiring, commands: Commands) -> None:
+        """Show what the session computes, from now on."""
+
+        def errors() -> None:
+            self.error_bars.show_results(session.results, session.choices)
+
+        def spectrum() -> None:
+            self.spectrum.show_results(session.results, session.choices)
+            self.lmax_study.show_l_max(session.choices.l_max)
+
+        wiring.refresh("descriptors coarsening choices", errors)
+        wiring.refresh("descriptors coarsening", lambda: self.table.show_results(session.results))
+        wiring.refresh("coarsening", lambda: self.loss_curve.show_results(session.results))
+        wiring.refresh("fit choices", spectrum)
+        self._wire_study(session, wiring, commands, Kind.LMAX_STUDY, self.lmax_study)
+
+    def _wire_study(
+        self, session: Session, wiring: Wiring, commands: Commands, kind: Kind, panel: LmaxStudyPanel
+    ) -> None:
+        def show() -> None:
+            panel.show_study(getattr(session.results, kind.value), kind.value in session.results.outdated)
+
+        def tasks() -> None:
+            panel.frame.show_task(next((task for task in session.tasks if task.lane == kind), None))
+
+        panel.frame.startRequested.connect(lambda: commands.start_study(kind))
+        panel.frame.cancelRequested.connect(commands.stop)
+        wiring.refresh(kind.value, show)
+        wiring.refresh("tasks", tasks)
+        wiring.refresh("particles", lambda: panel.frame.set_count(len(session.particles)))

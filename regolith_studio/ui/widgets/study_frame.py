@@ -1,0 +1,72 @@
+"""A plot of a study: a button that starts it, its progress, a button that stops it."""
+
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import QHBoxLayout, QProgressBar, QPushButton, QVBoxLayout, QWidget
+
+from regolith_studio.session.tasks import Task
+from regolith_studio.ui.widgets.labels import ElidedLabel
+
+
+class StudyFrame(QWidget):
+    """Places a plot below its controls.
+
+    Parameters
+    ----------
+    name
+        Begins the object names of the buttons.
+    plot
+        What is placed.
+    """
+
+    startRequested = Signal()  # noqa: N815
+    cancelRequested = Signal(int)  # noqa: N815
+
+    def __init__(self, name: str, plot: QWidget, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._task = 0
+        self.start = QPushButton("Compute")
+        self.start.setObjectName(f"{name}_start")
+        self.stop = QPushButton("Stop")
+        self.stop.setObjectName(f"{name}_stop")
+        self.bar = QProgressBar()
+        self.bar.setAccessibleName("Progress of the study")
+        self.bar.setFixedHeight(12)
+        self.bar.setTextVisible(False)
+        self.remark = ElidedLabel(role="remark")
+        row = QHBoxLayout()
+        row.setContentsMargins(8, 6, 8, 0)
+        row.addWidget(self.start)
+        row.addWidget(self.stop)
+        row.addWidget(self.bar, 1)
+        row.addWidget(self.remark, 1)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.setSpacing(2)
+        layout.addLayout(row)
+        layout.addWidget(plot, 1)
+        self.start.clicked.connect(self.startRequested)
+        self.stop.clicked.connect(lambda: self.cancelRequested.emit(self._task))
+        self.show_task(None)
+
+    def set_count(self, count: int) -> None:
+        """Say over how many particles the study goes."""
+        self.start.setText(
+            "Compute for this particle" if count == 1 else f"Compute for all {count} particles"
+        )
+        self.start.setEnabled(count > 0)
+
+    def show_task(self, task: Task | None) -> None:
+        """Show how far the study is, or that it does not run."""
+        running = task is not None
+        self.start.setVisible(not running)
+        self.remark.setVisible(not running)
+        self.stop.setVisible(running)
+        self.bar.setVisible(running)
+        if task is not None:
+            self._task = task.id
+            self.bar.setRange(0, task.total)
+            self.bar.setValue(task.done)
+
+    def set_remark(self, text: str) -> None:
+        """A few words beside the button."""
+        self.remark.setText(text)
