@@ -14,6 +14,9 @@ from regolith_studio.geometry.self_intersection import count_self_intersections
 MOST_FACES_SEARCHED = 200_000
 """Meshes with more faces are not searched for self-intersections."""
 
+LEAST_VOLUME = 1e-12
+"""A mesh that encloses a smaller share of its bounding cube encloses nothing: its volume is rounding."""
+
 DEGENERATE_HEIGHT = 1e-9
 """A triangle is degenerate where its height is below this share of its longest edge."""
 
@@ -33,7 +36,7 @@ class MeshHealth:
     consistent_winding
         Neighbouring triangles run the opposite way along their common edge.
     volume
-        Signed, in the cube of the mesh's unit; negative where the mesh is inside out.
+        Signed, in the cube of the mesh's unit; negative where the mesh is inside out, 0 where it is flat.
     euler_number
         Vertices - edges + faces: 2 for each closed body without handles.
     degenerate_faces, duplicate_faces
@@ -106,7 +109,7 @@ def inspect(mesh: Mesh, *, self_intersections: bool = True) -> MeshHealth:
         bodies=parts.count,
         watertight=whole,
         consistent_winding=bool(len(faces)) and _agrees(table, across),
-        volume=mesh.volume if len(faces) else 0.0,
+        volume=0.0 if _is_flat(vertices, faces) else mesh.volume,
         euler_number=used - len(table.ends) + len(faces),
         degenerate_faces=int(np.count_nonzero(degenerate(vertices, faces))),
         duplicate_faces=len(faces) - len(np.unique(np.sort(faces, axis=1), axis=0)),
@@ -149,6 +152,10 @@ def body_volumes(vertices: FloatArray, faces: IntArray, body: IntArray) -> Float
     corner = corner - (middle / weight)[body][:, None]
     six = np.einsum("ij,ij->i", corner[:, 0], np.cross(corner[:, 1], corner[:, 2]))
     return np.asarray(np.bincount(body, six / 6, minlength=count), dtype=np.float64)
+
+
+def _is_flat(vertices: FloatArray, faces: IntArray) -> bool:
+    return not len(faces) or abs(Mesh(vertices, faces).volume) < LEAST_VOLUME
 
 
 def _agrees(table: EdgeTable, across: IntArray) -> bool:

@@ -151,12 +151,12 @@ def _parity(faces: IntArray) -> IntArray:
 
 
 def _closed_without(draft: _Draft, double: BoolArray, first: IntArray) -> BoolArray:
-    """For each group's first face whether its three edges are closed by faces that are not double."""
+    """For each group's first face whether no edge needs it: both other faces are there, or none is."""
     if double.all():
         return np.zeros(len(first), dtype=np.bool_)
     table = edge_table(draft.faces, len(draft.vertices))
     single = np.bincount(table.edge[np.repeat(~double, 3)], minlength=len(table.ends))
-    return np.asarray((single[table.edge.reshape(-1, 3)[first]] == 2).all(axis=1))
+    return np.asarray(np.isin(single[table.edge.reshape(-1, 3)[first]], (0, 2)).all(axis=1))
 
 
 def _weld_near(draft: _Draft) -> _Draft:
@@ -282,7 +282,9 @@ def _size(mesh: Mesh) -> float:
 
 
 def _percent(share: float) -> str:
-    return f"{100 * share:.2g} %" if share < 0.995 else f"{100 * share:.4g} %"
+    if share > 0.999:
+        return "over 99.9 %"
+    return f"{100 * share:.3g} %" if share > 0.9 else f"{100 * share:.2g} %"
 
 
 def _count(count: int, one: str, many: str) -> str:
