@@ -138,18 +138,18 @@ def show_title(plotter: Any, title: str, surroundings: Surroundings = palette.PA
     ).prop.justification_horizontal = "center"
 
 
-def show_colour_scale(plotter: Any, mapper: Any, title: str, surroundings: Surroundings) -> None:
-    """The scale of a colour map, at the right."""
+def show_colour_scale(plotter: Any, mapper: Any, surroundings: Surroundings) -> None:
+    """The scale of the map of distances in micrometres, at the right."""
     plotter.add_scalar_bar(
-        title=title,
+        title=" ",
         mapper=mapper,
         color=surroundings.ink,
         n_labels=3,
-        fmt="%.2g",
+        fmt="%.2g µm",
         vertical=True,
-        width=0.05,
+        width=0.045,
         height=0.34,
-        position_x=0.86,
+        position_x=0.80,
         position_y=0.04,
         label_font_size=11,
         title_font_size=11,

@@ -48,8 +48,8 @@ def _closest_points(points: FloatArray, triangles: FloatArray) -> FloatArray:
     normal = np.cross(b - a, c - a)
     area = np.einsum("ij,ij->i", normal, normal)
     safe = np.where(area > 0.0, area, 1.0)
-    v = np.einsum("ij,ij->i", np.cross(c - a, normal), a - points) / safe
-    w = np.einsum("ij,ij->i", np.cross(normal, b - a), a - points) / safe
+    v = np.einsum("ij,ij->i", np.cross(c - a, normal), points - a) / safe
+    w = np.einsum("ij,ij->i", np.cross(normal, b - a), points - a) / safe
     inside = (area > 0.0) & (v >= 0.0) & (w >= 0.0) & (v + w <= 1.0)
     best = a + v[:, None] * (b - a) + w[:, None] * (c - a)
     distance = np.where(inside, np.linalg.norm(points - best, axis=1), np.inf)

@@ -60,7 +60,7 @@ def show_fit(
         mapper.scalar_range = (-reach or -1.0, reach or 1.0)
         mapper.SetScalarModeToUsePointFieldData()
         mapper.SelectColorArray("distance")
-        annotations.show_colour_scale(plotter, mapper, "µm", surroundings)
+        annotations.show_colour_scale(plotter, mapper, surroundings)
 
 
 def show_polyhedron(

@@ -69,7 +69,7 @@ class MainWindow(QMainWindow):
         middle = stacked([self.triptych, self.plots], [520, 300], stretch=0)
         controls = scrolled_column([self.fit, self.coarsening, self.loss])
         parts = [padded(self.particles, 10, 10, 2, 8), padded(middle, 2, 10, 2, 8), controls]
-        self.setCentralWidget(side_by_side(parts, [285, 900, CONTROLS_WIDTH], stretch=1))
+        self.setCentralWidget(side_by_side(parts, [300, 900, CONTROLS_WIDTH], stretch=1))
         self.statusBar().addWidget(self.tasks, 1)
         self.statusBar().setSizeGripEnabled(False)
 

@@ -78,7 +78,7 @@ class Triptych(QSplitter):
     def show_polyhedron(self, results: Results) -> None:
         """Show the newest polyhedron of the coarsening."""
         found = results.coarsened or results.coarsening_progress
-        if found is None or found.polyhedron is None or found.polyhedron is self._polyhedron:
+        if found is None or found.polyhedron is None:
             return
         solid, centre = found.polyhedron, found.centre
         self._polyhedron = solid
@@ -86,7 +86,7 @@ class Triptych(QSplitter):
         self.views["polyhedron"].draw(lambda plotter: surfaces.show_polyhedron(plotter, solid, centre, ink))
         self.frames["polyhedron"].set_texts(
             f"Polyhedron, {solid.n_faces} facets",
-            f"{solid.n_vertices} vertices, {solid.n_triangles} triangles",
+            f"{solid.n_vertices} vertices, {solid.n_triangles} triangles{_shortfall(results)}",
         )
 
     def set_heat(self, heat: bool) -> None:
@@ -136,3 +136,11 @@ class Triptych(QSplitter):
 def _lengths(bounds: FloatArray) -> str:
     """Size of the box along the axes."""
     return " × ".join(f"{edge:.3g}" for edge in bounds[1] - bounds[0]) + " µm"
+
+
+def _shortfall(results: Results) -> str:
+    """A few words where a finished coarsening has fewer facets than were asked for."""
+    done = results.coarsened
+    if done is None or done.n_faces == done.n_faces_asked:
+        return ""
+    return f"; {done.n_faces_asked} facets were asked for"

@@ -1,0 +1,89 @@
+"""What the functions put into a plotter."""
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+from regolith_studio.scene import surfaces
+from regolith_studio.scene.cameras import CameraPose, apply_pose, pose_of
+from regolith_studio.scene.distance import signed_distances
+
+POSE = CameraPose((0.0, -300.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 50.0)
+
+
+@pytest.fixture
+def plotter():
+    made = pv.Plotter(off_screen=True, window_size=[200, 200])
+    apply_pose(made, POSE)
+    yield made
+    made.close()
+
+
+def test_that_a_second_surface_takes_the_place_of_the_first_and_leaves_the_camera(plotter, ball):
+    surfaces.show_particle(plotter, ball)
+    actor = plotter.actors[surfaces.SURFACE]
+    surfaces.show_particle(plotter, ball.moved(scale=2.0))
+    assert plotter.actors[surfaces.SURFACE] is actor
+    assert len(plotter.actors) == 1
+    assert actor.bounds[1] == pytest.approx(60.0, rel=0.01)
+    assert pose_of(plotter) == POSE
+
+
+def test_that_normals_of_a_sphere_point_outwards(plotter, ball):
+    surfaces.show_particle(plotter, ball)
+    data = plotter.actors[surfaces.SURFACE].mapper.dataset
+    assert np.einsum("ij,ij->i", data.point_data["Normals"], ball.vertices / 30.0).min() > 0.99
+
+
+def test_that_facets_are_outlined_and_triangles_are_not(plotter, cube):
+    surfaces.show_polyhedron(plotter, cube)
+    assert plotter.actors[surfaces.OUTLINE].mapper.dataset.n_lines == 12
+    assert plotter.actors[surfaces.SURFACE].mapper.dataset.n_cells == 6
+
+
+def test_that_a_polyhedron_lies_where_its_particle_lies(plotter, cube):
+    surfaces.show_polyhedron(plotter, cube, centre=(100.0, 0.0, 0.0))
+    assert plotter.actors[surfaces.SURFACE].center[0] == pytest.approx(100.0)
+
+
+def test_that_the_distance_map_comes_and_goes(plotter, ball):
+    surfaces.show_fit(plotter, ball, distances=ball.vertices[:, 2])
+    mapper = plotter.actors[surfaces.SURFACE].mapper
+    assert mapper.scalar_visibility
+    assert tuple(mapper.scalar_range) == pytest.approx((-30.0, 30.0))
+    assert len(plotter.scalar_bars) == 1
+    surfaces.show_fit(plotter, ball)
+    assert not mapper.scalar_visibility
+    assert len(plotter.scalar_bars) == 0
+
+
+def test_that_clearing_leaves_an_empty_picture(plotter, ball):
+    surfaces.show_particle(plotter, ball)
+    full = plotter.screenshot(return_img=True)
+    surfaces.clear(plotter)
+    plotter.render()
+    empty = plotter.screenshot(return_img=True)
+    assert np.ptp(full.reshape(-1, 3), axis=0).max() > 50
+    assert np.ptp(empty.reshape(-1, 3), axis=0).max() < 10
+
+
+def test_that_a_wireframe_shows_the_ground_between_its_lines(plotter, ball):
+    surfaces.show_particle(plotter, ball)
+    surfaces.set_wireframe(plotter, True)
+    assert plotter.actors[surfaces.SURFACE].prop.style == "Wireframe"
+
+
+def test_that_distances_from_a_sphere_are_radius_differences(ball):
+    rng = np.random.default_rng(3)
+    directions = rng.normal(size=(300, 3))
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    radii = rng.uniform(15.0, 45.0, 300)
+    found = signed_distances(directions * radii[:, None], ball)
+    assert found == pytest.approx(radii - 30.0, abs=0.25)  # the facets lie up to 0.2 inside the sphere
+
+
+def test_that_distances_agree_with_vtk(ball):
+    points = np.random.default_rng(4).uniform(-40, 40, (200, 3))
+    surface = pv.PolyData.from_regular_faces(np.array(ball.vertices), np.array(ball.faces))
+    reference = pv.PolyData(points).compute_implicit_distance(surface)["implicit_distance"]
+    assert signed_distances(points, ball) == pytest.approx(np.asarray(reference), abs=1e-6)
