@@ -70,7 +70,8 @@ def _clear_old_leftovers(target: Path) -> None:
 
 def remove_quietly(folder: Path) -> None:
     """Remove a folder of ours if it is there; what cannot be removed stays."""
-    shutil.rmtree(folder, ignore_errors=True)
+    with contextlib.suppress(OSError):  # rmtree lets the errors of close pass
+        shutil.rmtree(folder, ignore_errors=True)
 
 
 def write_file(path: Path, content: bytes) -> None:

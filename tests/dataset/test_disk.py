@@ -1,0 +1,272 @@
+"""Writing is all or nothing: every call of the system may fail, or the process die at it."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from regolith_studio.dataset import disk
+from regolith_studio.dataset.disk import leftovers, recovered, replace_folder
+from regolith_studio.dataset.folder import read_dataset, write_dataset
+from regolith_studio.dataset.validation import validate_dataset
+from regolith_studio.errors import DatasetError
+
+CALLS = ("mkdir", "open", "write", "fsync", "close", "rename")
+"""Every function of ``os`` that writing a folder goes through; ``swap_folders`` is counted beside them."""
+
+
+class Failing:
+    """Lets the n-th call of the system fail, and counts calls."""
+
+    def __init__(self, monkeypatch, at: int | None) -> None:
+        self.count, self.at = 0, at
+        for name in CALLS:
+            monkeypatch.setattr(disk.os, name, self._wrapped(getattr(os, name), name))
+        monkeypatch.setattr(disk, "swap_folders", self._wrapped(disk.swap_folders, "swap"))
+
+    def _wrapped(self, call, name):
+        def counted(*arguments, **options):
+            self.count += 1
+            if self.count == self.at:
+                if name == "close":
+                    call(*arguments, **options)
+                raise OSError(28, "No space left on device")
+            return call(*arguments, **options)
+
+        return counted
+
+
+def names(folder: Path) -> list[str]:
+    return [representative.name for representative in read_dataset(folder).representatives]
+
+
+def calls_of(monkeypatch, action) -> int:
+    with monkeypatch.context() as patch:
+        counter = Failing(patch, None)
+        action()
+    return counter.count
+
+
+def test_that_a_failing_call_leaves_the_old_dataset_or_the_new_one(
+    tmp_path, monkeypatch, make_dataset
+) -> None:
+    folder, old, new = tmp_path / "set", make_dataset(2), make_dataset(2, first=10)
+    write_dataset(folder, old)
+    steps = calls_of(monkeypatch, lambda: write_dataset(folder, new))
+    assert steps > 20
+    refused = 0
+    for step in range(1, steps + 1):
+        write_dataset(folder, old)
+        with monkeypatch.context() as patch:
+            Failing(patch, step)
+            try:
+                write_dataset(folder, new)
+            except DatasetError as error:
+                refused += 1
+                assert "No space left" in str(error)  # noqa: PT017
+                assert names(folder) == ["grain-0", "grain-1"]
+                assert leftovers(folder) == []
+            else:
+                assert names(folder) == ["grain-10", "grain-11"]
+                assert len(leftovers(folder)) <= 1
+        assert validate_dataset(folder) == []
+        for rest in leftovers(folder):
+            disk.remove_quietly(rest)
+    assert refused >= 20
+
+
+def test_that_a_failing_call_leaves_no_dataset_where_there_was_none(
+    tmp_path, monkeypatch, make_dataset
+) -> None:
+    new = make_dataset(1)
+    steps = calls_of(monkeypatch, lambda: write_dataset(tmp_path / "first", new))
+    for step in range(1, steps + 1):
+        folder = tmp_path / f"set{step}"
+        with monkeypatch.context() as patch:
+            Failing(patch, step)
+            try:
+                write_dataset(folder, new)
+            except DatasetError:
+                assert not folder.exists()
+            else:
+                assert validate_dataset(folder) == []
+        assert leftovers(folder) == []
+
+
+def test_that_short_writes_are_continued(tmp_path: Path, monkeypatch, make_dataset) -> None:
+    write = os.write
+    monkeypatch.setattr(disk.os, "write", lambda handle, data: write(handle, bytes(data[:97])))
+    assert validate_dataset(write_dataset(tmp_path / "set", make_dataset(2))) == []
+
+
+DRIVER = """
+import json, os, random, signal, sys, time
+from pathlib import Path
+from regolith_studio.dataset import disk
+from regolith_studio.dataset.disk import replace_folder
+from regolith_studio.dataset.folder import dataset_files, read_dataset
+from regolith_studio.dataset.validation import validate_dataset
+
+folder, runs, mode, swaps = Path(sys.argv[1]), int(sys.argv[2]), sys.argv[3], sys.argv[4] == "swap"
+def contents(root):
+    return {p.relative_to(root).as_posix(): p.read_bytes() for p in Path(root).rglob("*") if p.is_file()}
+
+files = [contents(folder) for folder in sys.argv[5:]]
+if not swaps:
+    disk.swap_folders = lambda first, second: False
+count = 0
+
+def deadly(call, at, after):
+    def counted(*arguments, **options):
+        global count
+        count += 1
+        if count == at and not after:
+            os.kill(os.getpid(), signal.SIGKILL)
+        mine = count == at and after
+        try:
+            return call(*arguments, **options)
+        finally:
+            if mine:
+                os.kill(os.getpid(), signal.SIGKILL)
+    return counted
+
+def child(run):
+    if mode == "steps":
+        for name in ("mkdir", "open", "write", "fsync", "close", "rename"):
+            setattr(os, name, deadly(getattr(os, name), run // 2 + 1, run % 2))
+        disk.swap_folders = deadly(disk.swap_folders, run // 2 + 1, run % 2)
+        disk.shutil.rmtree = deadly(disk.shutil.rmtree, run // 2 + 1, run % 2)
+        replace_folder(folder, files[1])
+        os._exit(0)
+    while True:
+        for content in reversed(files):
+            replace_folder(folder, content)
+
+found, killed, generator = [0, 0], 0, random.Random(1)
+for run in range(runs):
+    if mode == "steps":
+        disk.recovered(folder)
+        replace_folder(folder, files[0])
+    pid = os.fork()
+    if pid == 0:
+        child(run)
+    if mode == "time":
+        time.sleep(generator.uniform(0.0, 0.1))
+        os.kill(pid, signal.SIGKILL)
+    status = os.waitpid(pid, 0)[1]
+    killed += os.WIFSIGNALED(status)
+    names = [r.name for r in read_dataset(folder).representatives]
+    problems = validate_dataset(folder)
+    assert not problems, problems
+    found[names[0] != "grain-0"] += 1
+    for rest in disk.leftovers(folder):
+        disk.remove_quietly(rest)
+    if mode == "steps" and not os.WIFSIGNALED(status):
+        break
+print(json.dumps({"found": found, "killed": killed, "runs": run + 1}))
+"""
+
+
+def drive(tmp_path: Path, make_dataset, runs: int, mode: str, swap: str) -> dict:
+    """Kill writers of the folder and look at it after each, in a process that can fork cheaply."""
+    for name, first in (("old", 0), ("new", 10), ("set", 0)):
+        write_dataset(tmp_path / name, make_dataset(1, first=first))
+    sources = (str(tmp_path / "old"), str(tmp_path / "new"))
+    run = subprocess.run(
+        [
+            sys.executable,
+            "-W",
+            "ignore",
+            "-c",
+            DRIVER,
+            str(tmp_path / "set"),
+            str(runs),
+            mode,
+            swap,
+            *sources,
+        ],
+        capture_output=True,
+        text=True,
+        check=False,
+        cwd=Path(__file__).parents[2],
+    )
+    assert run.returncode == 0, run.stderr
+    return json.loads(run.stdout)
+
+
+needs_fork = pytest.mark.skipif(not hasattr(os, "fork"), reason="this system cannot fork")
+
+
+@needs_fork
+@pytest.mark.parametrize("swap", ["swap", "no swap"])
+def test_that_a_kill_at_every_step_leaves_the_old_dataset_or_the_new_one(
+    tmp_path, make_dataset, swap
+) -> None:
+    report = drive(tmp_path, make_dataset, 400, "steps", swap)
+    assert report["killed"] > 40
+    assert report["found"][0] > 30
+    assert report["found"][1] >= 2
+    assert report["runs"] < 400
+
+
+@needs_fork
+def test_that_a_few_kills_at_any_moment_leave_the_old_dataset_or_the_new_one(tmp_path, make_dataset) -> None:
+    report = drive(tmp_path, make_dataset, 12, "time", "swap")
+    assert report["killed"] == 12
+
+
+@needs_fork
+@pytest.mark.slow
+@pytest.mark.parametrize("swap", ["swap", "no swap"])
+def test_that_200_kills_at_any_moment_leave_the_old_dataset_or_the_new_one(
+    tmp_path, make_dataset, swap
+) -> None:
+    report = drive(tmp_path, make_dataset, 200, "time", swap)
+    assert report["killed"] == 200
+    assert min(report["found"]) > 10
+
+
+def test_that_a_folder_moved_aside_by_a_writer_that_died_is_put_back(tmp_path: Path, make_dataset) -> None:
+    folder = write_dataset(tmp_path / "set", make_dataset(1))
+    folder.rename(tmp_path / ".set.regolith-old")
+    assert names(folder) == ["grain-0"]
+    assert recovered(folder).is_dir()
+
+
+def test_that_without_a_swap_the_folder_is_still_replaced(tmp_path: Path, monkeypatch, make_dataset) -> None:
+    monkeypatch.setattr(disk, "swap_folders", lambda *_: False)
+    write_dataset(tmp_path / "set", make_dataset(1))
+    write_dataset(tmp_path / "set", make_dataset(1, first=10))
+    assert names(tmp_path / "set") == ["grain-10"]
+    assert [path.name for path in tmp_path.iterdir()] == ["set"]
+
+
+def test_that_leftovers_of_dead_writers_are_cleared_after_an_hour(tmp_path: Path, make_dataset) -> None:
+    old, young = (tmp_path / f".set.{digit * 12}.regolith-new" for digit in "ab")
+    for folder in (old, young):
+        folder.mkdir()
+    os.utime(old, (0, 0))
+    write_dataset(tmp_path / "set", make_dataset(1))
+    assert leftovers(tmp_path / "set") == [young]
+
+
+def test_that_a_folder_that_cannot_be_made_is_one_sentence(tmp_path: Path, make_dataset) -> None:
+    (tmp_path / "file").write_text("x")
+    with pytest.raises(DatasetError, match="could not be written"):
+        write_dataset(tmp_path / "file" / "set", make_dataset(1))
+    with pytest.raises(DatasetError, match="could not be written"):
+        write_dataset(tmp_path / ("x" * 300), make_dataset(1))
+
+
+def test_that_files_are_written_as_given(tmp_path: Path) -> None:
+    files = {"a.txt": b"1", "b/c.bin": bytes(range(256)) * 100, "b/empty": b""}
+    replace_folder(tmp_path / "x", files)
+    found = {
+        p.relative_to(tmp_path / "x").as_posix(): p.read_bytes()
+        for p in (tmp_path / "x").rglob("*")
+        if p.is_file()
+    }
+    assert found == files

@@ -1,0 +1,252 @@
+"""Broken datasets: each is refused with one sentence that names the place."""
+
+import contextlib
+import hashlib
+import json
+import os
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from regolith_studio.dataset.folder import read_dataset, write_dataset
+from regolith_studio.dataset.strict_json import strict_json, tidy_json
+from regolith_studio.dataset.validation import validate_dataset
+from regolith_studio.errors import DatasetError, RegolithError
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.imaging.stl import stl_bytes
+
+
+@pytest.fixture(scope="module")
+def sound(tmp_path_factory) -> Path:
+    from regolith_studio.dataset.build import build_dataset
+
+    from .conftest import entry
+
+    folder = tmp_path_factory.mktemp("sound") / "set"
+    return write_dataset(folder, build_dataset([entry(0), entry(1)], name="sound"))
+
+
+@pytest.fixture
+def folder(sound: Path, tmp_path: Path) -> Path:
+    return Path(shutil.copytree(sound, tmp_path / "set"))
+
+
+def edit(folder: Path, change) -> None:
+    path = folder / "dataset.json"
+    document = json.loads(path.read_text(encoding="utf-8"))
+    change(document)
+    path.write_text(json.dumps(document), encoding="utf-8")
+
+
+def refused(folder: Path) -> str:
+    with pytest.raises(DatasetError) as caught:
+        read_dataset(folder)
+    problems = validate_dataset(folder)
+    assert problems
+    return str(caught.value)
+
+
+def set_at(*path):
+    *outer, last, value = path
+
+    def change(document) -> None:
+        for key in outer:
+            document = document[key]
+        document[last] = value
+
+    return change
+
+
+FIRST = ("representatives", 0)
+
+BROKEN = {
+    "unknown field": (set_at(*FIRST, "colour", "red"), "representatives[0].colour: Extra inputs"),
+    "unknown field at the top": (set_at("extra", 1), "extra: Extra inputs"),
+    "weights": (set_at(*FIRST, "weight", 0.6), "weights must add up to 1"),
+    "negative weight": (set_at(*FIRST, "weight", -0.5), "representatives[0].weight"),
+    "weight as text": (set_at(*FIRST, "weight", "0.5"), "representatives[0].weight"),
+    "weight just off": (set_at(*FIRST, "weight", 0.5 + 1e-11), "weights must add up to 1"),
+    "falling sizes": (
+        set_at(
+            *FIRST,
+            "sizes",
+            {"type": "discrete", "weighting": "number", "diameters_um": [2, 1], "shares": [0.5, 0.5]},
+        ),
+        "strictly ascending",
+    ),
+    "negative share": (
+        set_at(
+            *FIRST,
+            "sizes",
+            {"type": "sieve", "weighting": "number", "openings_um": [1, 2, 3], "shares": [1.5, -0.5]},
+        ),
+        "representatives[0].sizes.sieve.shares[0]",
+    ),
+    "unknown kind of sizes": (set_at(*FIRST, "sizes", {"type": "gamma"}), "representatives[0].sizes"),
+    "absolute path": (set_at(*FIRST, "mesh", "file", "/etc/passwd"), "representatives[0].mesh.file"),
+    "drive": (set_at(*FIRST, "mesh", "file", "C:\\a.stl"), "representatives[0].mesh.file"),
+    "path out of the folder": (
+        set_at(*FIRST, "mesh", "file", "meshes/../../x.stl"),
+        "representatives[0].mesh.file",
+    ),
+    "hidden path": (set_at(*FIRST, "mesh", "file", "meshes/..stl"), "representatives[0].mesh.file"),
+    "line break in a path": (
+        set_at(*FIRST, "mesh", "file", "meshes/a.stl\n"),
+        "representatives[0].mesh.file",
+    ),
+    "same mesh twice": (set_at(*FIRST, "mesh", "file", "meshes/PARTICLE_0001.stl"), "mesh files"),
+    "wrong hash": (set_at(*FIRST, "mesh", "sha256", "0" * 64), "is not the file that dataset.json describes"),
+    "no hash": (set_at(*FIRST, "mesh", "sha256", "abc"), "representatives[0].mesh.sha256"),
+    "newer version": (set_at("schema_version", 2), "schema version 2"),
+    "other format": (set_at("format", "something"), "not a dataset of Regolith Studio"),
+    "other unit": (set_at("length_unit", "mm"), "length_unit"),
+    "no representatives": (set_at("representatives", []), "representatives"),
+    "same name twice": (set_at(*FIRST, "name", "grain-1"), "names"),
+    "unbounded": (
+        set_at(
+            *FIRST,
+            "half_spaces",
+            {"normals": [[1, 0, 0], [0, 1, 0], [0, 0, 1], [0, 1, 1]], "offsets": [1, 1, 1, 1]},
+        ),
+        "grain-0 cannot be used",
+    ),
+    "unequal lengths": (set_at(*FIRST, "half_spaces", "offsets", [1.0] * 5), "as many offsets"),
+    "vanishing normal": (set_at(*FIRST, "half_spaces", "normals", 0, [0, 0, 0]), "grain-0 cannot be used"),
+    "not unit volume": (set_at(*FIRST, "half_spaces", "offsets", 0, 0.3), "unit volume"),
+    "no rotation": (
+        set_at(*FIRST, "frame", "rotation", [[1, 0, 0], [0, 1, 0], [0, 0, -1]]),
+        "proper rotation",
+    ),
+}
+
+
+@pytest.mark.parametrize("kind", BROKEN)
+def test_that_a_broken_document_is_refused_and_the_place_named(folder: Path, kind: str) -> None:
+    change, place = BROKEN[kind]
+    edit(folder, change)
+    assert place in refused(folder)
+
+
+TEXTS = {
+    "NaN": (
+        lambda text: text.replace('"weight": 0.5', '"weight": NaN', 1),
+        "NaN at representatives[0].weight",
+    ),
+    "infinity": (lambda text: text.replace('"weight": 0.5', '"weight": -Infinity', 1), "-Infinity at"),
+    "overflow": (
+        lambda text: text.replace('"weight": 0.5', '"weight": 1e999', 1),
+        "representatives[0].weight",
+    ),
+    "duplicate key": (
+        lambda text: text.replace('"weight": 0.5', '"weight": 0.5, "weight": 0.5', 1),
+        "the key 'weight' twice at representatives[0]",
+    ),
+    "cut off": (lambda text: text[: len(text) // 2], "is not JSON"),
+    "empty": (lambda _: "", "is not JSON"),
+    "a list": (lambda _: "[]", "not a dataset"),
+    "deep": (lambda _: "[" * 100_000, "nests too deeply"),
+    "long number": (lambda _: "1" * 10_000, "cannot be read|is not JSON"),
+    "trailing text": (lambda text: text + "x", "is not JSON"),
+}
+
+
+@pytest.mark.parametrize("kind", TEXTS)
+def test_that_broken_text_is_refused_in_one_sentence(folder: Path, kind: str) -> None:
+    change, place = TEXTS[kind]
+    path = folder / "dataset.json"
+    path.write_text(change(path.read_text(encoding="utf-8")), encoding="utf-8")
+    message = refused(folder)
+    assert any(part in message for part in place.split("|"))
+    assert "\n" not in message
+
+
+def test_that_bytes_which_are_no_text_are_refused(folder: Path) -> None:
+    (folder / "dataset.json").write_bytes(b"\xff\xfe{}")
+    assert "UTF-8" in refused(folder)
+
+
+def test_that_a_missing_folder_and_missing_files_are_named(folder: Path, tmp_path: Path) -> None:
+    assert "nowhere" in refused(tmp_path / "nowhere")
+    (folder / "meshes" / "particle_0001.stl").unlink()
+    assert "particle_0001.stl cannot be read" in refused(folder)
+
+
+def test_that_a_mesh_behind_a_link_out_of_the_folder_is_refused(folder: Path, tmp_path: Path) -> None:
+    mesh = folder / "meshes" / "particle_0000.stl"
+    mesh.rename(tmp_path / "outside.stl")
+    mesh.symlink_to(tmp_path / "outside.stl")
+    assert "leads out" in refused(folder)
+
+
+def test_that_huge_files_are_not_read(folder: Path) -> None:
+    os.truncate(folder / "dataset.json", 300_000_000)
+    assert "larger than 200 MB" in refused(folder)
+
+
+def put_mesh(folder: Path, mesh: Mesh) -> None:
+    content = stl_bytes(mesh, "test")
+    (folder / "meshes" / "particle_0000.stl").write_bytes(content)
+    edit(folder, set_at(*FIRST, "mesh", "sha256", hashlib.sha256(content).hexdigest()))
+
+
+@pytest.mark.parametrize(
+    ("change", "problem"),
+    [
+        (lambda mesh: Mesh(mesh.vertices, mesh.faces[:-1]), "not closed"),
+        (lambda mesh: Mesh(mesh.vertices, mesh.faces[:, ::-1]), "volume of -1"),
+        (lambda mesh: mesh.moved(scale=1.001), "volume of 1.003"),
+        (lambda mesh: mesh.moved(shift=(0.01, 0, 0)), "beyond the half-spaces"),
+        (
+            lambda mesh: Mesh(mesh.vertices, np.vstack([mesh.faces[:1, [0, 2, 1]], mesh.faces[1:]])),
+            "same way round",
+        ),
+    ],
+)
+def test_that_validation_finds_what_is_wrong_with_a_mesh(folder: Path, change, problem: str) -> None:
+    put_mesh(folder, change(read_dataset(folder).representatives[0].shape.mesh))
+    assert any(problem in sentence for sentence in validate_dataset(folder))
+
+
+def test_that_validation_finds_stl_that_is_none(folder: Path) -> None:
+    content = b"solid x\nendsolid x\n"
+    (folder / "meshes" / "particle_0000.stl").write_bytes(content)
+    edit(folder, set_at(*FIRST, "mesh", "sha256", hashlib.sha256(content).hexdigest()))
+    assert any("no complete binary STL" in sentence for sentence in validate_dataset(folder))
+
+
+def test_that_validation_counts_facets(folder: Path) -> None:
+    edit(folder, set_at(*FIRST, "mesh", "n_faces", 12))
+    assert any("12 facets are stated" in sentence for sentence in validate_dataset(folder))
+
+
+def test_that_validation_misses_a_readme(folder: Path) -> None:
+    (folder / "README.txt").unlink()
+    assert validate_dataset(folder) == ["README.txt is missing."]
+
+
+def test_that_random_damage_to_the_document_never_escapes_as_another_error(
+    sound: Path, tmp_path: Path
+) -> None:
+    folder = Path(shutil.copytree(sound, tmp_path / "set"))
+    original = (sound / "dataset.json").read_bytes()
+    generator = np.random.default_rng(0)
+    for _ in range(400):
+        damaged = bytearray(original)
+        for _ in range(generator.integers(1, 4)):
+            damaged[generator.integers(len(damaged))] = generator.integers(256)
+        (folder / "dataset.json").write_bytes(bytes(damaged))
+        with contextlib.suppress(RegolithError):
+            read_dataset(folder)
+        assert isinstance(validate_dataset(folder), list)
+
+
+def test_that_tidy_json_keeps_every_bit_and_sorts_keys() -> None:
+    value = {"b": [0.1, 1e-300, 5e-324, -0.0, 1 / 3], "a": {"x": [[1.5], []], "y": None, "z": {}}, "ü": "\n"}
+    text = tidy_json(value)
+    assert strict_json(text, "text") == value
+    assert text.index('"a"') < text.index('"b"')
+    assert text.isascii()
+    with pytest.raises(ValueError, match="not JSON compliant"):
+        tidy_json({"x": float("inf")})
