@@ -5,9 +5,9 @@ side that is flush with an edge has its normal on the edge's Gauss arc, the arc 
 the two faces that meet there. For a fixed normal the best box is its height times the smallest
 rectangle around the shadow, which is flush with an edge of the shadow (rotating calipers).
 
-So all arcs are searched, by branch and bound: turning the normal by an angle t changes the logarithm
-of the best volume by at most about `STEEPEST` * t, so an arc is halved only while that could bring it
-below the best box so far; the last `FINEST` of arc is left to golden section.
+So all arcs are searched, by branch and bound: turning a box of edges w and h by an angle t can change
+the logarithm of its volume by t (w/h + h/w) at most, so an arc is halved only while that, times
+`STEEPNESS`, could bring it below the best box so far; the last `FINEST` of arc is left to golden section.
 """
 
 from typing import NamedTuple
@@ -20,17 +20,19 @@ from regolith_studio.geometry.hull_graph import HullGraph, Vector, along, extrem
 from regolith_studio.geometry.inlined import inlined
 from regolith_studio.geometry.rectangle import TIE, outline, polygon_area, smallest_rectangle
 
-STEEPEST = 2.5
-"""Change of the logarithm of the best volume for a normal, per radian that the normal turns."""
+STEEPNESS = 0.6
+"""Slope of ln(volume) against the angle in radians, as a share of h/w + w/h, the most it could be."""
 
 SAFETY = 3.0
-"""The bound on the slope is this multiple of the steepest one seen between neighbouring faces, if less."""
+MANY_ARCS = 200
+SHORT_ARC = np.radians(15.0)
+"""With so many arcs so short, no slope is steeper than SAFETY times the steepest between facets."""
 
-FINEST = np.radians(1.0)
+FINEST = np.radians(2.0)
 """Piece of an arc that golden section searches."""
 
-EXACT_BELOW = 1.3
-"""A rectangle is worked out only where height times shadow is below this multiple of the best volume."""
+EXACT_BELOW = np.log(1.3)
+"""A rectangle is worked out only where ln(height times shadow) is at most this above the best volume."""
 
 GOLDEN = (5.0**0.5 - 1.0) / 2.0
 DEPTH = 64
@@ -48,21 +50,19 @@ class Search(NamedTuple):
         Vertices at which the next hill climbs start: up, down, right and left, shape (4,).
     rim, x, y
         Outline of the last shadow.
-    rectangle
-        Of the last shadow, shape (4,).
     record
-        Least volume so far and the longest edge of its box, shape (2,).
+        Logarithm of the least volume so far and the longest edge of its box, shape (2,).
     axes
         Of the best box, one a row, shape (3, 3).
     todo
-        Pieces of an arc still to be searched: both ends and both volumes, shape (4, DEPTH).
+        Pieces of an arc still to be searched: its ends, and volume and slope at each end,
+        shape (DEPTH, 6).
     """
 
     near: IntArray
     rim: IntArray
     x: FloatArray
     y: FloatArray
-    rectangle: FloatArray
     record: FloatArray
     axes: FloatArray
     todo: FloatArray
@@ -83,36 +83,40 @@ def minimum_box(points: FloatArray, faces: IntArray) -> FloatArray:
     n = len(points)
     near = np.zeros(4, np.int64)
     rim, x, y = np.empty(n, np.int64), np.empty(n), np.empty(n)
-    search = Search(near, rim, x, y, np.empty(4), np.full(2, np.inf), np.zeros((3, 3)), np.empty((4, DEPTH)))
+    search = Search(near, rim, x, y, np.full(2, np.inf), np.zeros((3, 3)), np.empty((DEPTH, 6)))
     if graph.twin.min() < 0 or graph.outgoing.min() < 0:
         return search.axes
-    at_face = np.empty(len(faces))
+    at_face = np.empty((len(faces), 2))
     for f in range(len(faces)):
-        g = graph.facet[f]
-        at_face[f] = best_volume(graph, _row(graph.normals, f), search) if f == g else at_face[g]
-    steepness = _steepness(graph, at_face, search.record[0])
+        if graph.facet[f] == f:
+            at_face[f, 0], at_face[f, 1] = best_volume(graph, _row(graph.normals, f), search)
+        else:
+            at_face[f] = at_face[graph.facet[f]]
+    steepest = _steepest(graph, at_face)
     for h in range(len(graph.twin)):
         if h < graph.twin[h]:
-            search_arc(graph, h // 3, graph.twin[h] // 3, at_face, steepness, search)
+            search_arc(graph, h // 3, graph.twin[h] // 3, at_face, steepest, search)
     return search.axes
 
 
 @kernel
-def _steepness(graph: HullGraph, at_face: FloatArray, least: float) -> float:
-    """A bound on the slope of ln(volume) along all arcs, from the slopes between neighbouring faces."""
-    steepest = 0.0
+def _steepest(graph: HullGraph, at_face: FloatArray) -> float:
+    """For solids with many facets a bound on all slopes, from those seen between neighbouring facets."""
+    steepest, arcs = 0.0, 0
+    least = at_face[:, 0].min()
     for h in range(len(graph.twin)):
         f, g = h // 3, graph.twin[h] // 3
-        if f < g and max(at_face[f], at_face[g]) < EXACT_BELOW * least:
+        if f < g and max(at_face[f, 0], at_face[g, 0]) < least + EXACT_BELOW:
             angle = np.sqrt(np.sum((graph.normals[f] - graph.normals[g]) ** 2))
-            if angle > SAME_NORMAL:
-                steepest = max(steepest, abs(np.log(at_face[f] / at_face[g])) / angle)
-    return min(STEEPEST, SAFETY * steepest) if steepest > 0.0 else STEEPEST
+            if SAME_NORMAL < angle < SHORT_ARC:
+                steepest = max(steepest, abs(at_face[f, 0] - at_face[g, 0]) / angle)
+                arcs += 1
+    return SAFETY * steepest if arcs > MANY_ARCS else np.inf
 
 
 @kernel
 def search_arc(
-    graph: HullGraph, f: int, g: int, at_face: FloatArray, steepness: float, search: Search
+    graph: HullGraph, f: int, g: int, at_face: FloatArray, steepest: float, search: Search
 ) -> None:
     """Branch and bound along the Gauss arc between the normals of faces `f` and `g`."""
     start, end = _row(graph.normals, f), _row(graph.normals, g)
@@ -123,21 +127,24 @@ def search_arc(
         return
     across = _mixed(across, 1.0 / sine, start, 0.0)
     todo = search.todo
-    todo[0, 0], todo[1, 0], todo[2, 0], todo[3, 0] = 0.0, np.arctan2(sine, cosine), at_face[f], at_face[g]
+    todo[0, 0], todo[0, 1] = 0.0, np.arctan2(sine, cosine)
+    todo[0, 2:4], todo[0, 4:6] = at_face[f], at_face[g]
     n = 1
     while n > 0:
         n -= 1
-        low, high, at_low, at_high = todo[0, n], todo[1, n], todo[2, n], todo[3, n]
-        if np.sqrt(at_low * at_high) * np.exp(-steepness * (high - low) / 2.0) >= search.record[0]:
+        low, high, at_low, at_high, steep_high = todo[n, 0], todo[n, 1], todo[n, 2], todo[n, 4], todo[n, 5]
+        steepness = min(max(todo[n, 3], steep_high), steepest)
+        if (at_low + at_high - steepness * (high - low)) / 2.0 >= search.record[0]:
             continue
         if high - low <= FINEST:
             golden_section(graph, start, across, low, high, steepness, search)
             continue
         middle = (low + high) / 2.0
-        at_middle = best_volume(graph, _mixed(start, np.cos(middle), across, np.sin(middle)), search)
-        todo[0, n], todo[1, n], todo[2, n], todo[3, n] = low, middle, at_low, at_middle
+        at, steep = best_volume(graph, _mixed(start, np.cos(middle), across, np.sin(middle)), search)
+        todo[n, 1], todo[n, 4], todo[n, 5] = middle, at, steep
         n += 1
-        todo[0, n], todo[1, n], todo[2, n], todo[3, n] = middle, high, at_middle, at_high
+        todo[n, 0], todo[n, 1], todo[n, 2], todo[n, 3] = middle, high, at, steep
+        todo[n, 4], todo[n, 5] = at_high, steep_high
         n += 1
 
 
@@ -153,27 +160,27 @@ def golden_section(
 ) -> None:
     """Least volume on a short piece of an arc, given up once it cannot win."""
     a, b = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
-    at_a = best_volume(graph, _mixed(start, np.cos(a), across, np.sin(a)), search)
-    at_b = best_volume(graph, _mixed(start, np.cos(b), across, np.sin(b)), search)
+    at_a = best_volume(graph, _mixed(start, np.cos(a), across, np.sin(a)), search)[0]
+    at_b = best_volume(graph, _mixed(start, np.cos(b), across, np.sin(b)), search)[0]
     while high - low > SHARPEST:
-        reach = (1.0 - GOLDEN) * (high - low)
-        if min(at_a, at_b) * np.exp(-steepness * reach) >= search.record[0]:
+        if min(at_a, at_b) - steepness * (1.0 - GOLDEN) * (high - low) >= search.record[0]:
             return
         if at_a < at_b:
             high, b, at_b = b, a, at_a
             a = high - GOLDEN * (high - low)
-            at_a = best_volume(graph, _mixed(start, np.cos(a), across, np.sin(a)), search)
+            at_a = best_volume(graph, _mixed(start, np.cos(a), across, np.sin(a)), search)[0]
         else:
             low, a, at_a = a, b, at_b
             b = low + GOLDEN * (high - low)
-            at_b = best_volume(graph, _mixed(start, np.cos(b), across, np.sin(b)), search)
+            at_b = best_volume(graph, _mixed(start, np.cos(b), across, np.sin(b)), search)[0]
 
 
 @kernel
-def best_volume(graph: HullGraph, axis: Vector, search: Search) -> float:
-    """Least volume of a box with a side normal to `axis`, or a lower bound far above the best so far.
+def best_volume(graph: HullGraph, axis: Vector, search: Search) -> tuple[float, float]:
+    """Logarithm of the least volume of a box with a side normal to `axis`, and a bound on its slope.
 
-    A new best box is kept in `search`; of two that tie, the one with the shorter longest edge.
+    Far above the best so far it is only a lower bound. A new best box is kept in `search`; of two that
+    tie, the one with the shorter longest edge.
     """
     first, second = _frame(axis)
     points, near = graph.points, search.near
@@ -181,20 +188,28 @@ def best_volume(graph: HullGraph, axis: Vector, search: Search) -> float:
     near[1] = extreme_vertex(graph, _mixed(axis, -1.0, axis, 0.0), near[1])
     height = along(points, near[0], axis) - along(points, near[1], axis)
     n = shadow(graph, axis, first, second, search)
-    bound = height * polygon_area(search.x, search.y, n)
-    if bound > EXACT_BELOW * search.record[0]:
-        return float(bound)
-    smallest_rectangle(search.x, search.y, n, search.rectangle)
-    volume, longest = height * search.rectangle[0], max(height, search.rectangle[3])
-    better = volume < search.record[0] * (1.0 - TIE)
-    if better or (volume < search.record[0] * (1.0 + TIE) and longest < search.record[1] * (1.0 - TIE)):
+    area = polygon_area(search.x, search.y, n)
+    longer = along(points, near[2], first) - along(points, near[3], first)
+    bound = np.log(height * area)
+    if bound > search.record[0] + EXACT_BELOW:
+        return bound, _slope(height, longer, area / longer)
+    area, cosine, sine, longer = smallest_rectangle(search.x, search.y, n)
+    volume, longest = np.log(height * area), max(height, longer)
+    if volume < search.record[0] - TIE or (
+        volume < search.record[0] + TIE and longest < search.record[1] * (1.0 - TIE)
+    ):
         search.record[0], search.record[1] = volume, longest
-        cosine, sine = search.rectangle[1], search.rectangle[2]
         for k in range(3):
             search.axes[0, k] = axis[k]
             search.axes[1, k] = cosine * first[k] + sine * second[k]
             search.axes[2, k] = cosine * second[k] - sine * first[k]
-    return float(volume)
+    return volume, _slope(height, longer, area / longer)
+
+
+@inlined
+def _slope(height: float, wide: float, high: float) -> float:
+    """How fast turning a box of these edges can change the logarithm of its volume."""
+    return STEEPNESS * max(height / wide + wide / height, height / high + high / height)
 
 
 @inlined

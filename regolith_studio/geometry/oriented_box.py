@@ -108,4 +108,4 @@ def _right_handed(axes: FloatArray) -> FloatArray:
     """Largest component of the first two axes positive, third their cross product."""
     turned = axes * np.sign(axes[np.arange(3), np.abs(axes).argmax(axis=1)])[:, None]
     turned[2] = np.cross(turned[0], turned[1])
-    return turned
+    return np.asarray(turned)

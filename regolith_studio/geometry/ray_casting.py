@@ -1,13 +1,31 @@
-"""All crossings of rays from one origin with a triangular mesh."""
+"""All crossings of rays from one origin with a triangular mesh, and none of them twice.
 
+A ray u crosses the triangle (a, b, c), seen from the origin, if u . (a x b), u . (b x c) and u . (c x a)
+have one sign. Two triangles that share an edge compute the same number for it but for the sign, and
+where rounding could decide, the sign is worked out exactly; a ray through an edge or a vertex is moved
+aside by infinitely little (Edelsbrunner and Muecke 1990), the same for all triangles. So the signs of
+the crossings of every ray add up to the winding number of the mesh about the origin: 1 inside a closed
+mesh, also where the ray runs exactly through a vertex.
+"""
+
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats, locked_integers
 from regolith_studio.geometry.compiled import kernel
+from regolith_studio.geometry.direction_bins import DirectionBins, bins_around, direction_bins
+from regolith_studio.geometry.exact_signs import sign_of_cross_product, sign_of_triple_product
 from regolith_studio.geometry.mesh import Mesh
+
+ROUNDING = 16.0 * 2.0**-53
+"""Error of a triple product of floats, as a share of the product of the three lengths."""
+
+NEGLIGIBLE = 2.0**-200
+"""Coordinates below this share of the size are zero; it keeps the exact arithmetic from underflow."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,55 +56,149 @@ class RadialHits:
         object.__setattr__(self, "sign", locked_integers(self.sign, (n_hits,), "sign"))
         object.__setattr__(self, "face", locked_integers(self.face, (n_hits,), "face"))
 
+    def __reduce__(self) -> tuple[Callable[..., "RadialHits"], tuple[Any, ...]]:
+        return RadialHits, (self.ray, self.distance, self.sign, self.face)
 
-def radial_hits(mesh: Mesh, origin: ArrayLike, directions: FloatArray) -> RadialHits:
-    """Every crossing of the rays ``origin + t * directions[k]``, t > 0, with the mesh."""
+    def __len__(self) -> int:
+        return len(self.ray)
+
+
+def radial_hits(mesh: Mesh, origin: ArrayLike, directions: ArrayLike) -> RadialHits:
+    """Every crossing of the rays ``origin + t * directions[k]``, t > 0, with the mesh.
+
+    Parameters
+    ----------
+    origin
+        Shape (3,), not on the surface.
+    directions
+        Shape (n, 3), of any length but zero; distances do not depend on the length.
+
+    Raises
+    ------
+    ValueError
+        If a direction vanishes.
+    """
     centre = locked_floats(origin, (3,), "origin")
-    rays = locked_floats(directions, (None, 3), "directions")
-    ray, distance, sign, face = _cast(mesh.vertices - centre, mesh.faces, rays)
-    order = np.lexsort((face, distance, ray))
-    return RadialHits(ray[order], distance[order], sign[order], face[order])
+    rays = _scaled(locked_floats(directions, (None, 3), "directions"))
+    lengths = np.linalg.norm(rays, axis=1)
+    if not (lengths > 0.0).all():
+        raise ValueError("directions must not vanish")
+    points = mesh.vertices - centre
+    size = 2.0 ** np.ceil(np.log2(max(float(np.abs(points).max(initial=0.0)), 1e-300)))
+    bins = direction_bins(rays / lengths[:, None])
+    ray, distance, sign, face = _cast(_scaled(points / size), mesh.faces, rays, lengths, bins)
+    order = _sorted(ray, distance, face, len(rays))
+    return RadialHits(ray[order], distance[order] * size, sign[order], face[order])
+
+
+def _scaled(vectors: FloatArray) -> FloatArray:
+    """The vectors with negligible coordinates set to zero."""
+    return np.asarray(np.where(np.abs(vectors) < NEGLIGIBLE, 0.0, vectors))
 
 
 @kernel
 def _cast(
-    points: FloatArray, faces: IntArray, directions: FloatArray
+    points: FloatArray, faces: IntArray, directions: FloatArray, lengths: FloatArray, bins: DirectionBins
 ) -> tuple[IntArray, FloatArray, IntArray, IntArray]:
-    size = 4 * len(directions) + 16
-    ray, face, sign, distance = (
-        np.empty(size, np.int64),
-        np.empty(size, np.int64),
-        np.empty(size, np.int64),
-        np.empty(size),
-    )
+    """Crossings in the order of the faces: ray, distance, sign, face."""
+    norms = np.empty(len(points))
+    for v in range(len(points)):
+        norms[v] = np.sqrt(points[v, 0] ** 2 + points[v, 1] ** 2 + points[v, 2] ** 2)
+    whole = np.empty((2 * len(directions) + 64, 3), np.int64)
+    distance = np.empty(len(whole))
+    cone = np.empty((3, 4))
     n = 0
     for f in range(len(faces)):
-        a = points[faces[f, 0]]
-        b = points[faces[f, 1]]
-        c = points[faces[f, 2]]
-        ab = np.cross(a, b)
-        bc = np.cross(b, c)
-        ca = np.cross(c, a)
-        six = ab[0] * c[0] + ab[1] * c[1] + ab[2] * c[2]
-        way = 1.0 if six > 0 else -1.0
-        for k in range(len(directions)):
-            u = directions[k]
-            e0 = way * (ab[0] * u[0] + ab[1] * u[1] + ab[2] * u[2])
-            e1 = way * (bc[0] * u[0] + bc[1] * u[1] + bc[2] * u[2])
-            e2 = way * (ca[0] * u[0] + ca[1] * u[1] + ca[2] * u[2])
-            if (
-                (e0 > 0 or (e0 == 0 and way > 0))
-                and (e1 > 0 or (e1 == 0 and way > 0))
-                and (e2 > 0 or (e2 == 0 and way > 0))
-                and e0 + e1 + e2 > 0
-            ):
-                if n == size:
-                    size *= 2
-                    ray = np.concatenate((ray, np.empty(n, np.int64)))
-                    face = np.concatenate((face, np.empty(n, np.int64)))
-                    sign = np.concatenate((sign, np.empty(n, np.int64)))
-                    distance = np.concatenate((distance, np.empty(n)))
-                ray[n], face[n], sign[n] = k, f, int(way)
-                distance[n] = way * six / (e0 + e1 + e2)
-                n += 1
-    return ray[:n], distance[:n], sign[:n], face[:n]
+        a, b, c = points[faces[f, 0]], points[faces[f, 1]], points[faces[f, 2]]
+        _edge(a, b, norms[faces[f, 0]] * norms[faces[f, 1]], cone[0])
+        _edge(b, c, norms[faces[f, 1]] * norms[faces[f, 2]], cone[1])
+        _edge(c, a, norms[faces[f, 2]] * norms[faces[f, 0]], cone[2])
+        six = cone[0, 0] * c[0] + cone[0, 1] * c[1] + cone[0, 2] * c[2]
+        way = 1 if six > 0.0 else -1
+        if abs(six) <= cone[0, 3] * norms[faces[f, 2]]:
+            way = sign_of_triple_product(a, b, c)
+            if way == 0:
+                continue
+        normal = cone[0, :3] + cone[1, :3] + cone[2, :3]
+        nearest = abs(six) / np.sqrt(normal[0] ** 2 + normal[1] ** 2 + normal[2] ** 2)
+        farthest = max(norms[faces[f, 0]], norms[faces[f, 1]], norms[faces[f, 2]])
+        low, high, left, right = bins_around(a, b, c, bins.rows, bins.columns)
+        for row in range(low, high + 1):
+            for block in range(2):
+                start = left if block == 0 else 0
+                stop = min(right, bins.columns - 1) if block == 0 else right - bins.columns
+                if stop < start:
+                    continue
+                base = row * bins.columns
+                for i in range(bins.first[base + start], bins.first[base + stop + 1]):
+                    k = bins.rays[i]
+                    u = directions[k]
+                    if not _inside(u, a, b, c, cone, lengths[k], way):
+                        continue
+                    if n == len(distance):
+                        whole = np.concatenate((whole, np.empty_like(whole)))
+                        distance = np.concatenate((distance, np.empty_like(distance)))
+                    slope = abs(u[0] * normal[0] + u[1] * normal[1] + u[2] * normal[2]) / lengths[k]
+                    whole[n, 0], whole[n, 1], whole[n, 2] = k, way, f
+                    distance[n] = max(nearest, min(farthest, abs(six) / slope if slope > 0.0 else farthest))
+                    n += 1
+    return whole[:n, 0].copy(), distance[:n].copy(), whole[:n, 1].copy(), whole[:n, 2].copy()
+
+
+@kernel
+def _edge(a: FloatArray, b: FloatArray, size: float, row: FloatArray) -> None:
+    """a x b, and the error of its products with a unit vector, into a row of four."""
+    row[0] = a[1] * b[2] - a[2] * b[1]
+    row[1] = a[2] * b[0] - a[0] * b[2]
+    row[2] = a[0] * b[1] - a[1] * b[0]
+    row[3] = ROUNDING * size
+
+
+@kernel
+def _inside(
+    u: FloatArray, a: FloatArray, b: FloatArray, c: FloatArray, cone: FloatArray, length: float, way: int
+) -> bool:
+    """Whether `u` is on side `way` of all three planes through the origin and an edge."""
+    unsure = False
+    for k in range(3):
+        value = way * (u[0] * cone[k, 0] + u[1] * cone[k, 1] + u[2] * cone[k, 2])
+        error = cone[k, 3] * length
+        if value < -error:
+            return False
+        unsure = unsure or value <= error
+    if not unsure:
+        return True
+    return _side(u, a, b) == way and _side(u, b, c) == way and _side(u, c, a) == way
+
+
+@kernel
+def _side(u: FloatArray, a: FloatArray, b: FloatArray) -> int:
+    """Sign of u . (a x b), and if that is zero, of u moved by (e, e^2, e^3) with e infinitely small."""
+    sign = sign_of_triple_product(u, a, b)
+    for axis in range(3):
+        if sign == 0:
+            sign = sign_of_cross_product(a, b, axis)
+    return sign
+
+
+@kernel
+def _sorted(ray: IntArray, distance: FloatArray, face: IntArray, n_rays: int) -> IntArray:
+    """Order of the crossings by ray, distance and face."""
+    first = np.zeros(n_rays + 1, np.int64)
+    for k in ray:
+        first[k + 1] += 1
+    for k in range(n_rays):
+        first[k + 1] += first[k]
+    order, count = np.empty(len(ray), np.int64), np.zeros(n_rays, np.int64)
+    for hit in range(len(ray)):
+        k = ray[hit]
+        i = first[k] + count[k]
+        while i > first[k] and (
+            distance[order[i - 1]] > distance[hit]
+            or (distance[order[i - 1]] == distance[hit] and face[order[i - 1]] > face[hit])
+        ):
+            order[i] = order[i - 1]
+            i -= 1
+        order[i] = hit
+        count[k] += 1
+    return order
