@@ -168,7 +168,7 @@ def _inverted(vertices: FloatArray, faces: IntArray, body: IntArray, table: Edge
         return 0
     closed = np.ones(int(body.max()) + 1, dtype=np.bool_)
     closed[body[np.flatnonzero(table.uses[table.edge] == 1) // 3]] = False
-    return int(np.count_nonzero((body_volumes(vertices, faces, body) < 0.0) & closed))
+    return int(np.count_nonzero((body_volumes(vertices, faces, body) < -LEAST_VOLUME) & closed))
 
 
 def _sentences(found: MeshHealth, searched: bool) -> Sequence[str]:

@@ -1,0 +1,136 @@
+"""Files with bytes changed at random: every parser gives triangles or one sentence, nothing else."""
+
+import json
+import zipfile
+from io import BytesIO
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from regolith_studio.errors import FileError, GeometryError
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.repair import repair
+from regolith_studio.geometry.welding import welded
+from regolith_studio.readers.mesh_file import parse_mesh
+
+NAMES = [
+    "binary.stl",
+    "ascii.stl",
+    "cube.obj",
+    "cube.off",
+    "ascii.ply",
+    "little.ply",
+    "big.ply",
+    "cube.gltf",
+    "cube.3mf",
+]
+WORDS = [
+    b"",
+    b"\0",
+    b"\xff\xff\xff\xff",
+    b"-1",
+    b"1e999",
+    b"nan",
+    b"9" * 12,
+    b"\n",
+    b" ",
+    b"#",
+    b"\\\n",
+    b"vertex",
+    b"list",
+]
+
+
+def seeds(cube):
+    """The well-formed files, with a glTF and a 3MF made here."""
+    document = {
+        "asset": {"version": "2.0"},
+        "nodes": [{"mesh": 0, "scale": [1, 1, 2]}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}],
+        "buffers": [{"byteLength": 36, "uri": "data:;base64," + "AAAA" * 12}],
+    }
+    archive = BytesIO()
+    with zipfile.ZipFile(archive, "w") as file:
+        file.writestr(
+            "3D/3dmodel.model",
+            '<model><resources><object id="1"><mesh><vertices><vertex x="0" y="0" z="0"/>'
+            '<vertex x="1" y="0" z="0"/><vertex x="0" y="1" z="0"/></vertices>'
+            '<triangles><triangle v1="0" v2="1" v3="2"/></triangles></mesh>'
+            '</object></resources><build><item objectid="1"/></build></model>',
+        )
+    return {**cube.files(), "cube.gltf": json.dumps(document).encode(), "cube.3mf": archive.getvalue()}
+
+
+def mutated(data, rng):
+    """`data` with one to four bytes changed, left out, doubled or replaced by a word that hurts."""
+    for _ in range(rng.integers(1, 5)):
+        place = int(rng.integers(0, len(data) + 1))
+        end = place + int(rng.choice([0, 0, 1, 1, 4, 4, 20, len(data)]))
+        kind = rng.integers(0, 4)
+        middle = [
+            rng.bytes(1),
+            WORDS[rng.integers(0, len(WORDS))],
+            data[place:end] * 2,
+            bytes([data[place - 1] ^ (1 << int(rng.integers(0, 8)))]) if place and data else b"",
+        ][kind]
+        data = data[:place] + middle + data[end:]
+    return data
+
+
+def nudged(data, rng):
+    """`data` with one bit changed."""
+    place = int(rng.integers(0, len(data)))
+    return data[:place] + bytes([data[place] ^ (1 << int(rng.integers(0, 8)))]) + data[place + 1 :]
+
+
+def survives(name, data):
+    """Whether triangles came out; anything but the two errors of a bad file is let through."""
+    try:
+        parsed, _ = parse_mesh(data, Path(name))
+    except (FileError, GeometryError) as error:
+        sentence = str(error)
+        assert sentence.startswith(name), sentence
+        assert sentence.endswith("."), sentence
+        assert "\n" not in sentence, sentence
+        return False
+    assert parsed.vertices.shape[1:] == parsed.faces.shape[1:] == (3,)
+    assert np.isfinite(parsed.vertices).all()
+    assert 0 <= parsed.faces.min() <= parsed.faces.max() < len(parsed.vertices)
+    return True
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_that_three_hundred_mutations_give_triangles_or_a_sentence(name, cube):
+    rng = np.random.default_rng(11)
+    data = seeds(cube)[name]
+    assert survives(name, data)
+    for _ in range(300):
+        survives(name, mutated(data, rng))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", NAMES)
+def test_that_forty_thousand_mutations_give_triangles_or_a_sentence(name, cube):
+    rng = np.random.default_rng(12)
+    data = seeds(cube)[name]
+    for _ in range(40_000):
+        survives(name, mutated(data, rng))
+
+
+@pytest.mark.parametrize("name", NAMES[:7])
+def test_that_mutated_cubes_are_repaired_or_refused(name, cube):
+    rng = np.random.default_rng(13)
+    repaired = 0
+    for _ in range(60):
+        data = nudged(seeds(cube)[name], rng)
+        try:
+            parsed, _ = parse_mesh(data, Path(name))
+            result = repair(Mesh(*welded(parsed.vertices, parsed.faces)))
+        except (FileError, GeometryError):
+            continue
+        assert result.health_after.sound
+        repaired += 1
+    assert repaired > 5

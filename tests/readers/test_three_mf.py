@@ -1,0 +1,79 @@
+"""3MF archives: placements, components, and archives made to harm."""
+
+import io
+import re
+import zipfile
+
+import pytest
+
+CORNERS = [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+QUADS = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+MESH = "<mesh><vertices>"
+MESH += "".join(f'<vertex x="{x}" y="{y}" z="{z}"/>' for x, y, z in CORNERS) + "</vertices><triangles>"
+MESH += "".join(
+    f'<triangle v1="{a}" v2="{b}" v3="{c}"/><triangle v1="{a}" v2="{c}" v3="{d}"/>' for a, b, c, d in QUADS
+)
+MESH += "</triangles></mesh>"
+CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
+
+
+def archive(model, name="3D/3dmodel.model", compression=zipfile.ZIP_DEFLATED):
+    data = io.BytesIO()
+    with zipfile.ZipFile(data, "w", compression) as file:
+        file.writestr(name, model)
+    return data.getvalue()
+
+
+def model(build='<item objectid="1"/>', resources=f'<object id="1">{MESH}</object>', unit="micron"):
+    head = f'<?xml version="1.0"?><model unit="{unit}" xmlns="{CORE}">'
+    return f"{head}<resources>{resources}</resources><build>{build}</build></model>"
+
+
+def test_that_a_cube_in_a_3mf_has_volume_one_and_states_its_unit(accepted):
+    particle = accepted("cube.3mf", archive(model()))
+    assert particle.mesh.volume == pytest.approx(1.0)
+    assert particle.notes == ("The file states its unit: micron.",)
+
+
+def test_that_placements_and_components_are_transformed(accepted):
+    """Scaled by 2 as a component, moved by 10 as an item; rows of the matrix are images of the axes."""
+    resources = f'<object id="1">{MESH}</object><object id="2"><components>'
+    resources += '<component objectid="1" transform="2 0 0 0 2 0 0 0 2 0 0 0"/></components></object>'
+    build = '<item objectid="2" transform="0 1 0 -1 0 0 0 0 1 10 0 0"/>'
+    mesh = accepted("cube.3mf", archive(model(build, resources))).mesh
+    assert mesh.volume == pytest.approx(8.0)
+    assert mesh.bounds.tolist() == [[8, 0, 0], [10, 2, 2]]
+
+
+BOMB = archive(b"\0" * (1 << 29) + b"\0")
+CIRCLE = '<object id="1"><components><component objectid="1"/></components></object>'
+
+BAD = {
+    "no archive": (b"PK\3\4 but no archive", "archive is damaged"),
+    "half an archive": (archive(model())[:200], "archive is damaged"),
+    "a damaged part": (
+        archive(model(), compression=zipfile.ZIP_STORED).replace(b"<vertex", b"<vErtex", 3),
+        "archive is damaged",
+    ),
+    "no model": (archive("hello", "readme.txt"), "holds no model"),
+    "broken XML": (archive(model()[:-20]), "XML of its model is broken"),
+    "an empty model": (archive(model("", "")), "builds no triangles"),
+    "nothing built": (archive(model("")), "builds no triangles"),
+    "an object that is not there": (archive(model('<item objectid="9"/>')), "object “9”, which is not there"),
+    "components in a circle": (archive(model(resources=CIRCLE)), "go round in circles"),
+    "a part that unpacks to 512 MiB": (BOMB, "unpacks to more than 512 MiB"),
+    "entities": (archive('<?xml version="1.0"?><!DOCTYPE m [<!ENTITY a "b">]><model/>'), "defines entities"),
+    "a word for a number": (archive(model().replace('x="1"', 'x="one"', 1)), "lacks a number or a name"),
+    "no third corner": (archive(model().replace('v3="3"', "", 1)), "lacks a number or a name"),
+    "an index too high": (archive(model().replace('v3="3"', 'v3="8"', 1)), "points beyond the 8 vertices"),
+    "a transformation of five numbers": (
+        archive(model('<item objectid="1" transform="1 2 3 4 5"/>')),
+        "lacks a number or a name",
+    ),
+}
+
+
+@pytest.mark.parametrize("kind", BAD)
+def test_that_a_bad_3mf_is_refused_with_one_sentence_that_says_why(kind, refusal):
+    data, expected = BAD[kind]
+    assert re.search(expected, refusal("bad.3mf", data))
