@@ -16,8 +16,8 @@ import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.compiled import kernel
-from regolith_studio.geometry.hull_graph import HullGraph, Vector, along, extreme_vertex, hull_graph, walk_rim
-from regolith_studio.geometry.inlined import inlined
+from regolith_studio.geometry.hull_graph import HullGraph, along, extreme_vertex, hull_graph, walk_rim
+from regolith_studio.geometry.inlined import Vector, inlined
 from regolith_studio.geometry.rectangle import TIE, outline, polygon_area, smallest_rectangle
 
 STEEPNESS = 0.6

@@ -11,9 +11,7 @@ import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.compiled import kernel
-from regolith_studio.geometry.inlined import inlined
-
-Vector = tuple[float, float, float]
+from regolith_studio.geometry.inlined import Vector, inlined
 
 SLIVER = 1e-14
 """A triangle of less area, at solid size 1, has no normal of its own."""

@@ -10,7 +10,10 @@ from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray, locked_floats
 from regolith_studio.geometry.box_search import minimum_box
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.geometry.directions import fibonacci_directions
 from regolith_studio.geometry.mesh import Mesh
+
+SHAKE = 1e-10
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,8 +81,8 @@ class OrientedBox:
 def minimum_volume_box(solid: Mesh | ConvexPolyhedron) -> OrientedBox:
     """The oriented bounding box of least volume.
 
-    Exact up to the sampling of :func:`regolith_studio.geometry.box_search.minimum_box` (O'Rourke 1985: two
-    adjacent sides are flush with edges of the hull), and independent of unit and orientation. Of boxes that
+    Found by the branch and bound of :mod:`regolith_studio.geometry.box_search` (O'Rourke 1985: two adjacent
+    sides are flush with edges of the hull), and independent of unit and orientation. Of boxes that
     tie in volume, the one with the shortest longest edge is taken.
 
     Raises
@@ -95,13 +98,22 @@ def minimum_volume_box(solid: Mesh | ConvexPolyhedron) -> OrientedBox:
     middle = (low + high) / 2
     points = (hull.vertices - middle) / size
     axes = minimum_box(points, hull.faces)
-    along = points @ axes.T
-    lows, highs = along.min(axis=0), along.max(axis=0)
-    order = np.argsort(-(highs - lows), kind="stable")
+    if not axes.any():
+        axes = _axes_of_shaken(points)
+    order = np.argsort(-np.ptp(points @ axes.T, axis=0), kind="stable")
     axes = _right_handed(axes[order])
     lows, highs = (points @ axes.T).min(axis=0), (points @ axes.T).max(axis=0)
     extents = np.maximum.accumulate((highs - lows)[::-1])[::-1]
     return OrientedBox(middle + size * ((lows + highs) / 2) @ axes, axes, extents * size)
+
+
+def _axes_of_shaken(points: FloatArray) -> FloatArray:
+    """For a hull whose triangles do not close (many points in one plane): move each point by 1e-10."""
+    shaken = Mesh(points + SHAKE * fibonacci_directions(len(points)), np.empty((0, 3), dtype=np.int64)).hull
+    axes = minimum_box(shaken.vertices, shaken.faces)
+    if not axes.any():
+        raise GeometryError("The convex hull of the mesh does not close, so it has no bounding box.")
+    return axes
 
 
 def _right_handed(axes: FloatArray) -> FloatArray:

@@ -19,6 +19,7 @@ from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats,
 from regolith_studio.geometry.compiled import kernel
 from regolith_studio.geometry.direction_bins import DirectionBins, bins_around, direction_bins
 from regolith_studio.geometry.exact_signs import sign_of_cross_product, sign_of_triple_product
+from regolith_studio.geometry.inlined import Vector, inlined
 from regolith_studio.geometry.mesh import Mesh
 
 ROUNDING = 16.0 * 2.0**-53
@@ -106,69 +107,91 @@ def _cast(
         norms[v] = np.sqrt(points[v, 0] ** 2 + points[v, 1] ** 2 + points[v, 2] ** 2)
     whole = np.empty((2 * len(directions) + 64, 3), np.int64)
     distance = np.empty(len(whole))
-    cone = np.empty((3, 4))
     n = 0
     for f in range(len(faces)):
-        a, b, c = points[faces[f, 0]], points[faces[f, 1]], points[faces[f, 2]]
-        _edge(a, b, norms[faces[f, 0]] * norms[faces[f, 1]], cone[0])
-        _edge(b, c, norms[faces[f, 1]] * norms[faces[f, 2]], cone[1])
-        _edge(c, a, norms[faces[f, 2]] * norms[faces[f, 0]], cone[2])
-        six = cone[0, 0] * c[0] + cone[0, 1] * c[1] + cone[0, 2] * c[2]
-        way = 1 if six > 0.0 else -1
-        if abs(six) <= cone[0, 3] * norms[faces[f, 2]]:
-            way = sign_of_triple_product(a, b, c)
-            if way == 0:
+        i, j, k = faces[f, 0], faces[f, 1], faces[f, 2]
+        a, b, c = points[i], points[j], points[k]
+        errors = (
+            ROUNDING * norms[i] * norms[j],
+            ROUNDING * norms[j] * norms[k],
+            ROUNDING * norms[k] * norms[i],
+        )
+        planes = _cross(points, i, j), _cross(points, j, k), _cross(points, k, i)
+        six = planes[0][0] * c[0] + planes[0][1] * c[1] + planes[0][2] * c[2]
+        way = 1.0 if six > 0.0 else -1.0
+        if abs(six) <= errors[0] * norms[k]:
+            way = float(sign_of_triple_product(a, b, c))
+            if way == 0.0:
                 continue
-        normal = cone[0, :3] + cone[1, :3] + cone[2, :3]
+        normal = _sum(planes)
         nearest = abs(six) / np.sqrt(normal[0] ** 2 + normal[1] ** 2 + normal[2] ** 2)
-        farthest = max(norms[faces[f, 0]], norms[faces[f, 1]], norms[faces[f, 2]])
+        farthest = max(norms[i], norms[j], norms[k])
         low, high, left, right = bins_around(a, b, c, bins.rows, bins.columns)
         for row in range(low, high + 1):
-            for block in range(2):
-                start = left if block == 0 else 0
-                stop = min(right, bins.columns - 1) if block == 0 else right - bins.columns
-                if stop < start:
-                    continue
-                base = row * bins.columns
-                for i in range(bins.first[base + start], bins.first[base + stop + 1]):
-                    k = bins.rays[i]
-                    u = directions[k]
-                    if not _inside(u, a, b, c, cone, lengths[k], way):
+            for turn in range(1 if right < bins.columns else 2):
+                start = row * bins.columns + (left if turn == 0 else 0)
+                stop = row * bins.columns + (
+                    min(right, bins.columns - 1) if turn == 0 else right - bins.columns
+                )
+                for m in range(bins.first[start], bins.first[stop + 1]):
+                    ray = bins.rays[m]
+                    least = _least(directions, ray, lengths[ray], way, planes, errors)
+                    if least < 0.0 or (least == 0.0 and not _exactly_inside(directions[ray], a, b, c, way)):
                         continue
                     if n == len(distance):
                         whole = np.concatenate((whole, np.empty_like(whole)))
                         distance = np.concatenate((distance, np.empty_like(distance)))
-                    slope = abs(u[0] * normal[0] + u[1] * normal[1] + u[2] * normal[2]) / lengths[k]
-                    whole[n, 0], whole[n, 1], whole[n, 2] = k, way, f
+                    slope = way * _times(directions, ray, normal) / lengths[ray]
+                    whole[n, 0], whole[n, 1], whole[n, 2] = ray, int(way), f
                     distance[n] = max(nearest, min(farthest, abs(six) / slope if slope > 0.0 else farthest))
                     n += 1
     return whole[:n, 0].copy(), distance[:n].copy(), whole[:n, 1].copy(), whole[:n, 2].copy()
 
 
-@kernel
-def _edge(a: FloatArray, b: FloatArray, size: float, row: FloatArray) -> None:
-    """a x b, and the error of its products with a unit vector, into a row of four."""
-    row[0] = a[1] * b[2] - a[2] * b[1]
-    row[1] = a[2] * b[0] - a[0] * b[2]
-    row[2] = a[0] * b[1] - a[1] * b[0]
-    row[3] = ROUNDING * size
+@inlined
+def _cross(points: FloatArray, i: int, j: int) -> Vector:
+    """Cross product of two rows."""
+    return (
+        points[i, 1] * points[j, 2] - points[i, 2] * points[j, 1],
+        points[i, 2] * points[j, 0] - points[i, 0] * points[j, 2],
+        points[i, 0] * points[j, 1] - points[i, 1] * points[j, 0],
+    )
+
+
+@inlined
+def _sum(vectors: tuple[Vector, Vector, Vector]) -> Vector:
+    a, b, c = vectors
+    return a[0] + b[0] + c[0], a[1] + b[1] + c[1], a[2] + b[2] + c[2]
+
+
+@inlined
+def _times(rows: FloatArray, i: int, vector: Vector) -> float:
+    return float(rows[i, 0] * vector[0] + rows[i, 1] * vector[1] + rows[i, 2] * vector[2])
+
+
+@inlined
+def _least(
+    directions: FloatArray,
+    ray: int,
+    length: float,
+    way: float,
+    planes: tuple[Vector, Vector, Vector],
+    errors: Vector,
+) -> float:
+    """-1 where a ray is surely outside one of the planes, 1 where inside all, 0 where rounding hides it."""
+    one = way * _times(directions, ray, planes[0])
+    two = way * _times(directions, ray, planes[1])
+    three = way * _times(directions, ray, planes[2])
+    if one < -errors[0] * length or two < -errors[1] * length or three < -errors[2] * length:
+        return -1.0
+    sure = one > errors[0] * length and two > errors[1] * length and three > errors[2] * length
+    return 1.0 if sure else 0.0
 
 
 @kernel
-def _inside(
-    u: FloatArray, a: FloatArray, b: FloatArray, c: FloatArray, cone: FloatArray, length: float, way: int
-) -> bool:
-    """Whether `u` is on side `way` of all three planes through the origin and an edge."""
-    unsure = False
-    for k in range(3):
-        value = way * (u[0] * cone[k, 0] + u[1] * cone[k, 1] + u[2] * cone[k, 2])
-        error = cone[k, 3] * length
-        if value < -error:
-            return False
-        unsure = unsure or value <= error
-    if not unsure:
-        return True
-    return _side(u, a, b) == way and _side(u, b, c) == way and _side(u, c, a) == way
+def _exactly_inside(u: FloatArray, a: FloatArray, b: FloatArray, c: FloatArray, way: float) -> bool:
+    """Whether `u` is on side `way` of all three planes through the origin and an edge, without rounding."""
+    return bool(_side(u, a, b) == way and _side(u, b, c) == way and _side(u, c, a) == way)
 
 
 @kernel
