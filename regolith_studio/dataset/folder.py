@@ -11,6 +11,9 @@ from regolith_studio.dataset.schema import DatasetDocument
 from regolith_studio.errors import DatasetError
 
 DOCUMENT, README = "dataset.json", "README.txt"
+UNASKED = {".DS_Store", "Thumbs.db", "desktop.ini"}
+"""Files that file managers leave behind; they go with the folder."""
+
 LARGEST_DOCUMENT = 200_000_000
 LARGEST_MESH = 50_000_000
 
@@ -103,7 +106,7 @@ def read_mesh_bytes(folder: Path, file: str) -> bytes:
 def foreign_files(folder: Path, document: DatasetDocument) -> list[str]:
     """Files and folders below `folder` that do not belong to its dataset, as relative POSIX paths."""
     own = {DOCUMENT, README, "meshes", *(record.mesh.file for record in document.representatives)}
-    found = {path.relative_to(folder).as_posix() for path in folder.rglob("*")}
+    found = {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.name not in UNASKED}
     return sorted(found - own)
 
 

@@ -120,6 +120,14 @@ def test_that_a_folder_with_foreign_files_is_not_overwritten(tmp_path: Path, mak
     assert any(name.split("/")[-1] in problem for problem in validate_dataset(folder))
 
 
+def test_that_what_file_managers_leave_behind_is_no_hindrance(tmp_path: Path, make_dataset) -> None:
+    folder = write_dataset(tmp_path / "set", make_dataset())
+    (folder / ".DS_Store").write_text("x")
+    assert validate_dataset(folder) == []
+    write_dataset(folder, make_dataset(first=10))
+    assert not (folder / ".DS_Store").exists()
+
+
 def test_that_a_folder_of_something_else_and_a_file_are_not_overwritten(tmp_path: Path, make_dataset) -> None:
     (tmp_path / "photos").mkdir()
     (tmp_path / "photos" / "moon.png").write_bytes(b"x")
