@@ -10,6 +10,7 @@ from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
 from regolith_studio.geometry.edges import EdgeTable, bodies, edge_table, neighbours
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.self_intersection import count_self_intersections
+from regolith_studio.geometry.welding import welded
 
 MOST_FACES_SEARCHED = 200_000
 """Meshes with more faces are not searched for self-intersections."""
@@ -45,6 +46,8 @@ class MeshHealth:
         Edges of one triangle, and edges of more than two (non-manifold).
     inverted_bodies
         Closed bodies whose triangles face inwards: cavities, nested shells, inside-out parts.
+    seam_vertices
+        Vertices that lie exactly where another one lies: seams of textures cut the surface there.
     self_intersections
         Pairs of triangles that cross; ``None`` where they were not searched for.
     problems
@@ -63,6 +66,7 @@ class MeshHealth:
     open_edges: int
     crowded_edges: int
     inverted_bodies: int
+    seam_vertices: int
     self_intersections: int | None
     problems: tuple[str, ...] = ()
 
@@ -116,6 +120,7 @@ def inspect(mesh: Mesh, *, self_intersections: bool = True) -> MeshHealth:
         open_edges=table.open_edges,
         crowded_edges=table.crowded_edges,
         inverted_bodies=_inverted(vertices, faces, parts.body, table),
+        seam_vertices=used - len(welded(vertices, faces)[0]),
         self_intersections=crossing,
     )
     problems = tuple(_sentences(found, searched=self_intersections))
@@ -175,7 +180,12 @@ def _sentences(found: MeshHealth, searched: bool) -> Sequence[str]:
     if not found.faces:
         return ("It has no faces.",)
     crossing = found.self_intersections
+    seams = found.seam_vertices if found.bodies > 1 or found.open_edges else 0
     rows = (
+        (
+            seams > 0,
+            f"{_count(seams, 'vertex lies', 'vertices lie')} exactly on another: seams cut the surface.",
+        ),
         (found.bodies > 1, f"It consists of {found.bodies:,} separate bodies."),
         (found.open_edges > 0, f"It is not closed: {_edges(found.open_edges)} one face only."),
         (

@@ -14,7 +14,10 @@ from regolith_studio.readers.protocol import Message, receive, send
 
 LARGEST_FILE = 2 * 1024**3
 MEMORY = 6 * 1024**3
-"""Bytes of addresses that the child may use; a 2 GiB file and its arrays fit."""
+"""Bytes of addresses that the child may use at most; a 2 GiB binary file and its arrays fit."""
+
+SHARE_OF_MEMORY = 0.75
+"""Nor may it use more than this share of what the machine has."""
 
 BASE_SECONDS = 10.0
 SECONDS_PER_BYTE = 1.0 / 1e6
@@ -29,17 +32,17 @@ class Guard:
     Parameters
     ----------
     memory
-        Bytes of addresses that the child may use, where the system can limit them.
+        Bytes of addresses that the child may use, where the system can limit them; by default 6 GiB, or
+        three quarters of the machine's memory where that is less.
     seconds
         Wall time for a small file; larger ones get a second more for each million bytes.
     """
 
-    def __init__(self, memory: int = MEMORY, seconds: float = BASE_SECONDS) -> None:
-        self._memory = memory
+    def __init__(self, memory: int | None = None, seconds: float = BASE_SECONDS) -> None:
+        self._memory = memory or _memory_limit()
         self._seconds = seconds
         self._lock = threading.RLock()
         self._process: subprocess.Popen[bytes] | None = None
-        self._timed_out = False
         self._ends_with_process = False
 
     def warm_up(self) -> None:
@@ -55,21 +58,23 @@ class Guard:
         FileError
             With one sentence if the file is refused, hangs or kills its reader.
         """
-        size = checked_size(path)
-        seconds = self._seconds + size * SECONDS_PER_BYTE
+        seconds = self._seconds + checked_size(path) * SECONDS_PER_BYTE
         header = {"task": task, "path": str(path.absolute()), "seconds": seconds + 2.0, **options}
         with self._lock:
             message = self._asked(Message(header), seconds)
-        if message is None:
-            raise FileError(_why_dead(path, self._timed_out, seconds))
-        if message.header["status"] == "memory":
-            limit = self._memory / 1024**3
-            raise FileError(
-                f"{path.name} needs more than the {limit:.3g} GiB of memory that a reader may use."
-            )
-        if message.header["status"] != "read":
-            raise FileError(message.header["sentence"])
-        return message
+        match message.header["status"]:
+            case "read":
+                return message
+            case "refused":
+                raise FileError(str(message.header["sentence"]))
+            case "memory":
+                limit = self._memory / 1024**3
+                reason = f"needs more than the {limit:.3g} GiB of memory that a reader may use."
+            case "late":
+                reason = f"was given up after {seconds:.2g} s: it is damaged, or far larger than it looks."
+            case _:
+                reason = "is damaged: it ended the process that tried to read it; export it again."
+        raise FileError(f"{path.name} {reason}")
 
     def close(self) -> None:
         """End the child, if there is one."""
@@ -89,31 +94,38 @@ class Guard:
                 if pipe is not None:
                     pipe.close()
 
-    def _asked(self, message: Message, seconds: float) -> Message | None:
-        """The child's answer; ``None`` if it died or was killed over it."""
-        process = self._running()
-        assert process.stdin is not None
-        try:
-            send(process.stdin, message)
-        except OSError:
+    def _asked(self, message: Message, seconds: float) -> Message:
+        """The child's answer, or a message of status ``late`` or ``dead``."""
+        answer = self._exchanged(self._running(), message, seconds)
+        if answer.header["status"] == "unheard":
             self.close()
-            process = self._running()
-            send(process.stdin, message)  # type: ignore[arg-type]
-        answer = self._answer(process, seconds)
-        if answer is None or _wasteful(answer):
+            answer = self._exchanged(self._running(), message, seconds)
+        if _ends_child(answer):
             self.close()
         return answer
 
-    def _answer(self, process: subprocess.Popen[bytes], seconds: float) -> Message | None:
-        assert process.stdout is not None
-        self._timed_out = False
-        watch = threading.Timer(seconds, self._kill, (process,))
+    def _exchanged(
+        self, process: subprocess.Popen[bytes], message: Message | None, seconds: float
+    ) -> Message:
+        """Send a message and wait for the answer, no longer than `seconds`."""
+        late = threading.Event()
+
+        def give_up() -> None:
+            late.set()
+            process.kill()
+
+        watch = threading.Timer(seconds, give_up)
         watch.daemon = True
+        try:
+            if message is not None:
+                send(process.stdin, message)  # type: ignore[arg-type]
+        except OSError:
+            return Message({"status": "unheard"})
         watch.start()
         try:
             return receive(process.stdout)  # type: ignore[arg-type]
         except (EOFError, OSError, ValueError, KeyError):
-            return None
+            return Message({"status": "late" if late.is_set() else "dead"})
         except BaseException:
             self.close()
             raise
@@ -121,16 +133,12 @@ class Guard:
             watch.cancel()
             watch.join()
 
-    def _kill(self, process: subprocess.Popen[bytes]) -> None:
-        self._timed_out = True
-        process.kill()
-
     def _running(self) -> subprocess.Popen[bytes]:
         if self._process is not None and self._process.poll() is None:
             return self._process
         self.close()
         process = _started(self._memory)
-        if self._answer(process, START_SECONDS) is None:
+        if self._exchanged(process, None, START_SECONDS).header["status"] != "ready":
             _end(process)
             raise EnvironmentProblem(f"The program's reading process does not start with {sys.executable}.")
         self._process = process
@@ -140,9 +148,10 @@ class Guard:
         return process
 
 
-def _wasteful(answer: Message) -> bool:
+def _ends_child(answer: Message) -> bool:
+    """Whether the child is gone, or has grown so large that a new one is better."""
     size = sum(array.nbytes for array in answer.arrays)
-    return answer.header["status"] == "memory" or size > LARGEST_WARM_RESULT
+    return answer.header["status"] not in ("read", "refused") or size > LARGEST_WARM_RESULT
 
 
 def checked_size(path: Path) -> int:
@@ -165,6 +174,14 @@ def checked_size(path: Path) -> int:
     if status.st_size > LARGEST_FILE:
         raise FileError(f"{path.name} has {status.st_size / 1024**3:.1f} GiB; at most 2 GiB are read.")
     return status.st_size
+
+
+def _memory_limit() -> int:
+    try:
+        machine = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    except (AttributeError, ValueError, OSError):
+        return MEMORY
+    return min(MEMORY, int(machine * SHARE_OF_MEMORY)) if machine > 0 else MEMORY
 
 
 def _started(memory: int) -> subprocess.Popen[bytes]:
@@ -193,12 +210,6 @@ def _end(process: subprocess.Popen[bytes]) -> None:
     except subprocess.TimeoutExpired:
         process.kill()
         process.wait()
-
-
-def _why_dead(path: Path, timed_out: bool, seconds: float) -> str:
-    if timed_out:
-        return f"{path.name} was given up after {seconds:.2g} s: it is damaged, or far larger than it looks."
-    return f"{path.name} is damaged: it ended the process that tried to read it; export it again."
 
 
 _SHARED = Guard()

@@ -27,8 +27,9 @@ def parse_mesh(data: bytes, path: Path) -> tuple[ParsedMesh, MeshFormat]:
     try:
         data = _as_bytes_of_one(data)
         row, notes = _format_of(data, path)
-        parsed = row.parse(data, path)
-        return _checked(replace(parsed, notes=notes + parsed.notes)), row
+        with np.errstate(all="ignore"):
+            parsed = row.parse(data, path)
+            return _checked(replace(parsed, notes=notes + parsed.notes)), row
     except FileError as error:
         raise FileError(f"{path.name} {error}") from None
 

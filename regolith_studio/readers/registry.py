@@ -16,7 +16,7 @@ from regolith_studio.readers.formats import mesh_suffixes
 from regolith_studio.readers.guard import Guard, shared_guard
 from regolith_studio.readers.units import UNITS, unit_factor
 
-__all__ = ["UNITS", "ProblemListener", "read_mesh", "read_particles"]
+__all__ = ["UNITS", "MeshFile", "ProblemListener", "mesh_files", "read_file", "read_mesh", "read_particles"]
 
 ProblemListener = Callable[[Path, str], None]
 """Told of each file that could not be read: its path, and one sentence."""
@@ -25,11 +25,11 @@ _log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
-class _Candidate:
+class MeshFile:
     """A file to be read, and the group that its place in a folder puts it in."""
 
     path: Path
-    group: str
+    group: str = ""
 
 
 def read_mesh(
@@ -55,7 +55,7 @@ def read_mesh(
     GeometryError
         With one sentence if it holds nothing that encloses a volume.
     """
-    return _read(_Candidate(Path(path), ""), unit, repair, guard or shared_guard())
+    return read_file(MeshFile(Path(path)), unit, repair, guard)
 
 
 def read_particles(
@@ -82,25 +82,25 @@ def read_particles(
         If no file could be read at all: the first file's sentence.
     """
     tell = on_problem or _to_log
-    guard = shared_guard()
-    read: list[tuple[_Candidate, Particle]] = []
+    read: list[tuple[MeshFile, Particle]] = []
     problems: list[str] = []
-    for candidate in _candidates([Path(path) for path in paths]):
+    for file in mesh_files(paths):
         try:
-            read.append((candidate, _read(candidate, unit, repair, guard)))
+            read.append((file, read_file(file, unit, repair)))
         except (FileError, GeometryError) as error:
             problems.append(str(error))
-            tell(candidate.path, str(error))
+            tell(file.path, str(error))
     if not read:
         more = f" ({len(problems) - 1:,} more files could not be read either.)" if len(problems) > 1 else ""
         raise FileError((problems[0] if problems else "There is no file to read.") + more)
     return _uniquely_named(read)
 
 
-def _read(candidate: _Candidate, unit: str, repair: bool, guard: Guard) -> Particle:
+def read_file(file: MeshFile, unit: str = "um", repair: bool = True, guard: Guard | None = None) -> Particle:
+    """As `read_mesh`, for one of `mesh_files`: the particle gets its group."""
     factor = unit_factor(unit)
-    path = candidate.path
-    answer = guard.request("mesh", path)
+    path = file.path
+    answer = (guard or shared_guard()).request("mesh", path)
     vertices, faces = answer.arrays
     if not answer.header["shares_vertices"]:
         vertices, faces = welded(vertices, faces)
@@ -115,25 +115,32 @@ def _read(candidate: _Candidate, unit: str, repair: bool, guard: Guard) -> Parti
     except GeometryError as error:
         raise GeometryError(f"{path.name} holds no particle: {_lower(str(error))}") from None
     source = Source(str(path), answer.header["sha256"], unit)
-    return Particle(path.stem, mesh, candidate.group, source, notes)
+    return Particle(path.stem, mesh, file.group, source, notes)
 
 
-def _candidates(paths: Sequence[Path]) -> Iterator[_Candidate]:
-    several = sum(path.is_dir() for path in paths) > 1
-    for path in paths:
-        if not path.is_dir():
-            yield _Candidate(path, "")
-            continue
-        found = list(_in_folder(path, several))
+def mesh_files(paths: Sequence[str | Path]) -> list[MeshFile]:
+    """The files that `read_particles` would read, in its order: those given, and those in folders.
+
+    Raises
+    ------
+    FileError
+        If a folder holds no mesh file.
+    """
+    given = [Path(path) for path in paths]
+    several = sum(path.is_dir() for path in given) > 1
+    files: list[MeshFile] = []
+    for path in given:
+        found = list(_in_folder(path, several)) if path.is_dir() else [MeshFile(path)]
         if not found:
             raise FileError(
                 f"The folder {path.name or path} holds no mesh file; "
                 f"meshes end in {', '.join(sorted(mesh_suffixes()))}."
             )
-        yield from found
+        files += found
+    return files
 
 
-def _in_folder(folder: Path, several: bool) -> Iterator[_Candidate]:
+def _in_folder(folder: Path, several: bool) -> Iterator[MeshFile]:
     name = folder.name or folder.resolve().name
     suffixes = mesh_suffixes()
     for where, folders, files in os.walk(folder):
@@ -142,17 +149,17 @@ def _in_folder(folder: Path, several: bool) -> Iterator[_Candidate]:
         group = name if inside == "." else f"{name}/{inside}" if several else inside
         for file in sorted(files):
             if not file.startswith(".") and Path(file).suffix.lower() in suffixes:
-                yield _Candidate(Path(where) / file, group)
+                yield MeshFile(Path(where) / file, group)
 
 
-def _uniquely_named(read: Sequence[tuple[_Candidate, Particle]]) -> list[Particle]:
+def _uniquely_named(read: Sequence[tuple[MeshFile, Particle]]) -> list[Particle]:
     """The particles, with those of the same name told apart by their group, then by a number."""
     taken: set[str] = set()
     particles = []
-    for candidate, particle in read:
+    for file, particle in read:
         name = particle.name
-        if name in taken and candidate.group:
-            name = f"{candidate.group.replace('/', '_')}_{particle.name}"
+        if name in taken and file.group:
+            name = f"{file.group.replace('/', '_')}_{particle.name}"
         base, number = name, 2
         while name in taken:
             name, number = f"{base}_{number}", number + 1

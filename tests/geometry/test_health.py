@@ -76,6 +76,7 @@ def test_that_a_cube_is_sound():
         open_edges=0,
         crowded_edges=0,
         inverted_bodies=0,
+        seam_vertices=0,
         self_intersections=0,
     )
     assert health.sound
@@ -137,6 +138,13 @@ def test_that_double_faces_are_counted_whatever_their_winding():
     health = inspect(Mesh(CUBE.vertices, faces))
     assert health.duplicate_faces == 3
     assert health.crowded_edges > 0
+
+
+def test_that_a_seam_is_told_from_other_openings():
+    split = Mesh(CUBE.triangles.reshape(-1, 3), np.arange(36).reshape(-1, 3))
+    assert inspect(split).seam_vertices == 28
+    assert inspect(split).problems[0] == "28 vertices lie exactly on another: seams cut the surface."
+    assert inspect(CUBE).seam_vertices == 0
 
 
 def test_that_two_cubes_on_one_edge_have_a_crowded_edge():
