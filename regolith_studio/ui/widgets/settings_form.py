@@ -41,6 +41,7 @@ class SettingsForm(QWidget):
                 form.addRow(editor)
             else:
                 form.addRow(rich_symbol(label), editor)
+        self.setValue({})
 
     def value(self) -> dict[str, Scalar]:
         """Settings that are not at their default, by name."""

@@ -1,0 +1,121 @@
+"""One application for all tests of the window, and a guard that lets nothing survive a test.
+
+With a display the application runs on it, so that live views work too; without one it draws off-screen.
+"""
+
+import gc
+import os
+import sys
+import threading
+import time
+
+import pytest
+
+if sys.platform.startswith("linux"):
+    os.environ.setdefault("QT_QPA_PLATFORM", "xcb" if os.environ.get("DISPLAY") else "offscreen")
+
+import shiboken6
+from PySide6.QtCore import QCoreApplication, QEvent, QObject, Qt, QTimer
+from PySide6.QtWidgets import QApplication, QWidget
+from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
+
+from regolith_studio.session.preferences import Preferences
+from regolith_studio.ui.app import make_application
+
+
+def pytest_addoption(parser):
+    parser.addoption("--update", action="store_true", help="write the pictures of the documentation anew")
+
+
+@pytest.fixture(scope="session")
+def app(tmp_path_factory):
+    """The one application object; never the user's preferences."""
+    os.environ["REGOLITH_STUDIO_CONFIG"] = str(tmp_path_factory.mktemp("config"))
+    QCoreApplication.setAttribute(Qt.ApplicationAttribute.AA_DontUseNativeDialogs)
+    made = QApplication.instance() or make_application(["tests"])
+    made.setQuitOnLastWindowClosed(False)
+    return made
+
+
+@pytest.fixture(autouse=True)
+def nothing_left_behind(request):
+    """Fail a test that leaves a widget, a running timer, a thread or a VTK object."""
+    if "app" not in request.fixturenames:
+        yield
+        return
+    request.getfixturevalue("app")
+    gc.collect()
+    gc.freeze()  # what was there before is left out of all that follows
+    threads, windows = set(threading.enumerate()), set(QApplication.topLevelWidgets())
+    yield
+    _settle()
+    left = _newcomers() + [each.name for each in threading.enumerate() if each not in threads]
+    left += [_name(each) for each in QApplication.topLevelWidgets() if each not in windows]
+    assert not left, f"the test left behind: {left}"
+
+
+@pytest.fixture
+def wait(app):
+    """Lets the event loop run until something is true; fails after a while."""
+
+    def run(until, seconds=60.0):
+        end = time.monotonic() + seconds
+        while not until():
+            assert time.monotonic() < end, "waited in vain"
+            app.processEvents()
+            time.sleep(0.002)
+
+    return run
+
+
+@pytest.fixture
+def shown(app):
+    """Shows a widget, and deletes it after the test."""
+    kept = []
+
+    def show(widget):
+        kept.append(widget)
+        widget.show()
+        app.processEvents()
+        return widget
+
+    yield show
+    for widget in kept:
+        widget.close()
+        widget.deleteLater()
+    kept.clear()
+
+
+@pytest.fixture
+def preferences(tmp_path, monkeypatch):
+    """Preferences of nobody, kept nowhere else."""
+    monkeypatch.setenv("REGOLITH_STUDIO_CONFIG", str(tmp_path / "config"))
+    return Preferences()
+
+
+def _settle():
+    for _ in range(3):
+        QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
+        QApplication.processEvents()
+        gc.collect()
+
+
+def _newcomers():
+    """Widgets, running timers and VTK objects that have been made since the last freeze."""
+    found = []
+    for each in gc.get_objects():
+        if isinstance(each, vtkRenderer | vtkRenderWindow):
+            found.append(_name(each))
+            continue
+        if not isinstance(each, QWidget | QTimer) or not shiboken6.isValid(each):
+            continue
+        if isinstance(each, QWidget):
+            found.append(_name(each))
+        elif each.isActive():
+            found.append(f"running {_name(each)}")
+    return found
+
+
+def _name(each):
+    label = each.objectName() if isinstance(each, QObject) else ""
+    return f"{type(each).__name__} {label}".strip()

@@ -1,0 +1,183 @@
+"""Each panel keeps its promise: what is written is read back, and only the user's changes are announced."""
+
+from dataclasses import dataclass, field
+
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QAbstractButton, QAbstractSpinBox, QComboBox, QSlider
+
+from regolith_studio.coarsening.weights import LossWeights, presets
+from regolith_studio.descriptors.describe import describe
+from regolith_studio.geometry.directions import icosphere
+from regolith_studio.geometry.health import inspect
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.session.choices import Choices
+from regolith_studio.session.results import ParticleEntry
+from regolith_studio.session.tasks import Task
+from regolith_studio.ui.panels.coarsening import CoarseningPanel
+from regolith_studio.ui.panels.fit import FitPanel
+from regolith_studio.ui.panels.loss import LossPanel
+from regolith_studio.ui.panels.particle_list import ParticleListPanel, health_icon_name
+from regolith_studio.ui.panels.tasks import IDLE, TasksPanel
+from regolith_studio.ui.widgets.settings_form import SettingsForm
+
+WEIGHTS = LossWeights.of(volume=0.5, sphericity=1.25, jaccard_distance=7.0)
+VALUES = {
+    FitPanel: {"l_max": 17},
+    CoarseningPanel: {
+        "n_faces": 33,
+        "target": "particle",
+        "method": "annealing",
+        "settings": (("cooling", 0.8),),
+        "seed": 12,
+    },
+    LossPanel: {"weights": WEIGHTS, "preset": "descriptors"},
+}
+
+
+def entry(name, scale=1.0, **more):
+    return ParticleEntry(name, Particle(name, icosphere(2).moved(scale=scale)), **more)
+
+
+def measured(name, scale):
+    bare = entry(name, scale)
+    mesh = bare.particle.mesh
+    return ParticleEntry(name, bare.particle, inspect(mesh), describe(mesh))
+
+
+@pytest.mark.parametrize("kind", VALUES)
+def test_that_a_value_written_into_a_panel_is_read_back_and_not_announced(shown, kind):
+    panel, heard = shown(kind()), []
+    panel.valueChanged.connect(heard.append)
+    panel.setValue(VALUES[kind])
+    QTest.qWait(50)
+    assert panel.value() == VALUES[kind]
+    assert set(panel.value()) == set(panel.FIELDS)
+    assert heard == []
+
+
+@pytest.mark.parametrize("kind", [*VALUES, ParticleListPanel])
+def test_that_what_a_panel_edits_are_choices(kind):
+    assert all(hasattr(Choices(), name) for name in kind.FIELDS)
+
+
+@pytest.mark.parametrize("kind", VALUES)
+def test_that_every_control_has_a_name_for_screen_readers(shown, kind):
+    panel = shown(kind())
+    for control in (
+        panel.findChildren(QComboBox) + panel.findChildren(QAbstractSpinBox) + panel.findChildren(QSlider)
+    ):
+        assert control.accessibleName(), f"{control.objectName()} has no accessible name"
+    for button in panel.findChildren(QAbstractButton):
+        assert button.accessibleName() or button.text() or button.objectName().startswith("qt_")
+
+
+def test_that_a_weight_that_is_moved_marks_the_preset_as_modified_and_reset_unmarks_it(shown, wait):
+    panel, heard = shown(LossPanel()), []
+    panel.setValue({"weights": presets()["all"].weights, "preset": "all"})
+    assert not panel.is_modified()
+    panel.valueChanged.connect(heard.append)
+    QTest.keyClick(panel.sliders["volume"].slider, Qt.Key.Key_Right)
+    wait(lambda: heard)
+    assert heard[-1]["weights"]["volume"] == pytest.approx(1.05)
+    assert "(modified)" in panel.preset.currentText()
+    QTest.mouseClick(panel.reset, Qt.MouseButton.LeftButton)
+    assert heard[-1] == {"weights": presets()["all"].weights, "preset": "all"}
+    assert "(modified)" not in panel.preset.currentText()
+
+
+def test_that_there_is_a_slider_for_every_term_of_the_loss(shown):
+    panel = shown(LossPanel())
+    assert set(panel.sliders) == set(LossWeights.of())
+
+
+def test_that_another_method_drops_the_settings_of_the_first(shown):
+    panel, heard = shown(CoarseningPanel()), []
+    panel.setValue(VALUES[CoarseningPanel])
+    panel.valueChanged.connect(heard.append)
+    panel.method.setCurrentIndex(panel.method.findData("quadric"))
+    panel.method.activated.emit(panel.method.currentIndex())
+    assert heard == [{"method": "quadric", "settings": ()}]
+
+
+def test_that_the_dice_takes_the_next_seed(shown):
+    panel, heard = shown(CoarseningPanel()), []
+    panel.valueChanged.connect(heard.append)
+    QTest.mouseClick(panel.dice, Qt.MouseButton.LeftButton)
+    assert heard == [{"seed": 1}]
+
+
+def test_that_the_list_shows_what_is_known_and_announces_the_row_that_is_clicked(shown):
+    panel, heard = shown(ParticleListPanel()), []
+    panel.set_entries([measured("small", 1.0), entry("large", 10.0)])
+    panel.setValue({"selected": "small"})
+    panel.valueChanged.connect(heard.append)
+    model = panel.table.model()
+    texts = [model.index(0, column).data() for column in (0, 2, 3, 4)]
+    assert texts[0] == "small"
+    assert float(texts[1]) == pytest.approx(4.19, abs=0.2)
+    assert model.index(1, 2).data() == "…"
+    where = panel.table.visualRect(model.index(1, 0)).center()
+    QTest.mouseClick(panel.table.viewport(), Qt.MouseButton.LeftButton, pos=where)
+    assert heard == [{"selected": "large"}]
+    assert panel.value() == {"selected": "large"}
+
+
+def test_that_the_list_keeps_its_row_when_more_becomes_known(shown):
+    panel, heard = shown(ParticleListPanel()), []
+    panel.set_entries([entry("a"), entry("b")])
+    panel.setValue({"selected": "b"})
+    panel.valueChanged.connect(heard.append)
+    panel.set_entries([measured("a", 1.0), measured("b", 2.0)])
+    assert panel.table.currentIndex().row() == 1
+    assert heard == []
+
+
+def test_that_the_list_sorts_by_number_and_not_by_text(shown):
+    panel = shown(ParticleListPanel())
+    panel.set_entries([measured("nine", 9.0), measured("ten", 10.0), measured("two", 2.0)])
+    panel.table.sortByColumn(2, Qt.SortOrder.AscendingOrder)
+    model = panel.table.model()
+    assert [model.index(row, 0).data() for row in range(3)] == ["two", "nine", "ten"]
+
+
+def test_that_health_is_told_by_an_icon():
+    assert health_icon_name(entry("a")) == "unknown"
+    assert health_icon_name(measured("a", 1.0)) == "sound"
+    mended = Particle("a", icosphere(1), notes=("A hole was closed.",))
+    assert health_icon_name(ParticleEntry("a", mended, inspect(mended.mesh))) == "doubtful"
+    open_mesh = type(mended.mesh)(mended.mesh.vertices, mended.mesh.faces[1:])
+    assert health_icon_name(ParticleEntry("a", Particle("a", open_mesh), inspect(open_mesh))) == "unsound"
+
+
+def test_that_a_task_appears_after_a_moment_and_can_be_stopped(shown, wait):
+    panel, asked = shown(TasksPanel()), []
+    panel.cancelRequested.connect(asked.append)
+    panel.setValue([Task(7, "study", "RMSRE against l_max", 3, 12, "angular-1")])
+    assert panel.text.text() == IDLE
+    wait(panel.bar.isVisible)
+    assert "3 of 12" in panel.text.text()
+    QTest.mouseClick(panel.stop, Qt.MouseButton.LeftButton)
+    assert asked == [7]
+    panel.setValue([])
+    assert panel.text.text() == IDLE
+    assert not panel.bar.isVisible()
+
+
+@dataclass(frozen=True)
+class _Settings:
+    switch: bool = field(default=False, metadata={"label": "A switch"})
+    count: int = field(default=3, metadata={"minimum": 1, "maximum": 9})
+    share: float = 0.25
+    kind: str = field(default="a", metadata={"choices": ("a", "b")})
+
+
+def test_that_a_form_holds_only_what_differs_from_the_defaults(shown):
+    form = shown(SettingsForm(_Settings))
+    assert form.value() == {}
+    wanted = {"switch": True, "count": 5, "share": 0.5, "kind": "b"}
+    form.setValue(wanted)
+    assert form.value() == wanted
+    form.setValue({})
+    assert form.value() == {}
