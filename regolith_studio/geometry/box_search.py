@@ -16,9 +16,10 @@ import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.compiled import kernel
-from regolith_studio.geometry.hull_graph import HullGraph, along, extreme_vertex, hull_graph, walk_rim
-from regolith_studio.geometry.inlined import Vector, inlined
+from regolith_studio.geometry.hull_graph import HullGraph, climb, hull_graph, walk_rim
+from regolith_studio.geometry.inlined import inlined
 from regolith_studio.geometry.rectangle import TIE, outline, polygon_area, smallest_rectangle
+from regolith_studio.geometry.vectors import Vector, along, dot, frame, length, mixed, row
 
 STEEPNESS = 0.6
 """Slope of ln(volume) against the angle in radians, as a share of h/w + w/h, the most it could be."""
@@ -84,14 +85,14 @@ def minimum_box(points: FloatArray, faces: IntArray) -> FloatArray:
     near = np.zeros(4, np.int64)
     rim, x, y = np.empty(n, np.int64), np.empty(n), np.empty(n)
     search = Search(near, rim, x, y, np.full(2, np.inf), np.zeros((3, 3)), np.empty((DEPTH, 6)))
-    if graph.twin.min() < 0 or graph.outgoing.min() < 0:
+    if not graph.closed:
         return search.axes
     at_face = np.empty((len(faces), 2))
     for f in range(len(faces)):
         if graph.facet[f] == f:
-            at_face[f, 0], at_face[f, 1] = best_volume(graph, _row(graph.normals, f), search)
+            at_face[f, 0], at_face[f, 1] = best_volume(graph, row(graph.normals, f), search)
         else:
-            at_face[f] = at_face[graph.facet[f]]
+            at_face[f, 0], at_face[f, 1] = at_face[graph.facet[f], 0], at_face[graph.facet[f], 1]
     steepest = _steepest(graph, at_face)
     for h in range(len(graph.twin)):
         if h < graph.twin[h]:
@@ -102,12 +103,13 @@ def minimum_box(points: FloatArray, faces: IntArray) -> FloatArray:
 @kernel
 def _steepest(graph: HullGraph, at_face: FloatArray) -> float:
     """For solids with many facets a bound on all slopes, from those seen between neighbouring facets."""
-    steepest, arcs = 0.0, 0
-    least = at_face[:, 0].min()
+    steepest, arcs, least = 0.0, 0, np.inf
+    for f in range(len(at_face)):
+        least = min(least, at_face[f, 0])
     for h in range(len(graph.twin)):
         f, g = h // 3, graph.twin[h] // 3
         if f < g and max(at_face[f, 0], at_face[g, 0]) < least + EXACT_BELOW:
-            angle = np.sqrt(np.sum((graph.normals[f] - graph.normals[g]) ** 2))
+            angle = length(mixed(row(graph.normals, f), 1.0, row(graph.normals, g), -1.0))
             if SAME_NORMAL < angle < SHORT_ARC:
                 steepest = max(steepest, abs(at_face[f, 0] - at_face[g, 0]) / angle)
                 arcs += 1
@@ -119,16 +121,17 @@ def search_arc(
     graph: HullGraph, f: int, g: int, at_face: FloatArray, steepest: float, search: Search
 ) -> None:
     """Branch and bound along the Gauss arc between the normals of faces `f` and `g`."""
-    start, end = _row(graph.normals, f), _row(graph.normals, g)
-    cosine = _dot(start, end)
-    across = _mixed(end, 1.0, start, -cosine)
-    sine = np.sqrt(_dot(across, across))
+    start, end = row(graph.normals, f), row(graph.normals, g)
+    cosine = dot(start, end)
+    across = mixed(end, 1.0, start, -cosine)
+    sine = length(across)
     if sine < SAME_NORMAL:
         return
-    across = _mixed(across, 1.0 / sine, start, 0.0)
+    across = mixed(across, 1.0 / sine, start, 0.0)
     todo = search.todo
     todo[0, 0], todo[0, 1] = 0.0, np.arctan2(sine, cosine)
-    todo[0, 2:4], todo[0, 4:6] = at_face[f], at_face[g]
+    todo[0, 2], todo[0, 3] = at_face[f, 0], at_face[f, 1]
+    todo[0, 4], todo[0, 5] = at_face[g, 0], at_face[g, 1]
     n = 1
     while n > 0:
         n -= 1
@@ -140,7 +143,7 @@ def search_arc(
             golden_section(graph, start, across, low, high, steepness, search)
             continue
         middle = (low + high) / 2.0
-        at, steep = best_volume(graph, _mixed(start, np.cos(middle), across, np.sin(middle)), search)
+        at, steep = best_volume(graph, mixed(start, np.cos(middle), across, np.sin(middle)), search)
         todo[n, 1], todo[n, 4], todo[n, 5] = middle, at, steep
         n += 1
         todo[n, 0], todo[n, 1], todo[n, 2], todo[n, 3] = middle, high, at, steep
@@ -160,19 +163,19 @@ def golden_section(
 ) -> None:
     """Least volume on a short piece of an arc, given up once it cannot win."""
     a, b = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
-    at_a = best_volume(graph, _mixed(start, np.cos(a), across, np.sin(a)), search)[0]
-    at_b = best_volume(graph, _mixed(start, np.cos(b), across, np.sin(b)), search)[0]
+    at_a = best_volume(graph, mixed(start, np.cos(a), across, np.sin(a)), search)[0]
+    at_b = best_volume(graph, mixed(start, np.cos(b), across, np.sin(b)), search)[0]
     while high - low > SHARPEST:
         if min(at_a, at_b) - steepness * (1.0 - GOLDEN) * (high - low) >= search.record[0]:
             return
         if at_a < at_b:
             high, b, at_b = b, a, at_a
             a = high - GOLDEN * (high - low)
-            at_a = best_volume(graph, _mixed(start, np.cos(a), across, np.sin(a)), search)[0]
+            at_a = best_volume(graph, mixed(start, np.cos(a), across, np.sin(a)), search)[0]
         else:
             low, a, at_a = a, b, at_b
             b = low + GOLDEN * (high - low)
-            at_b = best_volume(graph, _mixed(start, np.cos(b), across, np.sin(b)), search)[0]
+            at_b = best_volume(graph, mixed(start, np.cos(b), across, np.sin(b)), search)[0]
 
 
 @kernel
@@ -182,10 +185,9 @@ def best_volume(graph: HullGraph, axis: Vector, search: Search) -> tuple[float, 
     Far above the best so far it is only a lower bound. A new best box is kept in `search`; of two that
     tie, the one with the shorter longest edge.
     """
-    first, second = _frame(axis)
+    first, second = frame(axis)
     points, near = graph.points, search.near
-    near[0] = extreme_vertex(graph, axis, near[0])
-    near[1] = extreme_vertex(graph, _mixed(axis, -1.0, axis, 0.0), near[1])
+    climb(graph, axis, first, near)
     height = along(points, near[0], axis) - along(points, near[1], axis)
     n = shadow(graph, axis, first, second, search)
     area = polygon_area(search.x, search.y, n)
@@ -216,8 +218,6 @@ def _slope(height: float, wide: float, high: float) -> float:
 def shadow(graph: HullGraph, axis: Vector, first: Vector, second: Vector, search: Search) -> int:
     """Outline of the shadow along `axis` in `search`, in coordinates along `first` and `second`."""
     points, near, x, y = graph.points, search.near, search.x, search.y
-    near[2] = extreme_vertex(graph, first, near[2])
-    near[3] = extreme_vertex(graph, _mixed(first, -1.0, first, 0.0), near[3])
     n = walk_rim(graph, axis, near[2], search.rim)
     leftmost = np.inf
     for i in range(n):
@@ -230,7 +230,8 @@ def shadow(graph: HullGraph, axis: Vector, first: Vector, second: Vector, search
             x[i], y[i] = along(points, i, first), along(points, i, second)
         corners = outline(x, y)
         n = len(corners)
-        x[:n], y[:n] = x[corners], y[corners]
+        for i in range(n):
+            x[i], y[i] = along(points, corners[i], first), along(points, corners[i], second)
     return n
 
 
@@ -247,39 +248,3 @@ def _reversals(x: FloatArray, n: int) -> int:
             first = way if rising == 0 else first
             rising = way
     return count + (1 if rising != first else 0)
-
-
-@inlined
-def _frame(axis: Vector) -> tuple[Vector, Vector]:
-    """Two unit vectors that make a right-handed frame with `axis`, in the order first, second, axis."""
-    x, y, z = axis
-    if abs(x) <= min(abs(y), abs(z)):
-        length = np.sqrt(y * y + z * z)
-        first = (0.0, z / length, -y / length)
-    elif abs(y) <= abs(z):
-        length = np.sqrt(x * x + z * z)
-        first = (-z / length, 0.0, x / length)
-    else:
-        length = np.sqrt(x * x + y * y)
-        first = (y / length, -x / length, 0.0)
-    return first, (
-        y * first[2] - z * first[1],
-        z * first[0] - x * first[2],
-        x * first[1] - y * first[0],
-    )
-
-
-@inlined
-def _row(rows: FloatArray, i: int) -> Vector:
-    return float(rows[i, 0]), float(rows[i, 1]), float(rows[i, 2])
-
-
-@inlined
-def _dot(a: Vector, b: Vector) -> float:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-@inlined
-def _mixed(a: Vector, share: float, b: Vector, other: float) -> Vector:
-    """``share * a + other * b``."""
-    return share * a[0] + other * b[0], share * a[1] + other * b[1], share * a[2] + other * b[2]

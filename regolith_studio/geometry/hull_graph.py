@@ -11,7 +11,8 @@ import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.compiled import kernel
-from regolith_studio.geometry.inlined import Vector, inlined
+from regolith_studio.geometry.inlined import inlined
+from regolith_studio.geometry.vectors import Vector, along, cross, length, mixed, row
 
 SLIVER = 1e-14
 """A triangle of less area, at solid size 1, has no normal of its own."""
@@ -37,6 +38,8 @@ class HullGraph(NamedTuple):
         The same edge run the other way, shape (3 m,); -1 where there is none.
     outgoing
         One half-edge that starts at each vertex, shape (n,).
+    closed
+        Whether every half-edge has a twin and every vertex a face; nothing else works if not.
     """
 
     points: FloatArray
@@ -45,12 +48,13 @@ class HullGraph(NamedTuple):
     origin: IntArray
     twin: IntArray
     outgoing: IntArray
+    closed: bool
 
 
 @kernel
 def hull_graph(points: FloatArray, faces: IntArray) -> HullGraph:
     """Half-edges of outward triangles, faces of shape (m, 3)."""
-    origin = faces.copy().reshape(-1)
+    origin = faces.reshape(-1)
     first = np.zeros(len(points) + 1, np.int64)
     for h in range(len(origin)):
         first[origin[h] + 1] += 1
@@ -61,18 +65,20 @@ def hull_graph(points: FloatArray, faces: IntArray) -> HullGraph:
     for h in range(len(origin)):
         bucket[filled[origin[h]]] = h
         filled[origin[h]] += 1
-    twin = np.full(len(origin), -1)
+    twin, outgoing = np.full(len(origin), -1), np.full(len(points), -1)
+    closed = True
     for h in range(len(origin)):
         v = origin[after(h)]
         for i in range(first[v], first[v + 1]):
             if origin[after(bucket[i])] == origin[h]:
                 twin[h] = bucket[i]
-    outgoing = np.full(len(points), -1)
-    for h in range(len(origin)):
+        closed = closed and twin[h] >= 0
         outgoing[origin[h]] = h
+    for v in range(len(points)):
+        closed = closed and outgoing[v] >= 0
     normals = _face_normals(points, faces, twin)
     facet = _facets(normals, twin)
-    return HullGraph(points, normals, facet, origin, twin, outgoing)
+    return HullGraph(points, normals, facet, origin, twin, outgoing, closed)
 
 
 @kernel
@@ -81,24 +87,34 @@ def _face_normals(points: FloatArray, faces: IntArray, twin: IntArray) -> FloatA
     normals = np.zeros((len(faces), 3))
     slivers = 0
     for f in range(len(faces)):
-        vector = np.cross(
-            points[faces[f, 1]] - points[faces[f, 0]], points[faces[f, 2]] - points[faces[f, 0]]
+        a = row(points, faces[f, 0])
+        normal = cross(
+            mixed(row(points, faces[f, 1]), 1.0, a, -1.0), mixed(row(points, faces[f, 2]), 1.0, a, -1.0)
         )
-        length = np.sqrt(np.sum(vector**2))
-        if length > 2.0 * SLIVER:
-            normals[f] = vector / length
+        size = length(normal)
+        if size > 2.0 * SLIVER:
+            for k in range(3):
+                normals[f, k] = normal[k] / size
         else:
             slivers += 1
     for _ in range(slivers):
         for f in range(len(faces)):
-            if not normals[f].any():
-                longest = 0.0
-                for k in range(3):
-                    length = np.sum((points[faces[f, (k + 1) % 3]] - points[faces[f, k]]) ** 2)
-                    if length > longest and twin[3 * f + k] >= 0:
-                        longest = length
-                        normals[f] = normals[twin[3 * f + k] // 3]
+            if length(row(normals, f)) == 0.0:
+                _take_normal(points, faces, twin, f, normals)
     return normals
+
+
+@kernel
+def _take_normal(points: FloatArray, faces: IntArray, twin: IntArray, f: int, normals: FloatArray) -> None:
+    """Give face `f` the normal of the neighbour across its longest edge."""
+    longest = 0.0
+    for k in range(3):
+        edge = mixed(row(points, faces[f, (k + 1) % 3]), 1.0, row(points, faces[f, k]), -1.0)
+        neighbour = twin[3 * f + k] // 3
+        if neighbour >= 0 and length(edge) > longest:
+            longest = length(edge)
+            for axis in range(3):
+                normals[f, axis] = normals[neighbour, axis]
 
 
 @kernel
@@ -115,8 +131,12 @@ def _facets(normals: FloatArray, twin: IntArray) -> IntArray:
             face = stack[n]
             for h in range(3 * face, 3 * face + 3):
                 f = twin[h] // 3
-                if f >= 0 and facet[f] < 0 and np.sum((normals[f] - normals[seed]) ** 2) < COPLANAR**2:
-                    facet[f], stack[n], normals[f] = seed, f, normals[seed]
+                if f < 0 or facet[f] >= 0:
+                    continue
+                if length(mixed(row(normals, f), 1.0, row(normals, seed), -1.0)) < COPLANAR:
+                    facet[f], stack[n] = seed, f
+                    for k in range(3):
+                        normals[f, k] = normals[seed, k]
                     n += 1
     return facet
 
@@ -127,15 +147,21 @@ def after(h: int) -> int:
     return h - 2 if h % 3 == 2 else h + 1
 
 
-@inlined
-def along(rows: FloatArray, i: int, direction: Vector) -> float:
-    """Scalar product of row `i` of an array of shape (n, 3) with `direction`."""
-    return float(rows[i, 0] * direction[0] + rows[i, 1] * direction[1] + rows[i, 2] * direction[2])
+@kernel
+def climb(graph: HullGraph, axis: Vector, first: Vector, near: IntArray) -> None:
+    """Find the vertices farthest along `axis`, ``-axis``, `first` and ``-first``.
+
+    By hill climbing from the vertices in `near`, shape (4,), which receives them.
+    """
+    for target in range(4):
+        direction = axis if target < 2 else first
+        if target % 2 == 1:
+            direction = (-direction[0], -direction[1], -direction[2])
+        near[target] = _extreme_vertex(graph, direction, near[target])
 
 
 @inlined
-def extreme_vertex(graph: HullGraph, direction: Vector, start: int) -> int:
-    """Vertex farthest along `direction`, by hill climbing from vertex `start`."""
+def _extreme_vertex(graph: HullGraph, direction: Vector, start: int) -> int:
     here = start
     height = along(graph.points, here, direction)
     climbing = True
@@ -155,7 +181,7 @@ def extreme_vertex(graph: HullGraph, direction: Vector, start: int) -> int:
     return here
 
 
-@inlined
+@kernel
 def walk_rim(graph: HullGraph, axis: Vector, start: int, rim: IntArray) -> int:
     """Outline of the shadow along `axis`, counter-clockwise seen from its tip.
 

@@ -11,9 +11,6 @@ import numba
 
 F = TypeVar("F", bound=Callable[..., object])
 
-Vector = tuple[float, float, float]
-"""Three floats that a kernel keeps in registers, where a row of an array would cost a view."""
-
 
 def inlined(function: F) -> F:
     """Compile `function` into every kernel that calls it."""

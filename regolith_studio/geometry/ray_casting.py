@@ -19,8 +19,9 @@ from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats,
 from regolith_studio.geometry.compiled import kernel
 from regolith_studio.geometry.direction_bins import DirectionBins, bins_around, direction_bins
 from regolith_studio.geometry.exact_signs import sign_of_cross_product, sign_of_triple_product
-from regolith_studio.geometry.inlined import Vector, inlined
+from regolith_studio.geometry.inlined import inlined
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.vectors import Vector, along, cross, dot, length, mixed, row
 
 ROUNDING = 16.0 * 2.0**-53
 """Error of a triple product of floats, as a share of the product of the three lengths."""
@@ -104,7 +105,7 @@ def _cast(
     """Crossings in the order of the faces: ray, distance, sign, face."""
     norms = np.empty(len(points))
     for v in range(len(points)):
-        norms[v] = np.sqrt(points[v, 0] ** 2 + points[v, 1] ** 2 + points[v, 2] ** 2)
+        norms[v] = length(row(points, v))
     whole = np.empty((2 * len(directions) + 64, 3), np.int64)
     distance = np.empty(len(whole))
     n = 0
@@ -116,21 +117,22 @@ def _cast(
             ROUNDING * norms[j] * norms[k],
             ROUNDING * norms[k] * norms[i],
         )
-        planes = _cross(points, i, j), _cross(points, j, k), _cross(points, k, i)
-        six = planes[0][0] * c[0] + planes[0][1] * c[1] + planes[0][2] * c[2]
+        corners = row(points, i), row(points, j), row(points, k)
+        planes = cross(corners[0], corners[1]), cross(corners[1], corners[2]), cross(corners[2], corners[0])
+        six = dot(planes[0], corners[2])
         way = 1.0 if six > 0.0 else -1.0
         if abs(six) <= errors[0] * norms[k]:
             way = float(sign_of_triple_product(a, b, c))
             if way == 0.0:
                 continue
-        normal = _sum(planes)
-        nearest = abs(six) / np.sqrt(normal[0] ** 2 + normal[1] ** 2 + normal[2] ** 2)
+        normal = mixed(mixed(planes[0], 1.0, planes[1], 1.0), 1.0, planes[2], 1.0)
+        nearest = abs(six) / length(normal)
         farthest = max(norms[i], norms[j], norms[k])
         low, high, left, right = bins_around(a, b, c, bins.rows, bins.columns)
-        for row in range(low, high + 1):
+        for band in range(low, high + 1):
             for turn in range(1 if right < bins.columns else 2):
-                start = row * bins.columns + (left if turn == 0 else 0)
-                stop = row * bins.columns + (
+                start = band * bins.columns + (left if turn == 0 else 0)
+                stop = band * bins.columns + (
                     min(right, bins.columns - 1) if turn == 0 else right - bins.columns
                 )
                 for m in range(bins.first[start], bins.first[stop + 1]):
@@ -141,7 +143,7 @@ def _cast(
                     if n == len(distance):
                         whole = np.concatenate((whole, np.empty_like(whole)))
                         distance = np.concatenate((distance, np.empty_like(distance)))
-                    slope = way * _times(directions, ray, normal) / lengths[ray]
+                    slope = way * along(directions, ray, normal) / lengths[ray]
                     whole[n, 0], whole[n, 1], whole[n, 2] = ray, int(way), f
                     distance[n] = max(nearest, min(farthest, abs(six) / slope if slope > 0.0 else farthest))
                     n += 1
@@ -149,42 +151,21 @@ def _cast(
 
 
 @inlined
-def _cross(points: FloatArray, i: int, j: int) -> Vector:
-    """Cross product of two rows."""
-    return (
-        points[i, 1] * points[j, 2] - points[i, 2] * points[j, 1],
-        points[i, 2] * points[j, 0] - points[i, 0] * points[j, 2],
-        points[i, 0] * points[j, 1] - points[i, 1] * points[j, 0],
-    )
-
-
-@inlined
-def _sum(vectors: tuple[Vector, Vector, Vector]) -> Vector:
-    a, b, c = vectors
-    return a[0] + b[0] + c[0], a[1] + b[1] + c[1], a[2] + b[2] + c[2]
-
-
-@inlined
-def _times(rows: FloatArray, i: int, vector: Vector) -> float:
-    return float(rows[i, 0] * vector[0] + rows[i, 1] * vector[1] + rows[i, 2] * vector[2])
-
-
-@inlined
 def _least(
     directions: FloatArray,
     ray: int,
-    length: float,
+    size: float,
     way: float,
     planes: tuple[Vector, Vector, Vector],
     errors: Vector,
 ) -> float:
     """-1 where a ray is surely outside one of the planes, 1 where inside all, 0 where rounding hides it."""
-    one = way * _times(directions, ray, planes[0])
-    two = way * _times(directions, ray, planes[1])
-    three = way * _times(directions, ray, planes[2])
-    if one < -errors[0] * length or two < -errors[1] * length or three < -errors[2] * length:
+    one = way * along(directions, ray, planes[0])
+    two = way * along(directions, ray, planes[1])
+    three = way * along(directions, ray, planes[2])
+    if one < -errors[0] * size or two < -errors[1] * size or three < -errors[2] * size:
         return -1.0
-    sure = one > errors[0] * length and two > errors[1] * length and three > errors[2] * length
+    sure = one > errors[0] * size and two > errors[1] * size and three > errors[2] * size
     return 1.0 if sure else 0.0
 
 

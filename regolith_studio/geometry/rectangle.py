@@ -18,36 +18,32 @@ SLACK = 1e-13
 
 @kernel
 def outline(x: FloatArray, y: FloatArray) -> IntArray:
-    """Indices of the convex hull of points in the plane, counter-clockwise (Andrew's monotone chain).
+    """Indices of the convex hull of points in the plane, counter-clockwise, by gift wrapping.
 
     Of points closer than `SHORTEST` only one is taken: rounding would let the others hide it.
     """
-    order = np.argsort(x + 1e-9 * y)
-    n = len(x)
-    chain = np.empty(2 * n, np.int64)
-    m = 0
-    for turn in range(2):
-        base = m
-        for i in range(n):
-            k = order[i] if turn == 0 else order[n - 1 - i]
-            if m > base and _squared_distance(x, y, chain[m - 1], k) < SHORTEST**2:
+    start = 0
+    for i in range(len(x)):
+        if y[i] < y[start] or (y[i] == y[start] and x[i] > x[start]):
+            start = i
+    chain = np.empty(len(x), np.int64)
+    chain[0], n = start, 1
+    while n < len(x):
+        here = chain[n - 1]
+        best, far = -1, 0.0
+        for i in range(len(x)):
+            dx, dy = x[i] - x[here], y[i] - y[here]
+            distance = dx * dx + dy * dy
+            if distance < SHORTEST**2:
                 continue
-            while m >= base + 2 and _turn(x, y, chain[m - 2], chain[m - 1], k) <= 0.0:
-                m -= 1
-            chain[m] = k
-            m += 1
-        m -= 1
-    return chain[:m]
-
-
-@inlined
-def _turn(x: FloatArray, y: FloatArray, a: int, b: int, c: int) -> float:
-    return float((x[b] - x[a]) * (y[c] - y[a]) - (y[b] - y[a]) * (x[c] - x[a]))
-
-
-@inlined
-def _squared_distance(x: FloatArray, y: FloatArray, a: int, b: int) -> float:
-    return float((x[b] - x[a]) ** 2 + (y[b] - y[a]) ** 2)
+            turn = dy * (x[best] - x[here]) - dx * (y[best] - y[here]) if best >= 0 else -1.0
+            if turn < -SLACK or (turn <= SLACK and distance > far):
+                best, far = i, distance
+        if best < 0 or (x[best] - x[start]) ** 2 + (y[best] - y[start]) ** 2 < SHORTEST**2:
+            break
+        chain[n] = best
+        n += 1
+    return chain[:n]
 
 
 @inlined
