@@ -5,17 +5,13 @@ from pathlib import Path
 
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.disk import recovered, replace_folder
-from regolith_studio.dataset.document import dataset_of, document_text, mesh_files, parsed_document
+from regolith_studio.dataset.document import dataset_of, document_text, mesh_files
+from regolith_studio.dataset.reading import DOCUMENT, README, foreign_files, read_document, read_mesh_bytes
 from regolith_studio.dataset.readme_text import readme_text
-from regolith_studio.dataset.schema import DatasetDocument
+from regolith_studio.dataset.validation import validate_dataset
 from regolith_studio.errors import DatasetError
 
-DOCUMENT, README = "dataset.json", "README.txt"
-UNASKED = {".DS_Store", "Thumbs.db", "desktop.ini"}
-"""Files that file managers leave behind; they go with the folder."""
-
-LARGEST_DOCUMENT = 200_000_000
-LARGEST_MESH = 50_000_000
+__all__ = ["dataset_files", "read_dataset", "validate_dataset", "write_dataset"]
 
 
 def write_dataset(folder: Path | str, dataset: Dataset, *, overwrite: bool = True) -> Path:
@@ -73,43 +69,6 @@ def read_dataset(folder: Path | str) -> Dataset:
     return dataset_of(document, str(target / DOCUMENT))
 
 
-def read_document(folder: Path) -> DatasetDocument:
-    """The checked ``dataset.json`` of a folder.
-
-    Raises
-    ------
-    DatasetError
-        If it is missing, too large or breaks the schema.
-    """
-    path = folder / DOCUMENT
-    try:
-        text = _read(path, LARGEST_DOCUMENT).decode("utf-8")
-    except UnicodeDecodeError as error:
-        raise DatasetError(f"{path} is not text in UTF-8.") from error
-    return parsed_document(text, str(path))
-
-
-def read_mesh_bytes(folder: Path, file: str) -> bytes:
-    """Content of a mesh file whose relative path the schema has admitted.
-
-    Raises
-    ------
-    DatasetError
-        If it is missing, too large, or leads out of the folder by a link.
-    """
-    path = folder.joinpath(*file.split("/"))
-    if not path.resolve().is_relative_to(folder.resolve()):
-        raise DatasetError(f"{path} leads out of the dataset's folder.")
-    return _read(path, LARGEST_MESH)
-
-
-def foreign_files(folder: Path, document: DatasetDocument) -> list[str]:
-    """Files and folders below `folder` that do not belong to its dataset, as relative POSIX paths."""
-    own = {DOCUMENT, README, "meshes", *(record.mesh.file for record in document.representatives)}
-    found = {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.name not in UNASKED}
-    return sorted(found - own)
-
-
 def _check_replaceable(target: Path, overwrite: bool) -> None:
     if not target.exists():
         return
@@ -129,12 +88,3 @@ def _check_replaceable(target: Path, overwrite: bool) -> None:
         )
     if not overwrite:
         raise DatasetError(f"{target} holds a dataset already; nothing was overwritten.")
-
-
-def _read(path: Path, largest: int) -> bytes:
-    try:
-        if path.stat().st_size > largest:
-            raise DatasetError(f"{path} is larger than {largest // 1_000_000} MB.")
-        return path.read_bytes()
-    except OSError as error:
-        raise DatasetError(f"{path} cannot be read: {error.strerror or error}.") from error

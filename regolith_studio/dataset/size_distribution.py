@@ -20,6 +20,9 @@ Weighting = Literal["number", "volume"]
 Diameter = Annotated[float, Field(gt=0.0, description="Equivalent diameter in micrometres.")]
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
 
+PAPER_CLASSES_UM = (25.0, 37.0, 56.0, 84.0, 125.0)
+"""Particle sizes of the paper's Table 1."""
+
 WEIGHT_TOLERANCE = 1e-12
 """How far a sum of shares may be from 1."""
 
@@ -88,6 +91,16 @@ class DiscreteSizes(SizeDistribution):
         """Of ascending diameters (µm) and amounts that need not add up to 1."""
         values = np.asarray(diameters, dtype=np.float64).tolist()
         return cls(weighting=weighting, diameters_um=tuple(values), shares=normalised_shares(amounts))
+
+    @classmethod
+    def in_classes(
+        cls, diameters: ArrayLike, classes: ArrayLike, weighting: Weighting = "number"
+    ) -> "DiscreteSizes":
+        """Of measured diameters (µm), each moved to the class nearest in ln d; empty classes stay, with 0."""
+        values = np.asarray(classes, dtype=np.float64)
+        limits = np.sqrt(values[:-1] * values[1:])
+        place = np.searchsorted(limits, np.asarray(diameters, dtype=np.float64))
+        return cls.of(values, np.bincount(place, minlength=len(values)), weighting)
 
     def cdf(self, diameters: ArrayLike) -> FloatArray:
         place = np.searchsorted(self.diameters_um, np.asarray(diameters, dtype=np.float64), side="right")

@@ -8,8 +8,8 @@ import numpy as np
 from regolith_studio.dataset.dataset import SHAPE_TOLERANCE
 from regolith_studio.dataset.disk import recovered
 from regolith_studio.dataset.document import dataset_of, shape_of
-from regolith_studio.dataset.folder import DOCUMENT, README, foreign_files, read_document, read_mesh_bytes
 from regolith_studio.dataset.mesh_file import mesh_of_stl
+from regolith_studio.dataset.reading import DOCUMENT, README, foreign_files, read_document, read_mesh_bytes
 from regolith_studio.dataset.schema import RepresentativeRecord
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron

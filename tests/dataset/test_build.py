@@ -4,13 +4,17 @@ import numpy as np
 import pytest
 from scipy.spatial import ConvexHull
 
+from regolith_studio.coarsening.coarsen import coarsen
 from regolith_studio.dataset.alignment import Frame, aligned, principal_axes, rebuilt
 from regolith_studio.dataset.build import ShapeClass, build_dataset, software_versions, unique_names
 from regolith_studio.dataset.dataset import Dataset
+from regolith_studio.dataset.folder import validate_dataset, write_dataset
 from regolith_studio.dataset.size_distribution import DiscreteSizes, LogNormalSizes, equivalent_diameter
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.imaging.samples import GRAINS
 
 from .conftest import entry, polyhedron
 
@@ -138,6 +142,18 @@ def test_that_a_dataset_checks_itself() -> None:
         Dataset("x", ())
     with pytest.raises(ValueError, match="different names"):
         Dataset("x", (good.representatives[0],) * 2)
+
+
+def test_that_a_particle_coarsened_by_the_program_becomes_a_dataset(tmp_path) -> None:
+    particle = Particle("angular-2", next(g for g in GRAINS if g.name == "angular-2").mesh())
+    coarse = coarsen(particle.mesh, n_faces=20, method="quadric")
+    dataset = build_dataset([(particle, coarse)])
+    assert validate_dataset(write_dataset(tmp_path / "set", dataset)) == []
+    (one,) = dataset.representatives
+    assert one.shape.n_faces == coarse.n_faces
+    assert one.fidelity.errors == dict(coarse.errors)
+    back = one.frame.to_particle(one.shape.vertices)
+    assert np.sort(back, axis=0) == pytest.approx(np.sort(coarse.mesh.vertices, axis=0), abs=1e-6)
 
 
 def test_that_a_frame_without_a_rotation_is_refused() -> None:

@@ -6,6 +6,7 @@ from pydantic import ValidationError
 from scipy import integrate, stats
 
 from regolith_studio.dataset.size_distribution import (
+    PAPER_CLASSES_UM,
     DiscreteSizes,
     LogNormalSizes,
     RosinRammlerSizes,
@@ -101,6 +102,12 @@ def test_that_measured_sizes_become_their_empirical_distribution() -> None:
     assert sizes.diameters_um == (10.0, 20.0, 30.0)
     assert sizes.shares == (0.25, 0.5, 0.25)
     assert sizes.cdf([9.9, 10.0, 25.0, 30.0]) == pytest.approx([0.0, 0.25, 0.75, 1.0])
+
+
+def test_that_measured_sizes_go_to_the_nearest_class_of_the_paper() -> None:
+    sizes = DiscreteSizes.in_classes([1.0, 26.0, 30.0, 31.0, 84.0, 1000.0], PAPER_CLASSES_UM)
+    assert sizes.diameters_um == (25.0, 37.0, 56.0, 84.0, 125.0)
+    assert sizes.shares == pytest.approx((3 / 6, 1 / 6, 0, 1 / 6, 1 / 6))
 
 
 @KINDS
