@@ -1,5 +1,6 @@
 """The files of a dataset folder on their way in: sizes, links and foreign files are looked at first."""
 
+import hashlib
 from pathlib import Path
 
 from regolith_studio.dataset.document import parsed_document
@@ -28,6 +29,18 @@ def read_document(folder: Path) -> DatasetDocument:
     except UnicodeDecodeError as error:
         raise DatasetError(f"{path} is not text in UTF-8.") from error
     return parsed_document(text, str(path))
+
+
+def dataset_hash(folder: Path | str) -> str:
+    """SHA-256 of ``dataset.json``, which holds those of the meshes: what DEM results refer to.
+
+    Raises
+    ------
+    DatasetError
+        If the folder holds no dataset.
+    """
+    path = Path(folder) / DOCUMENT
+    return hashlib.sha256(_read(path, LARGEST_DOCUMENT)).hexdigest()
 
 
 def read_mesh_bytes(folder: Path, file: str) -> bytes:

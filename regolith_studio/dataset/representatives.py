@@ -15,9 +15,6 @@ from regolith_studio.geometry.arrays import FloatArray, IntArray
 NEEDED = ("volume", "sphericity", "aspect_ratio", "min_diameter", "convex_hull_volume")
 """Descriptors that the choice looks at."""
 
-COMPARED = ("aspect_ratio", "sphericity", "convexity")
-"""Dimensionless descriptors of the quality figure."""
-
 
 @dataclass(frozen=True, eq=False)
 class Representatives:
@@ -104,18 +101,51 @@ def representation_error(
     Each descriptor of the population is compared with that of the chosen particles by their weights,
     both counted as the choice was.
     """
+    values, counted = _compared(population, representatives.weighting)
+    weights = [one.weight for one in representatives.classes]
+    chosen = representatives.chosen
+    return {key: _distance(each, each[chosen], counted, weights) for key, each in values.items()}
+
+
+def sampling_noise(
+    population: Sequence[Mapping[str, float]],
+    weighting: Weighting = "number",
+    *,
+    repeats: int = 20,
+    seed: int = 0,
+) -> dict[str, float]:
+    """What :func:`representation_error` is between two random halves of the population, on average.
+
+    Below this, more representatives reproduce the sample and no longer the material.
+    """
+    generator = np.random.default_rng(np.random.SeedSequence(seed))
+    values, counted = _compared(population, weighting)
+    total = dict.fromkeys(values, 0.0)
+    for _ in range(repeats):
+        order = generator.permutation(len(counted))
+        one, other = order[: len(order) // 2], order[len(order) // 2 :]
+        for key, each in values.items():
+            distance = wasserstein_distance(each[one], each[other], counted[one], counted[other])
+            total[key] += distance / _spread(each) / repeats
+    return total
+
+
+def _compared(
+    population: Sequence[Mapping[str, float]], weighting: Weighting
+) -> tuple[dict[str, FloatArray], FloatArray]:
+    """Values of the compared descriptors, and how much each particle counts."""
     volume = _column(population, "volume")
     values = {key: _column(population, key) for key in ("aspect_ratio", "sphericity")}
     values["convexity"] = volume / _column(population, "convex_hull_volume")
-    counted = np.ones(len(volume)) if representatives.weighting == "number" else volume
-    weights = [one.weight for one in representatives.classes]
-    return {
-        key: float(
-            wasserstein_distance(values[key], values[key][representatives.chosen], counted, weights)
-            / max(values[key].std(), 1e-300)
-        )
-        for key in COMPARED
-    }
+    return values, np.ones(len(volume)) if weighting == "number" else volume
+
+
+def _distance(values: FloatArray, chosen: FloatArray, counted: FloatArray, weights: Sequence[float]) -> float:
+    return float(wasserstein_distance(values, chosen, counted, weights)) / _spread(values)
+
+
+def _spread(values: FloatArray) -> float:
+    return max(float(values.std()), 1e-300)
 
 
 def _shape_class(diameters: FloatArray, counted: FloatArray, weighting: Weighting) -> ShapeClass:

@@ -9,6 +9,7 @@ import pytest
 import trimesh
 
 from regolith_studio.dataset.folder import read_dataset, write_dataset
+from regolith_studio.dataset.reading import dataset_hash
 from regolith_studio.dataset.validation import validate_dataset
 from regolith_studio.errors import DatasetError
 
@@ -118,6 +119,15 @@ def test_that_a_folder_with_foreign_files_is_not_overwritten(tmp_path: Path, mak
         write_dataset(folder, make_dataset(first=10))
     assert contents(folder) == before
     assert any(name.split("/")[-1] in problem for problem in validate_dataset(folder))
+
+
+def test_that_the_hash_of_a_dataset_is_that_of_its_document(tmp_path: Path, make_dataset) -> None:
+    one, same, other = (
+        dataset_hash(write_dataset(tmp_path / name, make_dataset(first=first)))
+        for name, first in (("a", 0), ("b", 0), ("c", 10))
+    )
+    assert one == same != other
+    assert one == hashlib.sha256((tmp_path / "a" / "dataset.json").read_bytes()).hexdigest()
 
 
 def test_that_what_file_managers_leave_behind_is_no_hindrance(tmp_path: Path, make_dataset) -> None:

@@ -4,11 +4,13 @@ import csv
 
 import numpy as np
 import pytest
+from scipy.stats import wasserstein_distance
 
 from regolith_studio.dataset.build import build_dataset
 from regolith_studio.dataset.representatives import (
     choose_representatives,
     representation_error,
+    sampling_noise,
     shape_features,
 )
 from regolith_studio.errors import InputError
@@ -86,6 +88,24 @@ def test_that_more_representatives_stand_for_the_population_better() -> None:
     for key in ("aspect_ratio", "sphericity", "convexity"):
         few, some, many = (error[key] for error in errors)
         assert few > some > many
+
+
+def test_that_halves_of_a_bigger_population_differ_less() -> None:
+    small, big = sampling_noise(population(100)), sampling_noise(population(1600))
+    for key, noise in big.items():
+        assert noise < 0.5 * small[key]
+        assert noise < 0.1
+
+
+def test_that_the_noise_of_normal_values_is_that_of_theory() -> None:
+    """Halves of 800 normal values are as far apart as two fresh samples of 400."""
+    generator = np.random.default_rng(0)
+    rows = [row | {"aspect_ratio": 10 + generator.standard_normal()} for row in population(800)]
+    draws = [
+        wasserstein_distance(generator.standard_normal(400), generator.standard_normal(400))
+        for _ in range(200)
+    ]
+    assert sampling_noise(rows, repeats=200)["aspect_ratio"] == pytest.approx(np.mean(draws), rel=0.2)
 
 
 def test_that_size_separates_classes_when_it_is_asked_to() -> None:
