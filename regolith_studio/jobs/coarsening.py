@@ -12,6 +12,7 @@ from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
+from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.fit import fit_harmonics
 from regolith_studio.harmonics.surface import reconstruct
 from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
@@ -53,6 +54,8 @@ class CoarsenedParticle:
         ``None`` if it failed.
     problem
         Why it failed, in one sentence.
+    coefficients
+        Of the fit cut at the order's l_max; ``None`` where none was made.
     notes
         What to know about the particle: repairs of its mesh, warnings of its fit.
     seconds
@@ -63,6 +66,7 @@ class CoarsenedParticle:
     index: int
     coarsened: Coarsened | None
     problem: str = ""
+    coefficients: ShCoefficients | None = None
     notes: tuple[str, ...] = ()
     seconds: float = 0.0
 
@@ -77,13 +81,14 @@ def coarsen_particle(particle: Particle, order: CoarseningOrder, index: int) -> 
     """Fit (where the order says so) and coarsen one particle of a sample; returns `CoarsenedParticle`."""
     yield Started(f"Coarsening {particle.name}")
     begun = time.perf_counter()
-    mesh, notes = particle.mesh, particle.notes
+    mesh, notes, coefficients = particle.mesh, particle.notes, None
     if order.target == "fit":
         fit = fit_harmonics(mesh, l_max=max(order.l_max, FIT_DEGREE))
         mesh, notes = reconstruct(fit, order.l_max, level=order.level), notes + fit.warnings
+        coefficients = fit.coefficients.truncated(order.l_max)
     coarsened = yield from _told(mesh, order, index)
     seconds = time.perf_counter() - begun
-    return CoarsenedParticle(particle.name, index, coarsened, notes=notes, seconds=seconds)
+    return CoarsenedParticle(particle.name, index, coarsened, "", coefficients, notes, seconds)
 
 
 @lru_cache(maxsize=4)

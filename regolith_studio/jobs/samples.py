@@ -1,11 +1,10 @@
 """Work over a whole sample: many particles through one runner, results in their order."""
 
 from collections.abc import Generator, Sequence
-from typing import Any
 
 from regolith_studio.errors import Cancelled
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.jobs.batch import batch_runner, in_order
+from regolith_studio.jobs.batch import batch_runner, in_order, value_of, window_for
 from regolith_studio.jobs.coarsening import CoarsenedParticle, CoarseningOrder, coarsen_particle
 from regolith_studio.jobs.events import Ending, Failed, Finished, Job, Progress, Started, Step, Steps
 from regolith_studio.jobs.fitting import FIT_DEGREE, examine_one, fit_one
@@ -28,7 +27,7 @@ def examine_sample(particles: Sequence[Particle], box_metric: str = "exact", wor
     yield Started("Measuring", len(particles))
     jobs = [Job(examine_one, (particle, box_metric)) for particle in particles]
     endings = yield from _all(particles, jobs, workers)
-    return tuple(_value(ending) for ending in endings)
+    return tuple(value_of(ending) for ending in endings)
 
 
 def fit_sample(particles: Sequence[Particle], l_max: int = FIT_DEGREE, workers: int = 1) -> Steps:
@@ -36,7 +35,7 @@ def fit_sample(particles: Sequence[Particle], l_max: int = FIT_DEGREE, workers: 
     yield Started("Fitting spherical harmonics", len(particles))
     jobs = [Job(fit_one, (particle.mesh, l_max)) for particle in particles]
     endings = yield from _all(particles, jobs, workers)
-    return tuple(e.sentence if isinstance(e, Failed) else _value(e) for e in endings)
+    return tuple(e.sentence if isinstance(e, Failed) else value_of(e) for e in endings)
 
 
 def _all(
@@ -46,7 +45,7 @@ def _all(
     runner = batch_runner(workers)
     endings: list[Ending] = []
     try:
-        for ending in in_order(runner, jobs, window=_window(workers)):
+        for ending in in_order(runner, jobs, window=window_for(workers)):
             if ending is not None:
                 endings.append(ending)
             yield Progress(len(endings), len(jobs), particles[max(len(endings) - 1, 0)].name)
@@ -55,21 +54,11 @@ def _all(
     return endings
 
 
-def _window(workers: int) -> int:
-    return 1 if workers == 1 else 2 * max(workers, 2)
-
-
 def _outcome(at: int, particle: Particle, ending: Ending) -> CoarsenedParticle:
     match ending:
         case Finished(value) if isinstance(value, CoarsenedParticle):
             return value
         case Failed(sentence):
-            return CoarsenedParticle(particle.name, at, None, sentence, particle.notes)
+            return CoarsenedParticle(particle.name, at, None, sentence, notes=particle.notes)
         case _:
             raise Cancelled("The coarsening was stopped.")
-
-
-def _value(ending: Ending) -> Any:
-    if isinstance(ending, Finished):
-        return ending.value
-    raise Cancelled("The work was stopped.")

@@ -7,10 +7,10 @@ from typing import Any
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.jobs.building import DatasetOptions, build_dataset_folder
+from regolith_studio.jobs.building import Built, DatasetOptions, build_dataset_folder
 from regolith_studio.jobs.events import Failed, Job
 from regolith_studio.jobs.fitting import Examined, examine_particles
-from regolith_studio.jobs.loading import Loaded, load_particles, load_sample, uniquely_named
+from regolith_studio.jobs.loading import Loaded, Problem, load_particles, load_sample, uniquely_named
 from regolith_studio.jobs.runners.protocol import Runner
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.live import LiveResults
@@ -146,25 +146,33 @@ class Session:
         choices = self.choices
         job = study_job(kind, self._open_particles(), choices, options)
 
-        def keep(value: Any) -> None:
+        def show(value: Any) -> None:
             self._studied[kind] = choices
             self.update(kind.value, **{kind.value: value})
             self._mark_outdated()
 
-        return self._board.start(
-            kind, job.title, job.job, Reactions(keep, failed=self.tell_failure(job.title))
-        )
+        reactions = Reactions(show, partial=show, failed=self.tell_failure(job.title))
+        return self._board.start(kind, job.title, job.job, reactions)
 
     def export_dataset(self, folder: Path | str, options: DatasetOptions | None = None) -> int:
         """Coarsen every open particle with the present choices and write the dataset folder.
 
-        Returns the task's id; ``topics.exported`` tells when it is done.
+        Returns the task's id; ``topics.exported`` tells when it is done, ``topics.problems`` which
+        particles are not in it.
         """
-        particles, wish = self._open_particles(), options or DatasetOptions()
-        job = Job(build_dataset_folder, (particles, self.choices.order, Path(folder), wish))
+        wish = options or DatasetOptions()
+        if wish.preset is None and not self.choices.preset_modified:
+            wish = dataclasses.replace(wish, preset=self.choices.preset)
+        job = Job(build_dataset_folder, (self._open_particles(), self.choices.order, Path(folder), wish))
+
+        def tell(built: Built) -> None:
+            failed = tuple(Problem(o.name, o.problem) for o in built.outcomes if not o.coarsened)
+            if failed:
+                self.topics.problems.emit(failed)
+            self.topics.exported.emit(built.folder)
+
         title = "Building the dataset"
-        reactions = Reactions(self.topics.exported.emit, failed=self.tell_failure(title))
-        return self._board.start("export", title, job, reactions)
+        return self._board.start("export", title, job, Reactions(tell, failed=self.tell_failure(title)))
 
     def cancel(self, task_id: int) -> None:
         """Stop one task; harmless if it has ended."""

@@ -32,7 +32,12 @@ def study_job(
     """
     match kind:
         case Kind.LMAX_STUDY:
-            return StudyJob("RMSRE against l_max", Job(study_lmax, (tuple(particles),), options))
+            return StudyJob(
+                "RMSRE against l_max",
+                Job(
+                    study_lmax, (tuple(particles),), {"seed": choices.seed, "level": choices.level, **options}
+                ),
+            )
         case Kind.COARSENING_STUDY:
             job = Job(study_coarsening, (tuple(particles), choices.order), options)
             return StudyJob("RMSRE against loss weights", job)

@@ -31,6 +31,6 @@ class Topics:
     tasks: Signal[[]] = field(default_factory=Signal)
     failed: Signal[[Failure]] = field(default_factory=Signal)
     problems: Signal[[tuple[Problem, ...]]] = field(default_factory=Signal)
-    """Files that were refused, after an :meth:`Session.open`; what was mended stands in the notes."""
+    """Files that were refused at opening, or particles that an export left out."""
     exported: Signal[[Path]] = field(default_factory=Signal)
     """The folder that was written."""

@@ -1,0 +1,43 @@
+"""All commands, each with its one line of help."""
+
+from typing import Annotated
+
+import typer
+
+from regolith_studio.cli import check, coarsen, dataset, demo, describe, extract, fit, recipe, study, window
+
+app = typer.Typer(
+    name="regolith-studio",
+    help="From X-ray micro-CT to DEM-ready regolith particles whose geometry is right.",
+    epilog="Without a command the window opens. Lengths are in micrometres unless a unit is given.",
+    add_completion=False,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+@app.callback(invoke_without_command=True)
+def _without_command(
+    context: typer.Context,
+    version: Annotated[bool, typer.Option("--version", help="Print the version and stop.")] = False,
+) -> None:
+    if version:
+        from regolith_studio import __version__
+
+        typer.echo(__version__)
+        raise typer.Exit
+    if context.invoked_subcommand is None:
+        window.open_window([], None)
+
+
+app.command("open")(window.open_files)
+app.command("describe")(describe.describe)
+app.command("fit")(fit.fit)
+app.command("coarsen")(coarsen.coarsen)
+app.command("extract")(extract.extract)
+app.command("run")(recipe.run)
+app.command("demo")(demo.demo)
+app.command("check")(check.check)
+app.add_typer(study.app, name="study")
+app.add_typer(dataset.app, name="dataset")

@@ -1,0 +1,55 @@
+"""``demo``: the whole chain on the shipped sample, without a screen."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from regolith_studio.cli.options import Jobs, Json, Seed
+
+if TYPE_CHECKING:
+    from regolith_studio.session.performing import Performed
+
+PICTURE = "three-views.png"
+
+
+def demo(
+    output: Annotated[Path, typer.Option("--output", "-o", help="Folder to write.", metavar="DIR")] = Path(
+        "regolith-demo"
+    ),
+    json: Json = False,
+    jobs: Jobs = 0,
+    seed: Seed = 0,
+) -> None:
+    """Run the whole chain on the shipped particles: dataset, picture, Fig. 3, Fig. 8, summary page."""
+    from regolith_studio.cli.terminal import complain, follow, print_json
+    from regolith_studio.session.outputs.summary import write_summary
+    from regolith_studio.session.performing import perform, summary_facts
+    from regolith_studio.session.recipe import Outputs, recipe_of
+
+    everything = Outputs(fits=True, lmax_study=True, coarsening_study=True, summary=False)
+    done = follow(perform(recipe_of(seed=seed, outputs=everything), Path(), output, jobs))
+    write_summary(output, summary_facts(done, _pictures(done)))
+    complain(done.problems)
+    if json:
+        print_json({"folder": str(output), "files": done.files, "problems": list(done.problems)})
+    else:
+        typer.echo(f"{len(done.files)} files in {output}; begin with {output / 'summary.html'}")
+    raise typer.Exit(1 if done.problems else 0)
+
+
+def _pictures(done: "Performed") -> tuple[tuple[str, str], ...]:
+    """The three views of the first particle; where nothing can be drawn, a sentence in their place."""
+    from regolith_studio.cli.picture import draw_three_views
+    from regolith_studio.errors import RegolithError
+
+    first = next((each for each in done.outcomes if each.coarsened), None)
+    if first is None:
+        return ()
+    try:
+        draw_three_views(done.particles[first.index], first, done.choices, done.folder / PICTURE)
+    except RegolithError as error:
+        done.problems.append(str(error))
+        return ()
+    caption = f"{first.name}: CT particle, spherical-harmonics fit and coarsened polyhedron"
+    return ((PICTURE, caption),)

@@ -1,0 +1,40 @@
+"""From arguments to an exit code: 0 done, 1 bad input, 2 bad use, 130 interrupted; never a traceback."""
+
+import os
+import sys
+import traceback
+from collections.abc import Sequence
+
+from regolith_studio.errors import Cancelled, RegolithError
+
+DONE, BAD_INPUT, BAD_USE, INTERRUPTED = 0, 1, 2, 130
+
+
+def run(arguments: Sequence[str]) -> int:
+    """Run one command; everything that goes wrong is one sentence on stderr.
+
+    ``REGOLITH_STUDIO_DEBUG=1`` adds the traceback.
+    """
+    from regolith_studio.cli.commands import app
+
+    try:
+        app(list(arguments), prog_name="regolith-studio")
+    except SystemExit as end:
+        return end.code if isinstance(end.code, int) else DONE
+    except (KeyboardInterrupt, Cancelled):
+        return _say("Stopped.", INTERRUPTED)
+    except RegolithError as error:
+        return _say(str(error), BAD_INPUT)
+    except MemoryError:
+        return _say("The work needs more memory than this machine has.", BAD_INPUT)
+    except Exception as error:  # noqa: BLE001  the last one who can turn it into a sentence
+        first_line = (str(error).splitlines() or [""])[0]
+        return _say(f"The program made a mistake ({type(error).__name__}: {first_line}).", BAD_INPUT)
+    return DONE
+
+
+def _say(sentence: str, code: int) -> int:
+    if os.environ.get("REGOLITH_STUDIO_DEBUG"):
+        traceback.print_exc()
+    print(sentence, file=sys.stderr)  # noqa: T201  the only output of a failed command
+    return code

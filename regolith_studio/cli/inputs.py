@@ -1,0 +1,35 @@
+"""Particles named on the command line."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from regolith_studio.cli.options import as_bad_use
+from regolith_studio.cli.terminal import complain, follow
+
+if TYPE_CHECKING:
+    from regolith_studio.jobs.loading import Loaded
+
+
+def read_inputs(paths: Sequence[Path], unit: str) -> "Loaded":
+    """The particles in files and folders; what cannot be read is a sentence on stderr.
+
+    Raises
+    ------
+    FileError
+        If nothing can be read.
+    """
+    from regolith_studio.jobs.loading import load_particles
+    from regolith_studio.readers.units import unit_factor
+
+    with as_bad_use():
+        unit_factor(unit)
+    loaded: Loaded = follow(load_particles(tuple(paths), unit))
+    complain(f"{problem.path}: {problem.sentence}" for problem in loaded.problems)
+    return loaded
+
+
+def exit_code(paths: Sequence[Path], loaded: "Loaded", failures: int = 0) -> int:
+    """1 if a file that was named itself, or any particle, failed; a folder may hold other things."""
+    named = {str(path) for path in paths if not path.is_dir()}
+    return 1 if failures or any(problem.path in named for problem in loaded.problems) else 0

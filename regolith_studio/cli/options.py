@@ -1,0 +1,85 @@
+"""Options that several commands share, with their help."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from regolith_studio.errors import InputError
+
+Meshes = Annotated[
+    list[Path], typer.Argument(metavar="MESH...", help="Mesh files, or folders that hold some.")
+]
+Json = Annotated[bool, typer.Option("--json", help="Print JSON for programs instead of a table.")]
+Seed = Annotated[int, typer.Option("--seed", help="Seed of all randomness.", metavar="N")]
+Jobs = Annotated[
+    int, typer.Option("--jobs", "-j", min=0, help="Processes at a time; 0 for one a core.", metavar="N")
+]
+Unit = Annotated[
+    str,
+    typer.Option(
+        "--unit", help="Length unit of files that have none: um mm m nm cm voxel:SIZE.", metavar="U"
+    ),
+]
+Folder = Annotated[Path, typer.Option("--output", "-o", help="Folder to write.", metavar="DIR")]
+LMax = Annotated[
+    int, typer.Option("--l-max", help="Degree of the spherical harmonics, 0 to 30.", metavar="L")
+]
+Faces = Annotated[int, typer.Option("--faces", help="Facets of each polyhedron.", metavar="N")]
+Method = Annotated[str, typer.Option("--method", help="Coarsening method.", metavar="NAME")]
+Target = Annotated[
+    str, typer.Option("--target", help="What is imitated: fit (paper) or particle.", metavar="T")
+]
+Preset = Annotated[str, typer.Option("--preset", help="Weights of the loss by name.", metavar="NAME")]
+Weights = Annotated[
+    list[str] | None, typer.Option("--weight", help="One weight of the loss.", metavar="KEY=VALUE")
+]
+Settings = Annotated[
+    list[str] | None, typer.Option("--set", help="One setting of the method.", metavar="KEY=VALUE")
+]
+
+
+@contextmanager
+def as_bad_use() -> Iterator[None]:
+    """Inside, a value that cannot be used is the fault of the command, not of the input: exit code 2."""
+    try:
+        yield
+    except InputError as error:
+        raise typer.BadParameter(str(error)) from error
+
+
+def numbers(entries: list[str] | None, what: str) -> dict[str, float]:
+    """``KEY=VALUE`` entries with numeric values."""
+    found = {}
+    for key, text in _pairs(entries, what):
+        try:
+            found[key] = float(text)
+        except ValueError:
+            raise typer.BadParameter(f"The {what} {key} must be a number, got {text!r}.") from None
+    return found
+
+
+def values(entries: list[str] | None, what: str) -> dict[str, bool | int | float | str]:
+    """``KEY=VALUE`` entries, each value as the simplest type that can hold it."""
+    return {key: _simplest(text) for key, text in _pairs(entries, what)}
+
+
+def _pairs(entries: list[str] | None, what: str) -> Iterator[tuple[str, str]]:
+    for entry in entries or ():
+        key, equals, text = entry.partition("=")
+        if not equals or not key:
+            raise typer.BadParameter(f"Write a {what} as KEY=VALUE, got {entry!r}.")
+        yield key.strip(), text.strip()
+
+
+def _simplest(text: str) -> bool | int | float | str:
+    if text.lower() in ("true", "false"):
+        return text.lower() == "true"
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            continue
+    return text

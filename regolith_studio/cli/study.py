@@ -1,0 +1,77 @@
+"""``study``: tables and figures over a sample."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+from regolith_studio.cli.coarsen import choices_from
+from regolith_studio.cli.options import (
+    Faces,
+    Folder,
+    Jobs,
+    Json,
+    LMax,
+    Meshes,
+    Method,
+    Seed,
+    Settings,
+    Target,
+    Unit,
+)
+
+if TYPE_CHECKING:
+    from regolith_studio.jobs.events import Steps
+
+app = typer.Typer(help="Tables and figures over a sample.", no_args_is_help=True, rich_markup_mode=None)
+
+
+@app.command("lmax")
+def lmax(
+    meshes: Meshes, output: Folder, unit: Unit = "um", json: Json = False, jobs: Jobs = 1, seed: Seed = 0
+) -> None:
+    """RMSRE of the descriptors against l_max (Fig. 3)."""
+    from regolith_studio.cli.inputs import exit_code, read_inputs
+    from regolith_studio.jobs.studying import study_lmax
+
+    loaded = read_inputs(meshes, unit)
+    _conclude("lmax_study", study_lmax(loaded.particles, jobs, seed), output, json)
+    raise typer.Exit(exit_code(meshes, loaded))
+
+
+@app.command("coarsening")
+def coarsening(
+    meshes: Meshes,
+    output: Folder,
+    faces: Faces = 20,
+    method: Method = "",
+    set_: Settings = None,
+    target: Target = "fit",
+    l_max: LMax = 10,
+    unit: Unit = "um",
+    json: Json = False,
+    jobs: Jobs = 1,
+    seed: Seed = 0,
+) -> None:
+    """RMSRE of the descriptors for each set of loss weights (Fig. 8)."""
+    from regolith_studio.cli.inputs import exit_code, read_inputs
+    from regolith_studio.jobs.studying import study_coarsening
+
+    wish = choices_from(faces, method, "", None, set_, target, l_max, seed)
+    loaded = read_inputs(meshes, unit)
+    _conclude("coarsening_study", study_coarsening(loaded.particles, wish.order, jobs), output, json)
+    raise typer.Exit(exit_code(meshes, loaded))
+
+
+def _conclude(kind: str, steps: "Steps", folder: Path, json: bool) -> None:
+    from regolith_studio.cli.terminal import follow, print_json, print_table
+    from regolith_studio.session.outputs.staging import staged_folder
+    from regolith_studio.session.outputs.studies import STUDIES
+
+    study = follow(steps)
+    with staged_folder(folder) as stage:
+        files = [path.name for path in STUDIES[kind].write(study, stage)]
+    if json:
+        print_json({"folder": str(folder), "files": files})
+    else:
+        print_table(STUDIES[kind].table(study))

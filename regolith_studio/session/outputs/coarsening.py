@@ -1,0 +1,64 @@
+"""Coarsened particles: one STL each, and ``coarsening.json`` with how well each was met."""
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from regolith_studio.coarsening.result import Coarsened
+from regolith_studio.imaging.stl import stl_bytes
+from regolith_studio.jobs.coarsening import CoarsenedParticle, CoarseningOrder
+from regolith_studio.session.outputs.staging import json_bytes, write_bytes
+
+STL_HEADER = "Regolith Studio, convex polyhedron, micrometres"
+
+
+def write_coarsening(folder: Path, order: CoarseningOrder, done: Sequence[CoarsenedParticle]) -> None:
+    """Write ``<name>.stl`` for each particle that succeeded, in its own frame, and ``coarsening.json``."""
+    for each in done:
+        if each.coarsened:
+            write_bytes(folder / f"{each.name}.stl", stl_bytes(each.coarsened.mesh, STL_HEADER))
+    write_bytes(folder / "coarsening.json", json_bytes(coarsening_document(order, done)))
+
+
+def coarsening_document(order: CoarseningOrder, done: Sequence[CoarsenedParticle]) -> dict[str, Any]:
+    """What ``coarsening.json`` holds."""
+    return {
+        "format": "regolith-studio coarsening",
+        "version": 1,
+        "unit": "um",
+        "order": order_document(order),
+        "particles": [_entry(each, each.coarsened) for each in done if each.coarsened],
+        "failed": [{"name": each.name, "reason": each.problem} for each in done if not each.coarsened],
+    }
+
+
+def order_document(order: CoarseningOrder) -> dict[str, Any]:
+    """An order as plain JSON values."""
+    return asdict(order) | {"weights": dict(order.weights), "settings": dict(order.settings)}
+
+
+def _entry(each: CoarsenedParticle, coarse: Coarsened) -> dict[str, Any]:
+    return {
+        "name": each.name,
+        "file": f"{each.name}.stl",
+        "method": coarse.method,
+        "n_faces_asked": coarse.n_faces_asked,
+        "n_faces": coarse.n_faces,
+        "n_vertices": coarse.n_vertices,
+        "n_triangles": coarse.n_triangles,
+        "errors": dict(coarse.errors),
+        "jaccard_distance": coarse.jaccard_distance,
+        "loss": coarse.loss,
+        "bounds": dict(coarse.bounds),
+        "reason": coarse.reason,
+        "target": dict(coarse.target),
+        "achieved": dict(coarse.achieved),
+        "centre": coarse.centre.tolist(),
+        "normals": coarse.half_spaces.normals.tolist(),
+        "offsets": coarse.half_spaces.offsets.tolist(),
+        "steps": dict(coarse.steps),
+        "variants": {name: dict(errors) for name, errors in coarse.variants.items()},
+        "notes": list(each.notes),
+        "seconds": round(each.seconds, 3),
+    }

@@ -1,0 +1,44 @@
+"""Descriptors and health of particles as JSON and as a table."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from regolith_studio.descriptors.catalogue import CATALOGUE
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.jobs.fitting import Examined
+from regolith_studio.studies.tables import Column, Table
+
+_POWERS = {0: "", 1: "um", 2: "um^2", 3: "um^3", 5: "um^5"}
+
+
+def described(particle: Particle, facts: Examined) -> dict[str, Any]:
+    """One particle as ``describe --json`` prints it: name, descriptors by key, health, source."""
+    entry: dict[str, Any] = {"name": particle.name, "group": particle.group, "unit": "um"}
+    entry |= dict(facts.descriptors or {})
+    entry["health"] = facts.health.as_dict()
+    entry["notes"] = list(particle.notes)
+    if facts.problem:
+        entry["problem"] = facts.problem
+    if particle.source:
+        source = particle.source
+        entry["source"] = {"path": source.path, "sha256": source.sha256, "unit": source.unit}
+    return entry
+
+
+def descriptor_table(particles: Sequence[Particle], facts: Sequence[Examined]) -> Table:
+    """One row a particle, one column a descriptor with its unit."""
+    keys = [key for key in CATALOGUE if any(key in (each.descriptors or ()) for each in facts)]
+    columns = [Column("name"), Column("group")]
+    columns += [Column(key, _POWERS[CATALOGUE[key].dimension]) for key in keys]
+    columns += [Column("sound"), Column("problems")]
+    rows = [
+        (
+            particle.name,
+            particle.group,
+            *[each.descriptors.get(key) if each.descriptors else None for key in keys],
+            each.health.sound,
+            " ".join(filter(None, [*each.health.problems, each.problem])),
+        )
+        for particle, each in zip(particles, facts, strict=True)
+    ]
+    return Table("Descriptors of the particles", tuple(columns), tuple(rows))

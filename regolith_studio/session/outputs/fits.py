@@ -1,0 +1,78 @@
+"""Coefficients of a sample: ``FIT.json`` (what they are, the spectrum) and ``FIT.npz`` (the numbers)."""
+
+import io
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.harmonics import files
+from regolith_studio.harmonics.fit import HarmonicFit
+from regolith_studio.harmonics.sample_spectrum import sample_spectrum
+from regolith_studio.harmonics.spectrum import PowerSpectrum
+from regolith_studio.session.outputs.staging import json_bytes, write_bytes
+
+
+@dataclass(frozen=True)
+class FittedSample:
+    """Particles with their fits, all of the same degree, and the sentences of those that failed."""
+
+    particles: tuple[Particle, ...]
+    fits: tuple[HarmonicFit, ...]
+    failed: tuple[tuple[str, str], ...] = ()
+
+    @classmethod
+    def of(cls, particles: Sequence[Particle], outcomes: Sequence[HarmonicFit | str]) -> "FittedSample":
+        """From what ``fit_sample`` returned for `particles`."""
+        pairs = list(zip(particles, outcomes, strict=True))
+        good = [(particle, fit) for particle, fit in pairs if isinstance(fit, HarmonicFit)]
+        bad = tuple((particle.name, fit) for particle, fit in pairs if isinstance(fit, str))
+        return cls(tuple(p for p, _ in good), tuple(f for _, f in good), bad)
+
+    @property
+    def spectrum(self) -> PowerSpectrum | None:
+        """A_l of the sample; of the particle itself if there is only one."""
+        if len(self.fits) == 1:
+            return self.fits[0].coefficients.power_spectrum()
+        return sample_spectrum([fit.coefficients for fit in self.fits]) if self.fits else None
+
+
+def write_fits(stem: Path, sample: FittedSample) -> tuple[Path, Path]:
+    """Write ``<stem>.json`` and ``<stem>.npz``, as :mod:`regolith_studio.harmonics.files` defines them."""
+    names = [particle.name for particle in sample.particles]
+    text, numbers = (stem.with_name(stem.name + suffix) for suffix in (".json", ".npz"))
+    arrays = io.BytesIO()
+    np.savez_compressed(arrays, **files.fits_arrays(names, sample.fits))  # type: ignore[arg-type]
+    write_bytes(numbers, arrays.getvalue())
+    write_bytes(text, json_bytes(fits_document(sample) | {"arrays": numbers.name}))
+    return text, numbers
+
+
+def fits_document(sample: FittedSample) -> dict[str, Any]:
+    """What ``FIT.json`` holds: the fits, the sample's spectrum, sources and notes, and what failed."""
+    names = [particle.name for particle in sample.particles]
+    document = files.fits_document(names, sample.fits)
+    for entry, particle, fit in zip(document["particles"], sample.particles, sample.fits, strict=True):
+        entry["group"] = particle.group
+        entry["sha256"] = particle.source.sha256 if particle.source else None
+        entry["power_spectrum"] = fit.coefficients.power_spectrum().values.tolist()
+        entry["notes"] = list(particle.notes)
+    document["spectrum"] = _spectrum(sample.spectrum)
+    document["failed"] = [{"name": name, "reason": sentence} for name, sentence in sample.failed]
+    return document
+
+
+def _spectrum(spectrum: PowerSpectrum | None) -> dict[str, Any] | None:
+    if spectrum is None:
+        return None
+    return {
+        "definition": "A_l = mean over m of c_lm^2; of a sample A_0 is the variance of c_00",
+        "unit": "um^2",
+        "mean_radius": spectrum.mean_radius,
+        "values": spectrum.values.tolist(),
+        "low": None if spectrum.low is None else spectrum.low.tolist(),
+        "high": None if spectrum.high is None else spectrum.high.tolist(),
+    }

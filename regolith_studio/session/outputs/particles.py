@@ -1,0 +1,35 @@
+"""Particles as files: one STL each, and ``particles.csv`` with what they are."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.imaging.stl import stl_bytes
+from regolith_studio.jobs.fitting import Examined
+from regolith_studio.session.outputs.descriptors import descriptor_table
+from regolith_studio.session.outputs.staging import write_bytes
+from regolith_studio.studies.tables import Cell, Column, Table, csv_text
+
+STL_HEADER = "Regolith Studio, particle, micrometres"
+
+
+def write_particles(
+    folder: Path,
+    particles: Sequence[Particle],
+    facts: Sequence[Examined],
+    extra: Mapping[str, Sequence[Cell]] | None = None,
+) -> None:
+    """Write ``<name>.stl`` for each particle and ``particles.csv``.
+
+    Parameters
+    ----------
+    extra
+        More columns, by name.
+    """
+    for particle in particles:
+        write_bytes(folder / f"{particle.name}.stl", stl_bytes(particle.mesh, STL_HEADER))
+    table = descriptor_table(particles, facts)
+    for name, cells in (extra or {}).items():
+        rows = tuple((*row, cell) for row, cell in zip(table.rows, cells, strict=True))
+        table = Table(table.title, (*table.columns, Column(name)), rows)
+    write_bytes(folder / "particles.csv", csv_text(table).encode("utf-8"))

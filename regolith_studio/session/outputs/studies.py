@@ -1,0 +1,40 @@
+"""Tables and figures of studies as files."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from regolith_studio.studies.lmax import rmsre_table as lmax_table
+from regolith_studio.studies.lmax_figures import write_lmax_study
+from regolith_studio.studies.tables import Table
+
+
+@dataclass(frozen=True)
+class StudyKind:
+    """One kind of study: what it is called, and how it becomes files.
+
+    Parameters
+    ----------
+    title
+        What it shows, and where in the paper.
+    picture
+        Name of its main figure.
+    write
+        Writes tables (CSV, JSON) and figures (PNG, SVG) into a folder, and returns their paths.
+    table
+        Its main table.
+    """
+
+    title: str
+    picture: str
+    write: Callable[[Any, Path], tuple[Path, ...]]
+    table: Callable[[Any], Table]
+
+
+STUDIES: Mapping[str, StudyKind] = {
+    "lmax_study": StudyKind(
+        "RMSRE of the descriptors against l_max (Fig. 3)", "lmax_rmsre.png", write_lmax_study, lmax_table
+    ),
+}
+"""By the same words as :class:`~regolith_studio.session.plan.Kind`."""

@@ -1,0 +1,75 @@
+"""A recipe says the same after a round trip, and what is wrong with one is a sentence."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from regolith_studio.coarsening.weights import LossWeights
+from regolith_studio.errors import FileError, InputError
+from regolith_studio.session.choices import Choices
+from regolith_studio.session.recipe import Outputs, Recipe, read_recipe, recipe_of
+
+
+def written(folder: Path, text: str) -> Path:
+    path = folder / "recipe.json"
+    path.write_text(text)
+    return path
+
+
+@pytest.mark.parametrize(
+    "choices",
+    [
+        Choices(),
+        Choices(l_max=3, n_faces=12, seed=9, target="particle", unit="mm", level=2, box_metric="trimesh"),
+        Choices().replaced(weights=LossWeights.of(volume=2.0, sphericity=0.1)),
+        Choices().replaced(method="quadric", settings=(("restore_volume", True),)),
+    ],
+)
+def test_that_choices_survive_the_recipe(tmp_path: Path, choices: Choices) -> None:
+    recipe = Recipe.from_choices(choices, ["grains"], Outputs(fits=True))
+    again = read_recipe(written(tmp_path, recipe.to_json()))
+    assert again == recipe
+    assert again.choices() == choices
+
+
+def test_that_an_empty_recipe_means_the_defaults(tmp_path: Path) -> None:
+    assert read_recipe(written(tmp_path, "{}")).choices() == Choices()
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "not a recipe"),
+        ("[1]", "not a recipe"),
+        ('{"lmax": 3}', "lmax"),
+        ('{"l_max": "3"}', "l_max"),
+        ('{"l_max": 3.5}', "l_max"),
+        ('{"inputs": []}', "inputs"),
+        ('{"outputs": {"hologram": true}}', "outputs.hologram"),
+        ('{"version": 2}', "version"),
+        ('{"weights": {"volume": NaN}}', "not a recipe"),
+    ],
+)
+def test_that_a_bad_recipe_is_refused_with_the_entry_named(tmp_path: Path, text: str, words: str) -> None:
+    with pytest.raises(FileError, match=words):
+        read_recipe(written(tmp_path, text))
+
+
+def test_that_a_missing_recipe_is_a_sentence(tmp_path: Path) -> None:
+    with pytest.raises(FileError, match="cannot be read"):
+        read_recipe(tmp_path / "none.json")
+
+
+def test_that_a_choice_out_of_range_is_found_when_the_recipe_is_used() -> None:
+    with pytest.raises(InputError, match="from 0 to 30"):
+        recipe_of(l_max=99).choices()
+    with pytest.raises(InputError, match="no term"):
+        recipe_of(weights={"beauty": 1.0}).choices()
+
+
+def test_that_a_recipe_is_plain_json_that_a_person_can_edit() -> None:
+    document = json.loads(Recipe.from_choices(Choices(), ["a.stl"]).to_json())
+    assert document["inputs"] == ["a.stl"]
+    assert document["l_max"] == 10
+    assert document["weights"] is None
