@@ -5,7 +5,6 @@ from functools import cache
 import numpy as np
 import pyshtools.rotate as pyshtools_rotate
 from numpy.typing import ArrayLike
-from scipy.spatial.transform import Rotation
 
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.harmonics.coefficients import ShCoefficients, from_pyshtools, to_pyshtools
@@ -24,15 +23,28 @@ def rotated(coefficients: ShCoefficients, rotation: ArrayLike) -> ShCoefficients
         raise ValueError("rotation must be an orthogonal (3, 3) matrix")
     if np.linalg.det(matrix) < 0:
         raise ValueError("rotation must be proper, this one mirrors")
-    alpha, beta, gamma = Rotation.from_matrix(matrix).as_euler("ZYZ")
-    angles = np.array([-gamma, -beta, -alpha])
+    if coefficients.l_max == 0:
+        return coefficients
+    angles = -np.array(_euler_angles(matrix)[::-1])
     turned = pyshtools_rotate.SHRotateRealCoef(
         to_pyshtools(coefficients), angles, _quarter_turn(coefficients.l_max)
     )
     return from_pyshtools(turned)
 
 
+def _euler_angles(matrix: FloatArray) -> tuple[float, float, float]:
+    """Angles of turns about z, the new y and the new z; about z alone the last is zero."""
+    beta = np.arctan2(np.hypot(matrix[0, 2], matrix[1, 2]), matrix[2, 2])
+    if np.hypot(matrix[0, 2], matrix[1, 2]) < 1e-12:
+        return float(np.arctan2(-matrix[0, 1], matrix[1, 1])), float(beta), 0.0
+    alpha = np.arctan2(matrix[1, 2], matrix[0, 2])
+    return float(alpha), float(beta), float(np.arctan2(matrix[2, 1], -matrix[2, 0]))
+
+
 @cache
 def _quarter_turn(l_max: int) -> FloatArray:
-    """Wigner's d(pi/2) of pyshtools, shape (l_max + 1, l_max + 1, l_max + 1)."""
-    return np.asarray(pyshtools_rotate.djpi2(l_max), dtype=np.float64)
+    """Wigner's d(pi/2) of pyshtools, shape (l_max + 1,) * 3, at least to degree 2.
+
+    ``djpi2(0)`` of pyshtools 4.14 writes behind its array and kills the process later.
+    """
+    return np.asarray(pyshtools_rotate.djpi2(max(l_max, 2)), dtype=np.float64)

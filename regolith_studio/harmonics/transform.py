@@ -135,7 +135,6 @@ def _glq(degree: int) -> tuple[FloatArray, FloatArray]:
     return np.asarray(zeros, dtype=np.float64), np.asarray(weights, dtype=np.float64)
 
 
-@cache
 def ray_grid(degree: int = SAMPLING_DEGREE, kind: str = "glq") -> RayGrid:
     """The tilted grid of one degree, cached.
 
@@ -148,6 +147,11 @@ def ray_grid(degree: int = SAMPLING_DEGREE, kind: str = "glq") -> RayGrid:
         raise InputError(f"The grid must be one of {', '.join(GRIDS)}, got {kind!r}.")
     if not 1 <= degree <= HIGHEST_SAMPLING_DEGREE:
         raise InputError(f"The sampling degree must be 1 to {HIGHEST_SAMPLING_DEGREE}, got {degree}.")
+    return _ray_grid(degree, kind)
+
+
+@cache
+def _ray_grid(degree: int, kind: str) -> RayGrid:
     cosine, weights, n_longitudes = GRIDS[kind].layout(degree)
     longitude = 2 * np.pi * np.arange(n_longitudes) / n_longitudes
     z = np.repeat(cosine, n_longitudes)

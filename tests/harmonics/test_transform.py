@@ -1,0 +1,93 @@
+"""Grids and least squares: exact for band-limited functions, and what too few rays do."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+from regolith_studio.errors import InputError
+from regolith_studio.geometry.directions import fibonacci_directions
+from regolith_studio.harmonics.legendre import harmonics
+from regolith_studio.harmonics.transform import (
+    GRIDS,
+    evaluate_on_grid,
+    expand,
+    expand_least_squares,
+    ray_grid,
+    smoothed,
+)
+
+
+@pytest.mark.parametrize("kind", GRIDS)
+@pytest.mark.parametrize("l_max", [0, 1, 5, 30])
+def test_that_a_band_limited_function_is_expanded_exactly(rough, kind, l_max):
+    particle, grid = rough(l_max), ray_grid(max(l_max, 1), kind)
+    samples = particle.values @ harmonics(grid.directions, l_max)
+    np.testing.assert_allclose(expand(grid, samples, l_max).values, particle.values, atol=1e-12)
+    np.testing.assert_allclose(evaluate_on_grid(grid, particle), samples, atol=1e-12)
+    np.testing.assert_allclose(smoothed(grid, samples, l_max), samples, atol=1e-12)
+
+
+@pytest.mark.parametrize("kind", GRIDS)
+def test_that_the_solid_angles_of_a_grid_fill_the_sphere(kind):
+    grid = ray_grid(15, kind)
+    assert grid.solid_angles.sum() == pytest.approx(4 * np.pi, rel=1e-14)
+    assert grid.mean(grid.directions[:, 0] ** 2) == pytest.approx(1 / 3, rel=1e-12)
+    np.testing.assert_allclose(np.linalg.norm(grid.directions, axis=1), 1.0, rtol=1e-14)
+
+
+def test_that_no_ray_of_a_grid_lies_in_a_coordinate_plane():
+    for kind in GRIDS:
+        assert np.abs(ray_grid(60, kind).directions).min() > 1e-7
+
+
+def test_that_parsevals_identity_holds(rough):
+    particle, grid = rough(12), ray_grid(24)
+    samples = evaluate_on_grid(grid, particle)
+    assert grid.mean(samples**2) * 4 * np.pi == pytest.approx(float((particle.values**2).sum()), rel=1e-12)
+
+
+def test_that_sampling_at_the_degree_of_the_fit_folds_finer_shape_into_it(rough):
+    """SHAPE: the error at l = 10 falls from percent to nothing as the grid's degree grows to the band's."""
+    particle = rough(40, strength=0.4)
+    errors = []
+    for degree in (10, 20, 30, 40):
+        grid = ray_grid(degree)
+        found = expand(grid, particle.values @ harmonics(grid.directions, 40), 10)
+        shape = particle.truncated(10).values[1:]
+        errors.append(np.linalg.norm(found.values[1:] - shape) / np.linalg.norm(shape))
+    assert errors[0] > 0.02
+    assert errors[0] > 4 * errors[1] > 4 * errors[2]
+    assert errors[3] < 1e-12
+
+
+def test_that_least_squares_recovers_a_band_limited_function_from_scattered_samples(rough):
+    particle, directions = rough(6), fibonacci_directions(120)
+    samples = particle.values @ harmonics(directions, 6)
+    np.testing.assert_allclose(
+        expand_least_squares(directions, samples, 6).values, particle.values, atol=1e-12
+    )
+
+
+def test_that_fewer_samples_than_coefficients_are_refused():
+    with pytest.raises(InputError, match=r"49 coefficients .* got 48"):
+        expand_least_squares(fibonacci_directions(48), np.ones(48), 6)
+
+
+def test_that_samples_which_leave_coefficients_open_are_refused():
+    angle = np.linspace(0, 2 * np.pi, 100, endpoint=False)
+    equator = np.column_stack([np.cos(angle), np.sin(angle), 0 * angle])
+    with pytest.raises(InputError, match="only 9 of the 25 coefficients"):
+        expand_least_squares(equator, np.ones(100), 4)
+
+
+def test_that_bad_degrees_and_kinds_are_refused():
+    for call in (lambda: ray_grid(0), lambda: ray_grid(9999), lambda: ray_grid(10, "hexagons")):
+        with pytest.raises(InputError, match=r"must be"):
+            call()
+    with pytest.raises(InputError, match="0 to 10, got 11"):
+        expand(ray_grid(10), np.ones(11 * 21), 11)
+
+
+def test_that_a_grid_is_pickled_by_its_name():
+    assert pickle.loads(pickle.dumps(ray_grid(9))) is ray_grid(9)
