@@ -18,6 +18,7 @@ from typing import Any
 from regolith_studio.errors import RegolithError
 from regolith_studio.readers.mesh_file import parse_mesh
 from regolith_studio.readers.protocol import Message, receive, send
+from regolith_studio.readers.sentences import sentence_about
 
 Task = Callable[[dict[str, Any]], Message]
 
@@ -48,7 +49,7 @@ TASKS: dict[str, Task] = {"mesh": read_mesh_file, "sleep": sleep}
 
 def answer(request: dict[str, Any]) -> Message:
     """The task's result, or a header that says why there is none."""
-    name = Path(request["path"]).name
+    path = Path(request["path"])
     try:
         message = TASKS[request["task"]](request)
     except RegolithError as error:
@@ -56,11 +57,10 @@ def answer(request: dict[str, Any]) -> Message:
     except MemoryError:
         return Message({"status": "memory"})
     except OSError as error:
-        return Message(
-            {"status": "refused", "sentence": f"{name} cannot be opened: {error.strerror or error}."}
-        )
+        sentence = sentence_about(path, f"cannot be opened: {error.strerror or error}.")
+        return Message({"status": "refused", "sentence": sentence})
     except Exception as error:  # noqa: BLE001 (whatever a parser trips over is the file's fault)
-        sentence = f"{name} is damaged in a way that its reader does not know; export it again."
+        sentence = sentence_about(path, "is damaged in a way that its reader does not know; export it again.")
         return Message({"status": "refused", "sentence": sentence, "details": repr(error)})
     return Message({**message.header, "status": "read"}, message.arrays)
 

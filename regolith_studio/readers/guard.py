@@ -11,6 +11,7 @@ from typing import Any
 
 from regolith_studio.errors import EnvironmentProblem, FileError
 from regolith_studio.readers.protocol import Message, receive, send
+from regolith_studio.readers.sentences import sentence_about
 
 LARGEST_FILE = 2 * 1024**3
 MEMORY = 6 * 1024**3
@@ -74,7 +75,7 @@ class Guard:
                 reason = f"was given up after {seconds:.2g} s: it is damaged, or far larger than it looks."
             case _:
                 reason = "is damaged: it ended the process that tried to read it; export it again."
-        raise FileError(f"{path.name} {reason}")
+        raise FileError(sentence_about(path, reason))
 
     def close(self) -> None:
         """End the child, if there is one."""
@@ -166,13 +167,15 @@ def checked_size(path: Path) -> int:
         status = path.stat()
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        raise FileError(f"{path.name or path} cannot be opened: {reason}.") from None
+        raise FileError(sentence_about(path, f"cannot be opened: {reason}.")) from None
     if stat.S_ISDIR(status.st_mode):
-        raise FileError(f"{path.name or path} is a folder, not a file.")
+        raise FileError(sentence_about(path, "is a folder, not a file."))
     if not stat.S_ISREG(status.st_mode):
-        raise FileError(f"{path.name} is a device or a pipe, not a file.")
+        raise FileError(sentence_about(path, "is a device or a pipe, not a file."))
     if status.st_size > LARGEST_FILE:
-        raise FileError(f"{path.name} has {status.st_size / 1024**3:.1f} GiB; at most 2 GiB are read.")
+        raise FileError(
+            sentence_about(path, f"has {status.st_size / 1024**3:.1f} GiB; at most 2 GiB are read.")
+        )
     return status.st_size
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from regolith_studio.errors import FileError
 from regolith_studio.readers.formats import mesh_formats, mesh_suffixes
 from regolith_studio.readers.mesh_format import MeshFormat, ParsedMesh
+from regolith_studio.readers.sentences import printable, sentence_about
 
 LARGEST_COORDINATE = 1e40
 """Beyond it the sixth powers in the checks would leave the range of float64."""
@@ -31,7 +32,7 @@ def parse_mesh(data: bytes, path: Path) -> tuple[ParsedMesh, MeshFormat]:
             parsed = row.parse(data, path)
             return _checked(replace(parsed, notes=notes + parsed.notes)), row
     except FileError as error:
-        raise FileError(f"{path.name} {error}") from None
+        raise FileError(sentence_about(path, str(error))) from None
 
 
 def _as_bytes_of_one(data: bytes) -> bytes:
@@ -47,14 +48,15 @@ def _format_of(data: bytes, path: Path) -> tuple[MeshFormat, tuple[str, ...]]:
     if not data:
         raise FileError("is empty: it has no bytes at all.")
     suffix = path.suffix.lower()
+    suffix_or_none = printable(path.suffix) or "without a suffix"
     named = next((row for row in mesh_formats().values() if suffix in row.suffixes), None)
     shown = next((row for row in mesh_formats().values() if row.recognises(data[:1024])), None)
     if shown is not None and shown is not named:
-        return shown, (f"The file is named {path.suffix or 'without a suffix'} but holds {shown.label}.",)
+        return shown, (f"The file is named {suffix_or_none} but holds {shown.label}.",)
     if named is not None:
         return named, ()
     raise FileError(
-        f"is of no kind that is read here ({path.suffix or 'no suffix'}); "
+        f"is of no kind that is read here ({suffix or 'no suffix'}); "
         f"what is read are meshes in {', '.join(sorted(mesh_suffixes()))}."
     )
 

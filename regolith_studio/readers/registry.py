@@ -14,6 +14,7 @@ from regolith_studio.geometry.particle import Particle, Source
 from regolith_studio.geometry.welding import welded
 from regolith_studio.readers.formats import mesh_suffixes
 from regolith_studio.readers.guard import Guard, shared_guard
+from regolith_studio.readers.sentences import sentence_about, shown_name
 from regolith_studio.readers.units import UNITS, unit_factor
 
 __all__ = ["UNITS", "MeshFile", "ProblemListener", "mesh_files", "read_file", "read_mesh", "read_particles"]
@@ -113,7 +114,7 @@ def read_file(file: MeshFile, unit: str = "um", repair: bool = True, guard: Guar
         else:
             notes += inspect(mesh).problems
     except GeometryError as error:
-        raise GeometryError(f"{path.name} holds no particle: {_lower(str(error))}") from None
+        raise GeometryError(sentence_about(path, f"holds no particle: {_lower(str(error))}")) from None
     source = Source(str(path), answer.header["sha256"], unit)
     return Particle(path.stem, mesh, file.group, source, notes)
 
@@ -133,7 +134,7 @@ def mesh_files(paths: Sequence[str | Path]) -> list[MeshFile]:
         found = list(_in_folder(path, several)) if path.is_dir() else [MeshFile(path)]
         if not found:
             raise FileError(
-                f"The folder {path.name or path} holds no mesh file; "
+                f"The folder {shown_name(path)} holds no mesh file; "
                 f"meshes end in {', '.join(sorted(mesh_suffixes()))}."
             )
         files += found

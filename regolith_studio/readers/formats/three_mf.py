@@ -2,6 +2,7 @@
 
 import io
 import zipfile
+import zlib
 from collections.abc import Iterator
 from pathlib import Path
 from xml.etree import ElementTree
@@ -34,7 +35,7 @@ def parse(data: bytes, _path: Path) -> ParsedMesh:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             package = _Package(archive)
             return _built(package)
-    except (zipfile.BadZipFile, NotImplementedError, EOFError, RuntimeError, OSError) as error:
+    except (zipfile.BadZipFile, zlib.error, NotImplementedError, EOFError, RuntimeError, OSError) as error:
         if isinstance(error, RecursionError):
             raise FileError("is not a proper 3MF: its components go round in circles.") from None
         raise FileError("is not a proper 3MF: its archive is damaged; export it again.") from None
@@ -78,6 +79,8 @@ class _Package:
         return min(models)
 
     def _read(self, part: str) -> bytes:
+        if self._archive.getinfo(part).compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+            raise FileError("is not a proper 3MF: a part is compressed in another way than deflate.")
         with self._archive.open(part) as file:
             data = file.read(LARGEST_PART + 1)
         if len(data) > LARGEST_PART:
