@@ -197,9 +197,8 @@ def best_volume(graph: HullGraph, axis: Vector, search: Search) -> tuple[float, 
         return bound, _slope(height, longer, area / longer)
     area, cosine, sine, longer = smallest_rectangle(search.x, search.y, n)
     volume, longest = np.log(height * area), max(height, longer)
-    if volume < search.record[0] - TIE or (
-        volume < search.record[0] + TIE and longest < search.record[1] * (1.0 - TIE)
-    ):
+    gain, shorter = search.record[0] - volume, search.record[1] - longest
+    if gain > TIE or (gain > -TIE and (shorter > TIE or (gain > 0.0 and shorter > -TIE))):
         search.record[0], search.record[1] = volume, longest
         for k in range(3):
             search.axes[0, k] = axis[k]

@@ -24,12 +24,11 @@ def outline(x: FloatArray, y: FloatArray) -> IntArray:
     """
     start = 0
     for i in range(len(x)):
-        if y[i] < y[start] or (y[i] == y[start] and x[i] > x[start]):
+        if y[i] < y[start] - SLACK or (y[i] <= y[start] + SLACK and x[i] > x[start]):
             start = i
     chain = np.empty(len(x), np.int64)
-    chain[0], n = start, 1
+    here, n = start, 0
     while n < len(x):
-        here = chain[n - 1]
         best, far = -1, 0.0
         for i in range(len(x)):
             dx, dy = x[i] - x[here], y[i] - y[here]
@@ -39,9 +38,10 @@ def outline(x: FloatArray, y: FloatArray) -> IntArray:
             turn = dy * (x[best] - x[here]) - dx * (y[best] - y[here]) if best >= 0 else -1.0
             if turn < -SLACK or (turn <= SLACK and distance > far):
                 best, far = i, distance
-        if best < 0 or (x[best] - x[start]) ** 2 + (y[best] - y[start]) ** 2 < SHORTEST**2:
+        first = chain[0]
+        if best < 0 or (n > 0 and (x[best] - x[first]) ** 2 + (y[best] - y[first]) ** 2 < SHORTEST**2):
             break
-        chain[n] = best
+        chain[n], here = best, best
         n += 1
     return chain[:n]
 
@@ -100,9 +100,21 @@ def smallest_rectangle(x: FloatArray, y: FloatArray, n: int) -> tuple[float, flo
             left = k
         wide = (x[right] - x[left]) * dx + (y[right] - y[left]) * dy
         high = (y[up] - y[i]) * dx - (x[up] - x[i]) * dy
-        area = wide * high
-        if area < least * (1.0 + TIE):
-            longer = max(wide, high)
-            if area < least * (1.0 - TIE) or longer < longest * (1.0 - TIE):
+        if wide * high < least * (1.0 + TIE):
+            # Rounding in a very short side may have sent a caliper too far: measure all corners.
+            wide, high = _extents(x, y, n, dx, dy)
+            area, longer = wide * high, max(wide, high)
+            shorter = longest - longer > TIE * longest
+            if area < least * (1.0 - TIE) or (area < least * (1.0 + TIE) and shorter):
                 least, cosine, sine, longest = area, dx, dy, longer
     return least, cosine, sine, longest
+
+
+@inlined
+def _extents(x: FloatArray, y: FloatArray, n: int, dx: float, dy: float) -> tuple[float, float]:
+    """Width along (dx, dy) and height across it of the first `n` points."""
+    low, high, bottom, top = np.inf, -np.inf, np.inf, -np.inf
+    for i in range(n):
+        s, t = x[i] * dx + y[i] * dy, y[i] * dx - x[i] * dy
+        low, high, bottom, top = min(low, s), max(high, s), min(bottom, t), max(top, t)
+    return high - low, top - bottom

@@ -1,0 +1,136 @@
+"""The minimum-volume box: closed forms, an independent optimiser, invariance."""
+
+import numpy as np
+import pytest
+from scipy.optimize import minimize
+from scipy.spatial.transform import Rotation
+
+from regolith_studio.errors import GeometryError
+from regolith_studio.geometry import ConvexPolyhedron, HalfSpaces, Mesh
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.directions import icosphere
+from regolith_studio.geometry.heuristic_box import heuristic_box
+from regolith_studio.geometry.oriented_box import OrientedBox, minimum_volume_box
+from tests.geometry.solids import cloud, cuboid, random_polyhedron, rotation, rough_stone, tetrahedron
+
+
+def by_simplex_search(points: FloatArray, starts: int, seed: int) -> float:
+    """Least box volume over rotation vectors, by Nelder-Mead from many starts."""
+
+    def volume(vector: FloatArray) -> float:
+        return float(np.prod(np.ptp(points @ Rotation.from_rotvec(vector).as_matrix().T, axis=0)))
+
+    rng = np.random.default_rng(seed)
+    first = rng.uniform(-2.0, 2.0, (20 * starts, 3))
+    best = first[np.argsort([volume(vector) for vector in first])[:starts]]
+    options = {"xatol": 1e-7, "fatol": 1e-9, "maxiter": 400}
+    return min(minimize(volume, vector, method="Nelder-Mead", options=options).fun for vector in best)
+
+
+@pytest.mark.parametrize("edges", [(1.0, 1.0, 1.0), (3.0, 2.0, 1.0), (10.0, 9.9, 0.1), (1.0, 1.0, 5.0)])
+@pytest.mark.parametrize("seed", range(4))
+def test_that_a_turned_cuboid_is_its_own_box(edges: tuple[float, ...], seed: int) -> None:
+    box = minimum_volume_box(cuboid(*edges).moved(rotation=rotation(seed), shift=(5.0, -3.0, 2.0)))
+    assert box.extents == pytest.approx(sorted(edges, reverse=True), rel=1e-12)
+    assert box.centre == pytest.approx(rotation(seed) @ (5.0, -3.0, 2.0), rel=1e-12, abs=1e-12)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_that_the_box_of_a_regular_tetrahedron_is_the_cube_of_its_face_diagonals(seed: int) -> None:
+    box = minimum_volume_box(tetrahedron(2.0).moved(rotation=rotation(seed)))
+    assert box.extents == pytest.approx(np.full(3, 2.0 / np.sqrt(2.0)), rel=1e-9)
+
+
+def test_that_the_box_of_a_prism_stands_on_its_triangle() -> None:
+    corners = [[0.0, 0.0], [4.0, 0.0], [2.0, 1.5]]
+    prism = cloud(np.array([[*corner, z] for corner in corners for z in (0.0, 9.0)]))
+    assert minimum_volume_box(prism).extents == pytest.approx([9.0, 4.0, 1.5], rel=1e-9)
+
+
+def test_that_the_box_of_a_ball_is_the_cube_around_it() -> None:
+    assert minimum_volume_box(icosphere(3)).extents == pytest.approx(np.full(3, 2.0), rel=0.01)
+
+
+@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("stretch", [0.0, 0.6])
+def test_that_no_simplex_search_finds_a_smaller_box(seed: int, stretch: float) -> None:
+    solid = random_polyhedron(seed, n_faces=8 + 3 * seed, stretch=stretch)
+    assert minimum_volume_box(solid).volume <= by_simplex_search(solid.vertices, 5, seed) * (1 + 1e-9)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(60))
+def test_that_no_longer_simplex_search_finds_a_smaller_box(seed: int) -> None:
+    solid = random_polyhedron(1000 + seed, n_faces=6 + seed % 30, stretch=seed % 3 / 3)
+    assert minimum_volume_box(solid).volume <= by_simplex_search(solid.vertices, 40, seed) * (1 + 1e-9)
+
+
+@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("scale", [1e-9, 1.0, 1e9])
+def test_that_unit_and_orientation_do_not_matter(seed: int, scale: float) -> None:
+    solid = random_polyhedron(seed, n_faces=20, stretch=0.3)
+    turned = solid.moved(rotation=rotation(seed), shift=(0.3, -0.2, 0.1), scale=scale)
+    wanted = minimum_volume_box(solid).extents
+    assert minimum_volume_box(turned).extents / scale == pytest.approx(wanted, rel=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_that_the_box_of_a_stone_holds_it_and_touches_it(seed: int) -> None:
+    stone = rough_stone(seed)
+    box = minimum_volume_box(stone)
+    inside = (stone.vertices - box.centre) @ box.axes.T
+    assert inside.max(axis=0) == pytest.approx(box.extents / 2, rel=1e-12)
+    assert inside.min(axis=0) == pytest.approx(-box.extents / 2, rel=1e-12)
+    assert np.linalg.det(box.axes) == pytest.approx(1.0, abs=1e-12)
+
+
+def test_that_a_grid_of_points_with_many_in_one_plane_has_its_box() -> None:
+    grid = np.stack(np.meshgrid(*[np.arange(6.0)] * 3), -1).reshape(-1, 3)
+    layers = grid[np.linalg.norm(grid - 2.5, axis=1) < 3.3]
+    plain = minimum_volume_box(cloud(layers))
+    turned = minimum_volume_box(cloud(layers @ rotation(4).T))
+    assert plain.extents == pytest.approx(turned.extents, rel=1e-8)
+
+
+def test_that_a_polyhedron_and_its_mesh_have_the_same_box() -> None:
+    planes = HalfSpaces(np.vstack([np.eye(3), -np.eye(3)]), [1.0, 2.0, 3.0, 1.0, 2.0, 3.0])
+    polyhedron = ConvexPolyhedron.from_half_spaces(planes)
+    assert minimum_volume_box(polyhedron).extents == pytest.approx([6.0, 4.0, 2.0])
+    assert minimum_volume_box(polyhedron.mesh).extents == pytest.approx([6.0, 4.0, 2.0])
+
+
+def test_that_a_hull_whose_triangles_do_not_close_still_has_its_box() -> None:
+    whole = cuboid(3.0, 2.0, 1.0)
+    torn = Mesh(whole.vertices, whole.faces[1:])
+    vars(torn)["hull"] = torn
+    assert minimum_volume_box(torn).extents == pytest.approx([3.0, 2.0, 1.0], rel=1e-6)
+
+
+def test_that_a_flat_mesh_is_refused() -> None:
+    with pytest.raises(GeometryError, match="flat"):
+        minimum_volume_box(cloud(np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]])))
+    with pytest.raises(GeometryError, match="single point"):
+        minimum_volume_box(cloud(np.zeros((5, 3))))
+
+
+def test_that_the_heuristic_box_is_never_smaller() -> None:
+    for seed in range(10):
+        solid = random_polyhedron(seed)
+        heuristic, exact = heuristic_box(solid), minimum_volume_box(solid)
+        assert heuristic.volume >= exact.volume * (1 - 1e-9)
+        reach = np.abs((solid.vertices - heuristic.centre) @ heuristic.axes.T).max(axis=0)
+        assert reach == pytest.approx(heuristic.extents / 2, rel=1e-6)
+
+
+def test_that_a_box_checks_itself() -> None:
+    with pytest.raises(ValueError, match="orthonormal"):
+        OrientedBox(np.zeros(3), np.ones((3, 3)), np.array([3.0, 2.0, 1.0]))
+    with pytest.raises(ValueError, match="fall"):
+        OrientedBox(np.zeros(3), np.eye(3), np.array([1.0, 2.0, 3.0]))
+
+
+def test_that_the_corners_of_a_box_span_it() -> None:
+    box = OrientedBox(np.array([1.0, 2.0, 3.0]), np.eye(3), np.array([3.0, 2.0, 1.0]))
+    assert np.ptp(box.corners, axis=0) == pytest.approx(box.extents)
+    assert box.corners.mean(axis=0) == pytest.approx(box.centre)
+    assert (box.max_diameter, box.intermediate_diameter, box.min_diameter) == (3.0, 2.0, 1.0)
