@@ -20,7 +20,7 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.mesh import Mesh
 
-DEFAULT_METHOD = "quadric"
+DEFAULT_METHOD = "exact"
 DEFAULT_PRESET = "all"
 FACES_LIMITS = (5, 200)
 """Section 2.4 asks for n > 4."""

@@ -54,7 +54,7 @@ class Touch(NamedTuple):
 
 
 class Scratch(NamedTuple):
-    """Memory that one search reuses: side (n,), rim (e, 2), flat (v, 2), work (4, 3)."""
+    """Memory that one search reuses: side (n,), rim (e, 2), flat (v, 2), work (6, 3)."""
 
     side: FloatArray
     rim: IntArray
@@ -69,7 +69,7 @@ def scratch_for(solid: Solid) -> Scratch:
         np.empty(len(solid.normals)),
         np.empty((len(solid.edges), 2), np.int64),
         np.empty((len(solid.vertices), 2)),
-        np.empty((4, 3)),
+        np.empty((6, 3)),
     )
 
 
@@ -224,7 +224,7 @@ def log_slope(
 
 @kernel
 def slope_at(turn: FloatArray, solid: Solid, touch: Touch, work: FloatArray) -> float:
-    """Derivative of log(volume) along the arc for the box of :func:`box_at`; `work` (4, 3) is scratch."""
+    """Derivative of log(volume) along the arc for the box of :func:`box_at`; `work` (6, 3) is scratch."""
     vertices, piece = solid.vertices, touch.piece
     for c in range(3):
         work[0, c] = vertices[piece[0], c] - vertices[piece[1], c]

@@ -17,6 +17,7 @@ from regolith_studio.coarsening.core.box import (
     empty_touch,
     scratch_for,
     slope_at,
+    turned_frame,
 )
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.compiled import kernel
@@ -29,6 +30,10 @@ PROMISING = 1.15
 """Normals whose box is larger than this many times the least are not looked into."""
 SLACK = 1.02
 NO_ARC = 1e-7
+BESIDE = 1e-7
+NO_FACET = 1e-13
+NEAR = float(np.cos(np.radians(10.0)))
+WINDOW = float(np.radians(10.0))
 MOST = 64
 """Largest number of boxes returned."""
 STATIONARY, ON_FACET = -1, -2
@@ -75,8 +80,26 @@ class Sample(NamedTuple):
     piece: IntArray
 
 
+class OnFacets(NamedTuple):
+    """Boxes with one side on a facet, worked out when asked for: NaN volume before, infinity if too large.
+
+    Parameters
+    ----------
+    volume, frame, extents, piece
+        Shapes (n,), (n, 3, 3), (n, 3), (n, 7).
+    resting
+        1 while no turn away from the facet is known to make the box smaller, 0 after, shape (n,).
+    """
+
+    volume: FloatArray
+    frame: FloatArray
+    extents: FloatArray
+    piece: IntArray
+    resting: IntArray
+
+
 @kernel
-def local_boxes(solid: Solid, margin: float, sample_angle: float, hint: FloatArray) -> Boxes:
+def local_boxes(solid: Solid, margin: float, sample_angle: float, near: FloatArray) -> Boxes:
     """Locally minimal boxes with a volume of at most (1 + margin) times the least.
 
     Parameters
@@ -87,31 +110,38 @@ def local_boxes(solid: Solid, margin: float, sample_angle: float, hint: FloatArr
         Share of the least volume.
     sample_angle
         Largest step between samples along an arc, in radians.
-    hint
-        An axis whose box is likely to be small, shape (3,), or zeros.
+    near
+        Frames of boxes, shape (k, 3, 3): only boxes within about 10 degrees of one of them are looked for.
+        None (k = 0): everywhere.
     """
     boxes = Boxes(np.empty(MOST), np.empty((MOST, 3, 3)), np.empty((MOST, 3)), np.empty((MOST, 11), np.int64))
     scratch, touch = scratch_for(solid), empty_touch()
     n = len(solid.normals)
-    volumes, touches, best = boxes_on_facets(solid, scratch, hint)
-    resting = np.ones(n, np.bool_)
+    facets = OnFacets(
+        np.full(n, np.nan),
+        np.empty((n, 3, 3)),
+        np.empty((n, 3)),
+        np.empty((n, 7), np.int64),
+        np.ones(n, np.int64),
+    )
+    best = np.inf
+    if len(near) == 0:
+        for f in range(n):
+            if solid.areas[f] > NO_FACET:
+                best = min(best, box_on_facet(f, facets, solid, best, scratch, touch))
     count = 0
     one, two = Sample(np.empty(3), np.empty(7, np.int64)), Sample(np.empty(3), np.empty(7, np.int64))
     for e in range(len(solid.edges)):
-        f, g = solid.edges[e, 2], solid.edges[e, 3]
         arc = arc_between(solid, e)
         if arc.angle < NO_ARC:
             continue
-        steps = max(1, int(np.ceil(arc.angle / sample_angle)))
+        low, high = window_on(arc, near)
+        if high < low:
+            continue
+        steps = max(1, int(np.ceil((high - low) / sample_angle)))
         for i in range(steps + 1):
-            known = f if i == 0 else (g if i == steps else -1)
-            best = sampled(
-                arc, arc.angle * i / steps, solid, best, known, volumes, touches, scratch, touch, two
-            )
-            if i == 0 and two.number[2] < -1e-12:
-                resting[f] = False
-            if i == steps and two.number[2] > 1e-12:
-                resting[g] = False
+            angle = low + (high - low) * i / steps
+            best = sampled(arc, angle, solid, best, e, facets, scratch, touch, two)
             if i > 0 and worth_a_look(one, two, best * (1.0 + margin) * SLACK):
                 slot, partner, volume = arc_minimum(arc, one, two, solid, scratch, touch)
                 best = min(best, volume)
@@ -120,29 +150,60 @@ def local_boxes(solid: Solid, margin: float, sample_angle: float, hint: FloatArr
             one.number[:] = two.number
             one.piece[:] = two.piece
     for f in range(n):
-        if resting[f] and volumes[f] <= best * (1.0 + margin):
+        if (
+            facets.resting[f] == 1
+            and facets.volume[f] <= best * (1.0 + margin)
+            and is_near(solid.normals[f], near)
+        ):
             p, q, partner = corner_of(f, solid.edges)
             if p >= 0:
-                touches[f].piece[0] = p
-                count = kept(count, boxes, volumes[f], touches[f], 0, p, q, partner)
+                touch.frame[:], touch.extents[:] = facets.frame[f], facets.extents[f]
+                touch.piece[:] = facets.piece[f]
+                touch.piece[0] = p
+                count = kept(count, boxes, facets.volume[f], touch, 0, p, q, partner)
     return ranked(boxes, count, best * (1.0 + margin))
 
 
 @kernel
-def boxes_on_facets(
-    solid: Solid, scratch: Scratch, hint: FloatArray
-) -> tuple[FloatArray, list[Touch], float]:
-    """Volume (infinity where too large) and box with one side on each facet, and the least volume."""
-    volumes = np.full(len(solid.normals), np.inf)
-    touches = [empty_touch() for _ in range(len(solid.normals))]
-    best = np.inf
-    if hint.any():
-        best = box_at(hint, solid, np.inf, scratch, touches[0])
-    for f in range(len(solid.normals)):
-        if solid.areas[f] > 1e-13:
-            volumes[f] = box_at(solid.normals[f], solid, PROMISING * best, scratch, touches[f])
-            best = min(best, volumes[f])
-    return volumes, touches, best
+def box_on_facet(
+    f: int, facets: OnFacets, solid: Solid, best: float, scratch: Scratch, touch: Touch
+) -> float:
+    """Volume of the box with one side on facet f; it is remembered."""
+    if np.isnan(facets.volume[f]):
+        facets.volume[f] = box_at(solid.normals[f], solid, PROMISING * best, scratch, touch)
+        facets.frame[f], facets.extents[f], facets.piece[f] = touch.frame, touch.extents, touch.piece
+    return facets.volume[f]  # type: ignore[no-any-return]
+
+
+@kernel
+def window_on(arc: Arc, near: FloatArray) -> tuple[float, float]:
+    """Part of an arc that lies near an axis of the frames `near` (k, 3, 3); empty if the second is less."""
+    if len(near) == 0:
+        return 0.0, arc.angle
+    low, high = arc.angle + 1.0, -1.0
+    for k in range(len(near)):
+        for a in range(3):
+            axis = near[k, a]
+            x = axis[0] * arc.one[0] + axis[1] * arc.one[1] + axis[2] * arc.one[2]
+            y = axis[0] * arc.across[0] + axis[1] * arc.across[1] + axis[2] * arc.across[2]
+            for way in range(2):
+                if way == 1:
+                    x, y = -x, -y
+                at = min(arc.angle, max(0.0, np.arctan2(y, x)))
+                if np.cos(at) * x + np.sin(at) * y > NEAR:
+                    low, high = min(low, max(0.0, at - WINDOW)), max(high, min(arc.angle, at + WINDOW))
+    return low, high
+
+
+@kernel
+def is_near(normal: FloatArray, near: FloatArray) -> bool:
+    """Whether all arcs around a facet have been searched."""
+    for k in range(len(near)):
+        for a in range(3):
+            axis = near[k, a]
+            if abs(axis[0] * normal[0] + axis[1] * normal[1] + axis[2] * normal[2]) > NEAR:
+                return True
+    return len(near) == 0
 
 
 @kernel
@@ -162,7 +223,7 @@ def box_on_arc(
     arc: Arc, angle: float, solid: Solid, limit: float, scratch: Scratch, touch: Touch, sample: Sample
 ) -> float:
     """Volume of the box at an angle of the arc; fills `touch` and `sample`."""
-    axis, turn = np.empty(3), np.empty(3)
+    axis, turn = scratch.work[4], scratch.work[5]
     cosine, sine = np.cos(angle), np.sin(angle)
     for c in range(3):
         axis[c] = cosine * arc.one[c] + sine * arc.across[c]
@@ -179,20 +240,28 @@ def box_on_arc(
 
 @kernel
 def sampled(  # type: ignore[no-untyped-def]
-    arc, angle, solid, best, known, volumes, touches, scratch, touch, sample
+    arc, angle, solid, best, e, facets, scratch, touch, sample
 ) -> float:
-    """Fill `sample` at an angle of the arc, or at the facet `known` at its end; the least volume so far."""
-    if known < 0:
-        return min(best, box_on_arc(arc, angle, solid, PROMISING * best, scratch, touch, sample))  # type: ignore[no-any-return]
+    """Fill `sample` at an angle of the arc of edge e; the least volume so far."""
+    if 0.0 < angle < arc.angle:
+        volume = box_on_arc(arc, angle, solid, PROMISING * best, scratch, touch, sample)
+        return min(best, volume)  # type: ignore[no-any-return]
+    f = solid.edges[e, 2] if angle <= 0.0 else solid.edges[e, 3]
     sample.number[0], sample.number[1], sample.number[2] = angle, np.inf, 0.0
-    if volumes[known] < np.inf:
-        turn = np.cos(angle) * arc.across - np.sin(angle) * arc.one
-        sample.piece[:] = touches[known].piece
-        touches[known].piece[0] = arc.start
-        sample.piece[0] = arc.start
-        sample.number[1] = np.log(volumes[known])
-        sample.number[2] = slope_at(turn, solid, touches[known], scratch.work)
-    return best  # type: ignore[no-any-return]
+    volume = box_on_facet(f, facets, solid, best, scratch, touch)
+    if volume < np.inf:
+        turn = scratch.work[5]
+        for c in range(3):
+            turn[c] = np.cos(angle) * arc.across[c] - np.sin(angle) * arc.one[c]
+        touch.frame[:], touch.extents[:], touch.piece[:] = facets.frame[f], facets.extents[f], facets.piece[f]
+        touch.piece[0] = arc.start
+        sample.piece[:] = touch.piece
+        sample.number[1] = np.log(volume)
+        sample.number[2] = slope_at(turn, solid, touch, scratch.work)
+        away = sample.number[2] if angle <= 0.0 else -sample.number[2]
+        if away < -1e-12:
+            facets.resting[f] = 0
+    return min(best, volume)  # type: ignore[no-any-return]
 
 
 @kernel
@@ -218,8 +287,9 @@ def arc_minimum(
 ) -> tuple[int, int, float]:
     """Minimum of the volume between two samples of an arc, where the slope turns from falling to rising.
 
-    Secant steps on the slope where both ends belong to the same piece, else the meeting point of the two
-    tangents. Fills `touch`.
+    Secant steps on the slope where both ends belong to the same piece; where they differ in one vertex, the
+    angle at which the two vertices tie; else the meeting point of the two tangents. The angle is found to
+    about 1e-7. Fills `touch`.
 
     Returns
     -------
@@ -233,35 +303,74 @@ def arc_minimum(
     low = Sample(one.number.copy(), one.piece.copy())
     high = Sample(two.number.copy(), two.piece.copy())
     here = Sample(np.zeros(3), np.zeros(7, np.int64))
-    volume = np.inf
-    for _ in range(60):
-        same = True
-        for c in range(1, 7):
-            same = same and low.piece[c] == high.piece[c]
+    volume, smallest = np.inf, (two.number[0] - one.number[0]) / 8.0
+    for _ in range(40):
         gap = high.number[0] - low.number[0]
-        guard = 0.0 if same else 1e-3 * gap
-        if same:
+        slot = differing_slot(low.piece, high.piece)
+        if slot == STATIONARY:
             angle = low.number[0] - low.number[2] * gap / (high.number[2] - low.number[2])
+        elif slot >= 0:
+            tie = tie_angle(arc, slot, low.piece[slot], high.piece[slot], low, solid.vertices)
+            angle = tie - BESIDE if low.number[0] < tie - 1.5 * BESIDE else tie + BESIDE
         else:
             angle = meeting(low, high)
+        guard = 0.0 if slot == STATIONARY else 0.2 * min(BESIDE, gap)
         if not (low.number[0] + guard <= angle <= high.number[0] - guard):
             angle = 0.5 * (low.number[0] + high.number[0])
         volume = box_on_arc(arc, angle, solid, np.inf, scratch, touch, here)
         end = low if here.number[2] < 0.0 else high
-        gone = abs(end.number[0] - angle)
         end.number[:] = here.number
         end.piece[:] = here.piece
-        if high.number[0] - low.number[0] < 1e-9 or abs(here.number[2]) < 1e-11 or (same and gone < 1e-10):
+        gap = high.number[0] - low.number[0]
+        if abs(here.number[2]) < 1e-8 or gap < 3.0 * BESIDE:
+            break
+        if gap < smallest and differing_slot(low.piece, high.piece) == ON_FACET:
             break
     if abs(here.number[2]) < 1e-6:
         return STATIONARY, -1, volume
-    if low.piece[2] != high.piece[2] or low.piece[3] != high.piece[3]:
-        return ON_FACET, -1, volume
+    slot = differing_slot(low.piece, high.piece)
+    if slot < 0:
+        return slot, -1, volume
+    return slot, low.piece[slot] if here.piece[slot] == high.piece[slot] else high.piece[slot], volume
+
+
+@kernel
+def differing_slot(one: IntArray, two: IntArray) -> int:
+    """The one slot in which two pieces differ; STATIONARY if in none, ON_FACET if in others or several."""
+    if one[2] != two[2] or one[3] != two[3]:
+        return ON_FACET
+    found = STATIONARY
     for slot in (1, 4, 5, 6):
-        if low.piece[slot] != high.piece[slot]:
-            other = low.piece[slot] if here.piece[slot] == high.piece[slot] else high.piece[slot]
-            return slot, other, volume
-    return STATIONARY, -1, volume
+        if one[slot] != two[slot]:
+            if found != STATIONARY:
+                return ON_FACET
+            found = slot
+    return found
+
+
+@kernel
+def tie_angle(arc: Arc, slot: int, i: int, j: int, sample: Sample, vertices: FloatArray) -> float:
+    """Angle near a sample at which vertices i and j lie in one side of the box, by the secant method."""
+    axis, frame = np.empty(3), np.empty((3, 3))
+    edge = vertices[sample.piece[3]] - vertices[sample.piece[2]]
+    row = 0 if slot == 1 else (1 if slot == 4 else 2)
+    before, angle, last = 0.0, sample.number[0], 0.0
+    for k in range(8):
+        for c in range(3):
+            axis[c] = np.cos(angle) * arc.one[c] + np.sin(angle) * arc.across[c]
+        turned_frame(axis, edge, frame)
+        residual = 0.0
+        for c in range(3):
+            residual += frame[row, c] * (vertices[i, c] - vertices[j, c])
+        if k == 0:
+            last, before, angle = angle, residual, angle + 1e-3
+            continue
+        if residual == before or abs(residual) < 1e-15:
+            break
+        step = -residual * (angle - last) / (residual - before)
+        last, before = angle, residual
+        angle += min(0.5, max(-0.5, step))
+    return angle
 
 
 @kernel
@@ -313,7 +422,7 @@ def likeness(one: FloatArray, two: FloatArray) -> float:
             dot = one[a, 0] * two[b, 0] + one[a, 1] * two[b, 1] + one[a, 2] * two[b, 2]
             most = max(most, abs(dot))
         least = min(least, most)
-    return least
+    return float(least)
 
 
 @kernel

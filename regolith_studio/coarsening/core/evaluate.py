@@ -40,7 +40,7 @@ def evaluate(
     values[VOLUME], values[AREA] = volume_of(offsets, area), np.sum(area)
     values[FACETS] = np.sum(area > 0.0)
     if with_box:
-        boxes = local_boxes(Solid(vertices, normals, area, edges), 1e-3, sample_angle, np.zeros(3))
+        boxes = local_boxes(Solid(vertices, normals, area, edges), 1e-3, sample_angle, np.empty((0, 3, 3)))
         if len(boxes.volumes) == 0:
             return DEGENERATE, values
         values[SHORTEST], values[LONGEST] = boxes.extents[0].min(), boxes.extents[0].max()

@@ -1,0 +1,177 @@
+"""One course of the exact method from one start: free descent, polish, descent along the conditions."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from regolith_studio.coarsening.core.cuts import with_all_facets
+from regolith_studio.coarsening.core.planes import tangents_of
+from regolith_studio.coarsening.exact.descent import (
+    CAP,
+    OVERLAP,
+    TOLERANCE,
+    State,
+    descended,
+    first_metric,
+    objective_at,
+    started,
+)
+from regolith_studio.coarsening.exact.polish import Polished, measured, polished, verified
+from regolith_studio.coarsening.exact.problem import Problem
+from regolith_studio.coarsening.exact.starts import grouped_planes
+from regolith_studio.coarsening.target import Target
+from regolith_studio.geometry.arrays import FloatArray
+
+NOWHERE: FloatArray = np.empty((0, 3, 3))
+CUT_DEPTHS = (0.3, 0.1, 0.03)
+CHUNK = 8
+POLISH_STEPS, LONG_POLISH = 6, 30
+TIE_BREAK = 1e-7
+FREE_RADIUS, BOUND_RADIUS = 0.1, 0.05
+
+
+@dataclass(frozen=True)
+class Attempt:
+    """A polyhedron on the way.
+
+    Parameters
+    ----------
+    normals, offsets
+        Half-spaces, (n, 3) and (n,).
+    jaccard_distance
+        By the quadrature of the problem.
+    worst
+        Largest residual of the conditions, in logarithms.
+    n_facets
+        Real facets.
+    """
+
+    normals: FloatArray
+    offsets: FloatArray
+    jaccard_distance: float
+    worst: float
+    n_facets: int
+
+    @property
+    def exact(self) -> bool:
+        """Whether all conditions hold."""
+        return self.worst < TOLERANCE
+
+    def better_than(self, other: "Attempt | None") -> bool:
+        """Exact before inexact; then all facets real; then overlap (or residual)."""
+        if other is None or self.exact != other.exact:
+            return other is None or self.exact
+        if not self.exact:
+            return self.worst < other.worst
+        whole, other_whole = self.n_facets == len(self.offsets), other.n_facets == len(other.offsets)
+        return whole > other_whole or (
+            whole == other_whole and self.jaccard_distance < other.jaccard_distance
+        )
+
+
+def start_planes(target: Target, n_faces: int, rng: np.random.Generator) -> tuple[FloatArray, FloatArray]:
+    """Half-spaces through groups of the hull's triangles, in general position, each with a facet."""
+    hull = target.mesh.hull
+    areas = hull.face_areas
+    sound = areas > 0.0
+    normals, offsets = grouped_planes(
+        hull.face_area_vectors[sound] / areas[sound, None],
+        areas[sound],
+        hull.triangles[sound].mean(axis=1),
+        rng.random(n_faces),
+        10,
+    )
+    offsets = np.maximum(offsets, 0.05) * (1.0 + TIE_BREAK * rng.random(n_faces))
+    cuts, more_normals, more_offsets = _with_cuts(target, normals, offsets, CUT_DEPTHS[0])
+    return (more_normals, more_offsets) if cuts >= 0 else (normals, offsets)
+
+
+def course(
+    target: Target,
+    free: Problem,
+    full: Problem,
+    planes: tuple[FloatArray, FloatArray],
+    free_steps: int,
+    bound_steps: int,
+) -> Iterator[Attempt]:
+    """Polyhedra of one course, each better than the one before as a rule; the last is the outcome.
+
+    Parameters
+    ----------
+    free, full
+        The problem with the volume as its only condition, and with all.
+    planes
+        To start from.
+    free_steps, bound_steps
+        Steps of the two descents.
+    """
+    point = measured(free, planes[0], planes[1], tangents_of(planes[0]), NOWHERE)
+    if not np.isfinite(point.worst):
+        return
+    point = polished(free, point, first_metric(point.shape), LONG_POLISH, TOLERANCE, CAP)
+    state = descended(free, started(free, point, OVERLAP, FREE_RADIUS), OVERLAP, free_steps, POLISH_STEPS)
+    shape = state.point.shape
+    point = measured(full, shape.normals, shape.offsets, state.point.frames, NOWHERE)
+    point = verified(full, point, state.metric, LONG_POLISH, TOLERANCE, CAP)
+    yield attempt(full, point)
+    if point.worst > TOLERANCE:
+        return
+    state = started(full, point, OVERLAP, BOUND_RADIUS)
+    for later in steps_down(full, state, bound_steps):
+        state = later
+        yield attempt(full, state.point)
+    yield from mended(target, full, state, bound_steps // 2)
+
+
+def steps_down(problem: Problem, state: State, steps: int) -> Iterator[State]:
+    """The descent in chunks."""
+    for begun in range(0, steps, CHUNK):
+        if state.done:
+            return
+        state = descended(problem, state, OVERLAP, min(CHUNK, steps - begun), POLISH_STEPS)
+        yield state
+
+
+def mended(target: Target, problem: Problem, state: State, steps: int) -> Iterator[Attempt]:
+    """Redundant half-spaces are put back as cuts, polished and taken along by a short descent."""
+    shape = state.point.shape
+    for depth in CUT_DEPTHS:
+        cuts, normals, offsets = _with_cuts(target, shape.normals, shape.offsets, depth)
+        if cuts <= 0:
+            return
+        point = measured(problem, normals, offsets, tangents_of(normals), state.point.conditions.watched)
+        point = verified(problem, point, first_metric(point.shape), LONG_POLISH, TOLERANCE, CAP)
+        if point.worst > TOLERANCE:
+            continue
+        whole = attempt(problem, point)
+        yield whole
+        if whole.n_facets < len(offsets):
+            continue
+        for later in steps_down(problem, started(problem, point, OVERLAP, 0.01), steps):
+            yield attempt(problem, later.point)
+        return
+
+
+def densely_checked(dense: Problem, found: Attempt) -> Attempt:
+    """The polyhedron measured with a fine search for boxes; polished again where that found a smaller box."""
+    point = measured(dense, found.normals, found.offsets, tangents_of(found.normals), NOWHERE)
+    if point.worst > TOLERANCE:
+        point = verified(dense, point, first_metric(point.shape), LONG_POLISH, TOLERANCE, CAP)
+    return attempt(dense, point)
+
+
+def attempt(problem: Problem, point: Polished) -> Attempt:
+    """What is reported of a point."""
+    shape = point.shape
+    jaccard = objective_at(problem, shape, OVERLAP) if np.isfinite(point.worst) else 1.0
+    return Attempt(
+        shape.normals, shape.offsets, jaccard, point.worst, int(np.count_nonzero(shape.area > 0.0))
+    )
+
+
+def _with_cuts(
+    target: Target, normals: FloatArray, offsets: FloatArray, depth: float
+) -> tuple[int, FloatArray, FloatArray]:
+    rays = target.rays
+    return with_all_facets(normals, offsets, rays.directions, rays.first, rays.distance, depth)

@@ -1,0 +1,232 @@
+"""Descent of the Jaccard distance along the surface on which all conditions hold."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from regolith_studio.coarsening.core.measures import area_charge, volume_charge
+from regolith_studio.coarsening.core.overlap import jaccard, shared_charge
+from regolith_studio.coarsening.core.planes import carried, gradient_of, levers_of, moved
+from regolith_studio.coarsening.exact.conditions import AIM, Conditions
+from regolith_studio.coarsening.exact.polish import (
+    LEAST_LEVER,
+    Polished,
+    measured,
+    polished,
+    solved,
+    verified,
+)
+from regolith_studio.coarsening.exact.problem import Problem, Shape, shared_with
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.compiled import kernel
+
+OVERLAP, SMOOTHER, ROUGHER = 0, 1, 2
+"""Objectives: the Jaccard distance, less surface, more surface."""
+TOLERANCE = 3e-8
+"""Largest residual of a polyhedron that counts as exact."""
+SHORTEST_STEP = 2e-4
+CURVATURE = 0.1
+CAP = 0.1
+
+
+class State(NamedTuple):
+    """Where a descent stands; it can go on from here.
+
+    Parameters
+    ----------
+    point
+        Polyhedron, conditions and tangents; all conditions hold.
+    value
+        Objective there.
+    gradient
+        Of the objective, shape (3 n,).
+    metric
+        Approximate inverse of the Lagrangian's second derivative, shape (3 n, 3 n).
+    radius
+        Largest step.
+    done
+        Whether no better polyhedron is near.
+    iterations
+        Spent so far.
+    """
+
+    point: Polished
+    value: float
+    gradient: FloatArray
+    metric: FloatArray
+    radius: float
+    done: bool
+    iterations: int
+
+
+@kernel
+def objective_at(problem: Problem, shape: Shape, goal: int) -> float:
+    """Value of the objective."""
+    if goal == OVERLAP:
+        k = len(problem.directions)
+        radius, plane = np.empty(k), np.empty(k, np.int64)
+        shared = shared_with(problem, shape.normals, shape.offsets, radius, plane)
+        return jaccard(shared, 1.0, shape.volume)
+    return shape.surface if goal == SMOOTHER else -shape.surface
+
+
+@kernel
+def objective_gradient(problem: Problem, shape: Shape, frames: FloatArray, goal: int) -> FloatArray:
+    """Its derivative with the coordinates of all planes, pivots in the facets' centroids, shape (3 n,)."""
+    levers = levers_of(shape.area, LEAST_LEVER)
+    if goal != OVERLAP:
+        charge = area_charge(shape.normals, shape.vertices, shape.edges, shape.centroid)
+        slope = gradient_of(charge, frames, levers)
+        return slope if goal == SMOOTHER else -slope
+    k = len(problem.directions)
+    radius, plane = np.empty(k), np.empty(k, np.int64)
+    shared = shared_with(problem, shape.normals, shape.offsets, radius, plane)
+    charge = shared_charge(
+        problem.directions,
+        problem.first,
+        problem.distance,
+        problem.sign,
+        problem.weight,
+        shape.offsets,
+        radius,
+        plane,
+        shape.centroid,
+    )
+    union = 1.0 + shape.volume - shared
+    of_shared = -(union + shared) / union**2
+    of_volume = shared / union**2
+    whole = volume_charge(shape.area, shape.centroid, shape.centroid)
+    return gradient_of(of_shared * charge + of_volume * whole, frames, levers)
+
+
+@kernel
+def first_metric(shape: Shape) -> FloatArray:
+    """A diagonal guess of the inverse second derivative: large facets resist."""
+    n = len(shape.offsets)
+    metric = np.zeros((3 * n, 3 * n))
+    mean = shape.surface / n
+    for i in range(n):
+        area = max(shape.area[i], 0.1 * mean)
+        metric[3 * i, 3 * i] = CURVATURE / area
+        metric[3 * i + 1, 3 * i + 1] = 3.0 * CURVATURE / area
+        metric[3 * i + 2, 3 * i + 2] = 3.0 * CURVATURE / area
+    return metric
+
+
+@kernel
+def started(problem: Problem, point: Polished, goal: int, radius: float) -> State:
+    """A descent from a polyhedron on which all conditions hold."""
+    gradient = objective_gradient(problem, point.shape, point.frames, goal)
+    value = objective_at(problem, point.shape, goal)
+    return State(point, value, gradient, first_metric(point.shape), radius, False, 0)
+
+
+@kernel
+def tangent_step(
+    conditions: Conditions, gradient: FloatArray, metric: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Newton step along the conditions, and the gradient of the Lagrangian.
+
+    Other boxes that the step would bring below the wanted one are held where they are.
+    """
+    m, r = len(conditions.residual), len(conditions.slack)
+    rows = np.empty((m + r, len(gradient)))
+    rows[:m] = conditions.rows
+    held = m
+    step = projected(rows[:held], gradient, metric)
+    for k in range(r):
+        if conditions.slack[k] + np.sum(conditions.rival_rows[k] * step) < AIM:
+            rows[held] = conditions.rival_rows[k]
+            held += 1
+    if held > m:
+        step = projected(rows[:held], gradient, metric)
+    across = rows[:held] @ rows[:held].T
+    shadow = gradient - rows[:held].T @ solved(across, rows[:held] @ gradient)
+    return step, shadow
+
+
+@kernel
+def projected(rows: FloatArray, gradient: FloatArray, metric: FloatArray) -> FloatArray:
+    """-H g + H J' (J H J')^-1 J H g."""
+    down = metric @ gradient
+    if len(rows) == 0:
+        return -down
+    across = metric @ rows.T
+    return across @ solved(rows @ across, rows @ down) - down
+
+
+@kernel
+def learned(metric: FloatArray, step: FloatArray, change: FloatArray) -> FloatArray:
+    """BFGS update of the inverse second derivative; skipped where the curvature is not positive."""
+    product = np.sum(step * change)
+    if product <= 1e-3 * np.sqrt(np.sum(step * step) * np.sum(change * change)):
+        return metric
+    carriedover = metric @ change
+    scale = (1.0 + np.sum(change * carriedover) / product) / product
+    n = len(step)
+    updated = metric.copy()
+    for i in range(n):
+        for j in range(n):
+            updated[i, j] += (
+                scale * step[i] * step[j] - (carriedover[i] * step[j] + step[i] * carriedover[j]) / product
+            )
+    return updated
+
+
+@kernel
+def descended(problem: Problem, state: State, goal: int, iterations: int, polish_steps: int) -> State:
+    """At most `iterations` more steps of the descent; every accepted polyhedron meets all conditions."""
+    point, value, gradient, metric, radius = (
+        state.point,
+        state.value,
+        state.gradient,
+        state.metric,
+        state.radius,
+    )
+    done, spent, failures = state.done, state.iterations, 0
+    for _ in range(iterations):
+        if done:
+            break
+        spent += 1
+        step, shadow = tangent_step(point.conditions, gradient, metric)
+        length = np.abs(step).max()
+        if not np.isfinite(length) or np.sum(step * gradient) >= 0.0:
+            metric = first_metric(point.shape)
+            step, shadow = tangent_step(point.conditions, gradient, metric)
+            length = np.abs(step).max()
+        if not length > 1e-9:
+            done = True
+            break
+        share = min(1.0, radius / length)
+        shape = point.shape
+        levers = levers_of(shape.area, LEAST_LEVER)
+        turned, shifted = moved(
+            shape.normals, shape.centroid, shape.offsets, point.frames, levers, share * step
+        )
+        better, then, reached = False, point, value
+        if shifted.min() > 0.0:
+            then = measured(problem, turned, shifted, carried(point.frames, turned), point.conditions.watched)
+            then = polished(problem, then, metric, polish_steps, TOLERANCE, CAP)
+            if then.worst < TOLERANCE and objective_at(problem, then.shape, goal) < value:
+                then = verified(problem, then, metric, polish_steps, TOLERANCE, CAP)
+                if then.worst < TOLERANCE:
+                    reached = objective_at(problem, then.shape, goal)
+                    better = reached < value
+        if not better:
+            failures += 1
+            radius = 0.35 * min(radius, share * length)
+            if radius < SHORTEST_STEP:
+                if failures > 3:
+                    done = True
+                metric = first_metric(point.shape)
+                radius = 0.02
+                failures += 2
+            continue
+        failures = 0
+        slope = objective_gradient(problem, then.shape, then.frames, goal)
+        _, after = tangent_step(then.conditions, slope, metric)
+        metric = learned(metric, share * step, after - shadow)
+        radius = min(0.25, max(radius, 2.0 * share * length))
+        done = value - reached < 1e-7 and goal == OVERLAP
+        point, value, gradient = then, reached, slope
+    return State(point, value, gradient, metric, radius, done, spent)

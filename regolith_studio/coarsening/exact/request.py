@@ -1,0 +1,90 @@
+"""From weights to conditions: which descriptors are kept exactly, and why some cannot be."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from regolith_studio.coarsening.bounds import hull_gives_way, sphericity_reason
+from regolith_studio.coarsening.exact.problem import Problem
+from regolith_studio.coarsening.target import RayTable, Target
+from regolith_studio.coarsening.weights import LossWeights
+
+CONDITION_KEYS = ("volume", "sphericity", "min_diameter", "max_diameter", "aspect_ratio")
+"""Descriptors in the order of :mod:`regolith_studio.coarsening.exact.problem`."""
+
+
+@dataclass(frozen=True)
+class Request:
+    """What is kept exactly.
+
+    Parameters
+    ----------
+    values
+        Wanted values in the order of :data:`CONDITION_KEYS`, for the particle of unit volume.
+    asked
+        Which of them are conditions. The aspect ratio follows where both diameters are asked for.
+    keeps_hull
+        Whether V is sacrificed to CH.
+    """
+
+    values: tuple[float, ...]
+    asked: tuple[bool, ...]
+    keeps_hull: bool
+
+    @classmethod
+    def of(cls, target: Target, weights: LossWeights) -> "Request":
+        """A weight above 0 makes a condition; of V and CH the one that Eq. 9 prefers."""
+        wanted = target.descriptors
+        keeps_volume = hull_gives_way(weights, wanted)
+        volume = wanted["volume"] if keeps_volume else wanted["convex_hull_volume"]
+        box = (weights["min_diameter"] > 0, weights["max_diameter"] > 0)
+        asked = (
+            weights["volume"] > 0 or weights["convex_hull_volume"] > 0,
+            weights["sphericity"] > 0,
+            *box,
+            weights["aspect_ratio"] > 0 and not all(box),
+        )
+        values = (volume, *[wanted[key] for key in CONDITION_KEYS[1:]])
+        return cls(values, asked, not keeps_volume)
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """Descriptors that are conditions."""
+        return tuple(key for key, asked in zip(CONDITION_KEYS, self.asked, strict=True) if asked)
+
+    def problem(self, rays: RayTable, sample_angle: float, only_volume: bool = False) -> Problem:
+        """In compiled form; with `only_volume` all other conditions are left out."""
+        asked = np.array(self.asked)
+        if only_volume:
+            asked[1:] = False
+        return Problem(
+            rays.directions,
+            rays.first,
+            rays.distance,
+            rays.sign,
+            rays.weight,
+            np.log(self.values),
+            asked,
+            sample_angle,
+        )
+
+
+def reason_for(target: Target, request: Request, n_faces: int, errors: dict[str, float]) -> str | None:
+    """One sentence about the condition that is missed by most; ``None`` where all are met to 1e-6."""
+    missed = {key: errors[_reported(key, request)] for key in request.keys}
+    worst = max(missed, key=lambda key: missed[key], default=None)
+    if worst is None or missed[worst] <= 1e-6:
+        return None
+    if "sphericity" in missed:
+        bound = sphericity_reason(target.descriptors["sphericity"], n_faces)
+        if bound is not None:
+            return bound
+    name = _reported(worst, request).replace("_", " ")
+    return (
+        f"No polyhedron with {n_faces} faces was found that meets all descriptors:"
+        f" {name} is off by {100 * missed[worst]:.2g} %; more faces or a weight of 0 would free it."
+    )
+
+
+def _reported(key: str, request: Request) -> str:
+    return "convex_hull_volume" if key == "volume" and request.keeps_hull else key

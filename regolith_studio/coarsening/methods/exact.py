@@ -1,0 +1,117 @@
+"""Descriptors as conditions: met to 1e-6, or a reason given; the rest of the freedom goes into overlap."""
+
+from collections.abc import Generator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from regolith_studio.coarsening.core.box_search import DENSE_ANGLE, SAMPLE_ANGLE
+from regolith_studio.coarsening.evaluation import Evaluation, LossFunction
+from regolith_studio.coarsening.exact.course import Attempt, course, densely_checked, start_planes
+from regolith_studio.coarsening.exact.request import Request, reason_for
+from regolith_studio.coarsening.progress import MethodStep
+from regolith_studio.coarsening.result import MethodResult
+from regolith_studio.coarsening.target import Target
+from regolith_studio.coarsening.weights import LossWeights
+from regolith_studio.errors import GeometryError, InputError
+from regolith_studio.geometry.half_spaces import HalfSpaces
+
+
+@dataclass(frozen=True)
+class Level:
+    """Effort: starts, steps of the free and of the bound descent."""
+
+    starts: int
+    free_steps: int
+    bound_steps: int
+
+
+LEVELS = {"fast": Level(1, 12, 16), "best": Level(3, 20, 40)}
+
+
+@dataclass(frozen=True)
+class ExactSettings:
+    """Effort of the exact method.
+
+    Parameters
+    ----------
+    level
+        ``fast`` (one start) or ``best`` (several starts, longer descents: better overlap).
+    retries
+        Further starts where no polyhedron meets all conditions.
+
+    Raises
+    ------
+    InputError
+        If a value is out of its range.
+    """
+
+    level: str = field(default="fast", metadata={"label": "Level", "choices": tuple(LEVELS)})
+    retries: int = field(default=8, metadata={"label": "Retries", "minimum": 0, "maximum": 100})
+
+    def __post_init__(self) -> None:
+        if self.level not in LEVELS:
+            raise InputError(f"The level must be one of {', '.join(LEVELS)}, got {self.level!r}.")
+        if not 0 <= self.retries <= 100:
+            raise InputError(f"The retries must lie between 0 and 100, got {self.retries}.")
+
+
+class ExactMethod:
+    """Constrained optimisation of the half-spaces.
+
+    Weights above 0 make conditions: volume (or, if the weights of Eq. 9 prefer it, convex hull volume),
+    sphericity, shortest and longest edge of the exact minimum-volume box, aspect ratio. On the surface where
+    all hold, the Jaccard distance goes down; it is the tie-break even where its own weight is 0, since
+    shapes that only meet descriptors drift away from the particle.
+    """
+
+    key = "exact"
+    label = "Exact descriptors"
+    Settings = ExactSettings
+
+    def run(
+        self,
+        target: Target,
+        n_faces: int,
+        weights: LossWeights,
+        seed: np.random.SeedSequence,
+        settings: ExactSettings,
+    ) -> Generator[MethodStep, None, MethodResult]:
+        """A step for each better polyhedron; the first is the start."""
+        rng = np.random.default_rng(seed)
+        request, level = Request.of(target, weights), LEVELS[settings.level]
+        free = request.problem(target.rays, SAMPLE_ANGLE, only_volume=True)
+        full = request.problem(target.rays, SAMPLE_ANGLE)
+        dense = request.problem(target.rays, DENSE_ANGLE)
+        judge = LossFunction(target, weights, everything=True)
+        total = level.starts + settings.retries
+        best: Attempt | None = None
+        history: list[float] = []
+        tried = 0
+        for tried in range(1, total + 1):
+            planes = start_planes(target, n_faces, rng)
+            if tried == 1:
+                yield MethodStep(0, total, _loss(judge(*planes)), HalfSpaces(*planes))
+            for found in course(target, free, full, planes, level.free_steps, level.bound_steps):
+                if not found.better_than(best):
+                    continue
+                best = found
+                history.append(_loss(judge(best.normals, best.offsets)))
+                yield MethodStep(tried, total, history[-1], HalfSpaces(best.normals, best.offsets))
+            if tried >= level.starts and best is not None and best.exact:
+                best = densely_checked(dense, best)
+                if best.exact and best.n_facets == n_faces:
+                    break
+        if best is None:
+            raise GeometryError("No start of the exact method bounds a polyhedron.")
+        verdict = judge(best.normals, best.offsets, DENSE_ANGLE)
+        reason = None if verdict is None else reason_for(target, request, n_faces, verdict.errors)
+        counts = {"starts": float(tried), "exact": float(best.exact)}
+        return MethodResult(HalfSpaces(best.normals, best.offsets), tuple(history), reason, counts)
+
+
+def _loss(evaluation: Evaluation | None) -> float:
+    return float("inf") if evaluation is None else evaluation.loss
+
+
+METHOD = ExactMethod()
