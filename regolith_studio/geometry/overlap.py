@@ -33,11 +33,13 @@ def jaccard_distance(mesh: Mesh, polyhedron: ConvexPolyhedron | HalfSpaces, n_ra
     GeometryError
         If the mesh encloses no volume or the polyhedron is unbounded.
     """
-    half_spaces = polyhedron.half_spaces if isinstance(polyhedron, ConvexPolyhedron) else polyhedron
+    solid = (
+        polyhedron
+        if isinstance(polyhedron, ConvexPolyhedron)
+        else ConvexPolyhedron.from_half_spaces(polyhedron)
+    )
     directions = fibonacci_directions(n_rays)
-    radius = half_spaces.radii(directions)
-    if not np.isfinite(radius).all():
-        raise GeometryError("The half-spaces bound no volume: their intersection is unbounded.")
+    radius = solid.half_spaces.radii(directions)
     hits = radial_hits(mesh, np.zeros(3), directions)
     own = float(np.sum(hits.sign * hits.distance**3))
     if not own > 0.0:

@@ -57,3 +57,15 @@ def folded_stone(seed: int, level: int = 3) -> Mesh:
     stone = rough_stone(seed, level, roughness=0.05)
     x, y, z = stone.vertices.T
     return Mesh(np.column_stack([x + 0.6 * np.sin(5.0 * z), y + 0.3 * np.cos(4.0 * z), z]), stone.faces)
+
+
+def winding_numbers(mesh: Mesh, points: FloatArray) -> FloatArray:
+    """How often a mesh winds around each point, from solid angles (Van Oosterom and Strackee 1983)."""
+    total = np.zeros(len(points))
+    for triangle in mesh.triangles:
+        a, b, c = (corner - points for corner in triangle)
+        la, lb, lc = (np.linalg.norm(vector, axis=1) for vector in (a, b, c))
+        volume = np.einsum("ij,ij->i", a, np.cross(b, c))
+        ab, bc, ca = (np.einsum("ij,ij->i", *pair) for pair in ((a, b), (b, c), (c, a)))
+        total += 2.0 * np.arctan2(volume, la * lb * lc + ab * lc + bc * la + ca * lb)
+    return np.asarray(total / (4.0 * np.pi))
