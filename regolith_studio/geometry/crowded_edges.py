@@ -108,8 +108,10 @@ def _with_middle_vertices(
     touched: set[int] = set()
     points: list[FloatArray] = []
     halves: list[tuple[int, int, int]] = []
+    order = np.argsort(table.edge, kind="stable")
+    first = np.cumsum(table.uses) - table.uses
     for edge in np.flatnonzero(table.uses > 2):
-        around = np.flatnonzero(table.edge == edge)
+        around = order[first[edge] : first[edge] + table.uses[edge]]
         if touched.intersection((around // 3).tolist()):
             continue
         touched.update((around // 3).tolist())

@@ -74,22 +74,37 @@ def filled(vertices: FloatArray, faces: IntArray, *, only_fans: bool = False) ->
     fan about the rim's middle where the rim is long or its triangulation would double an edge.
     """
     holes = [rim for rim in rims(faces, len(vertices)) if len(rim) >= 3]
-    points, patches = [vertices], [faces]
-    total, area = len(vertices), 0.0
-    taken = {tuple(edge) for edge in edge_table(faces, len(vertices)).ends.tolist()} if holes else set()
+    middles: list[FloatArray] = []
+    patches = [faces]
+    area = 0.0
+    taken = _edges_between(holes, faces, len(vertices))
     for rim in holes:
         patch = None if only_fans else _tight(vertices, rim, taken)
         if patch is None:
-            points.append(vertices[rim].mean(axis=0, keepdims=True))
-            patch = np.column_stack([rim, np.roll(rim, -1), np.full(len(rim), total)])
-            total += 1
+            middle = vertices[rim].mean(axis=0)
+            apex = np.full(len(rim), len(vertices) + len(middles))
+            patch = np.column_stack([rim, np.roll(rim, -1), apex])
+            area += _area(vertices[patch[:, 0]], vertices[patch[:, 1]], middle)
+            middles.append(middle)
+        else:
+            area += _area(*np.moveaxis(vertices[patch], 1, 0))
         patches.append(patch)
-        corner = np.concatenate(points)[patch]
-        area += float(
-            np.linalg.norm(np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]), axis=1).sum()
-            / 2
-        )
-    return FilledHoles(np.concatenate(points), np.concatenate(patches), len(holes), area)
+    points = np.concatenate([vertices, middles]) if middles else vertices
+    return FilledHoles(points, np.concatenate(patches), len(holes), area)
+
+
+def _area(a: FloatArray, b: FloatArray, c: FloatArray) -> float:
+    return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2)
+
+
+def _edges_between(holes: list[IntArray], faces: IntArray, n_vertices: int) -> set[tuple[int, ...]]:
+    """The edges of a mesh whose both ends lie on a rim, as pairs with the lower index first."""
+    if not holes:
+        return set()
+    on_rim = np.zeros(n_vertices, dtype=np.bool_)
+    on_rim[np.concatenate(holes)] = True
+    ends = edge_table(faces, n_vertices).ends
+    return {tuple(edge) for edge in ends[on_rim[ends].all(axis=1)].tolist()}
 
 
 def _tight(vertices: FloatArray, rim: IntArray, taken: set[tuple[int, ...]]) -> IntArray | None:

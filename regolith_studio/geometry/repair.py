@@ -89,8 +89,8 @@ def repair(mesh: Mesh) -> Repair:
     for step in (
         _weld,
         _drop_degenerate,
-        _drop_duplicates,
         _weld_near,
+        _drop_duplicates,
         _wind,
         _keep_largest,
         _fill,
@@ -160,7 +160,7 @@ def _closed_without(draft: _Draft, double: BoolArray, first: IntArray) -> BoolAr
 
 
 def _weld_near(draft: _Draft) -> _Draft:
-    """Join near vertices where that closes open edges and crowds none."""
+    """Join near vertices where that closes far more edges than it crowds."""
     table = edge_table(draft.faces, len(draft.vertices))
     best, least = draft, table.open_edges
     for tolerance in TOLERANCES if least else ():
@@ -168,7 +168,8 @@ def _weld_near(draft: _Draft) -> _Draft:
         a, b, c = faces.T
         faces = faces[(a != b) & (b != c) & (c != a)]
         near = edge_table(faces, len(vertices))
-        if len(faces) and near.open_edges < least and near.crowded_edges <= table.crowded_edges:
+        crowded = max(near.crowded_edges - table.crowded_edges, 0)
+        if len(faces) and near.open_edges < least and 4 * crowded < table.open_edges - near.open_edges:
             joined = len(draft.vertices) - len(vertices)
             near_by = f"within {tolerance:.0e} of the mesh's size"
             text = f"Joined {_count(joined, 'vertex', 'vertices')} with another {near_by}."

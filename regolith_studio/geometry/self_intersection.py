@@ -3,7 +3,7 @@
 import numpy as np
 from numba import int64
 
-from regolith_studio.geometry.arrays import FloatArray, IntArray
+from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
 from regolith_studio.geometry.compiled import kernel
 
 MOST_CELLS = 1 << 21
@@ -21,13 +21,19 @@ def count_self_intersections(vertices: FloatArray, faces: IntArray) -> int | Non
     touch in a shared edge, or overlap within one plane, do not count. Triangles are sorted into the
     cells of a grid as fine as they are; only those that share a cell are compared.
     """
+    crossing = crossing_pairs(vertices, faces)
+    return None if crossing is None else crossing[0]
+
+
+def crossing_pairs(vertices: FloatArray, faces: IntArray) -> tuple[int, BoolArray] | None:
+    """As `count_self_intersections`, with the triangles that cross another, shape (m,)."""
     if len(faces) < 2:
-        return 0
+        return 0, np.zeros(len(faces), dtype=np.bool_)
     corners = np.ascontiguousarray(vertices[faces])
     low, high = corners.min(axis=1), corners.max(axis=1)
     origin, size = low.min(axis=0), (high.max(axis=0) - low.min(axis=0)).max()
     if not size > 0.0:
-        return 0
+        return 0, np.zeros(len(faces), dtype=np.bool_)
     edge = max(float((high - low).max(axis=1).mean()), size / 4096)
     shape = np.maximum(np.ceil((high.max(axis=0) - origin) / edge), 1.0)
     while shape.prod() > MOST_CELLS:
@@ -43,7 +49,8 @@ def count_self_intersections(vertices: FloatArray, faces: IntArray) -> int | Non
     load = np.diff(start)
     if float((load.astype(np.float64) ** 2).sum()) > MOST_CANDIDATES * (len(faces) + 4096):
         return None
-    return int(count_crossings(corners / size, faces, first, cells, start, member))
+    crossing = np.zeros(len(faces), dtype=np.bool_)
+    return int(mark_crossings(corners / size, faces, first, cells, start, member, crossing)), crossing
 
 
 @kernel
@@ -72,15 +79,16 @@ def fill_cells(first: IntArray, last: IntArray, cells: IntArray, entries: int) -
 
 
 @kernel
-def count_crossings(
+def mark_crossings(
     corners: FloatArray,
     faces: IntArray,
     first: IntArray,
     cells: IntArray,
     start: IntArray,
     member: IntArray,
+    crossing: BoolArray,
 ) -> int:
-    """Crossing pairs, each counted in the lowest cell that both triangles reach."""
+    """Number of crossing pairs, each counted in the lowest cell that both reach; marks `crossing`."""
     count = int64(0)
     for cell in range(len(start) - 1):
         i = cell // (cells[1] * cells[2])
@@ -96,6 +104,7 @@ def count_crossings(
                     and max(first[a, 2], first[b, 2]) == k
                     and cross(corners[a], corners[b], faces[a], faces[b])
                 ):
+                    crossing[a] = crossing[b] = True
                     count += 1
     return count  # type: ignore[return-value]
 

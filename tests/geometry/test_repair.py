@@ -5,6 +5,7 @@ import itertools
 
 import numpy as np
 import pytest
+from scipy.ndimage import generate_binary_structure, label
 
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.directions import icosphere
@@ -146,6 +147,35 @@ def test_that_a_ring_of_boxes_that_closes_over_an_edge_stays_whole():
     assert result.health_after.crowded_edges == 0
 
 
+VOXEL_SIDES = {
+    (-1, 0, 0): [(0, 0, 0), (0, 0, 1), (0, 1, 1), (0, 1, 0)],
+    (1, 0, 0): [(1, 0, 0), (1, 1, 0), (1, 1, 1), (1, 0, 1)],
+    (0, -1, 0): [(0, 0, 0), (1, 0, 0), (1, 0, 1), (0, 0, 1)],
+    (0, 1, 0): [(0, 1, 0), (0, 1, 1), (1, 1, 1), (1, 1, 0)],
+    (0, 0, -1): [(0, 0, 0), (0, 1, 0), (1, 1, 0), (1, 0, 0)],
+    (0, 0, 1): [(0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)],
+}
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_that_of_random_voxels_the_largest_component_is_kept_to_the_voxel(seed):
+    """Voxels that meet in an edge are apart: as `scipy.ndimage.label` counts them by default."""
+    solid = np.pad(np.random.default_rng(seed).random((9, 9, 9)) < 0.42, 1)
+    corners = [
+        np.array(side)[[0, 1, 2, 0, 2, 3]] + place
+        for place in np.argwhere(solid)
+        for step, side in VOXEL_SIDES.items()
+        if not solid[tuple(place + step)]
+    ]
+    points = np.concatenate(corners).astype(float)
+    result = repair(Mesh(*welded(points, np.arange(len(points)).reshape(-1, 3))))
+    labels, _ = label(solid)
+    largest = labels == np.argmax(np.bincount(labels[solid]))
+    void, _ = label(~largest, generate_binary_structure(3, 2))
+    assert result.health_before.crowded_edges > 50
+    assert result.mesh.volume == pytest.approx(np.count_nonzero(void != void[0, 0, 0]))
+
+
 def test_that_a_concave_flat_hole_is_closed_within_its_outline():
     """The lid of a prism over an L is missing: base area 3, height 1."""
     base = [(0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2)]
@@ -164,6 +194,21 @@ def test_that_a_sphere_with_a_hundred_holes_keeps_its_volume():
     result = repair(without(sphere, *rows))
     assert result.mesh.volume == pytest.approx(sphere.volume, rel=2e-3)
     assert result.mesh.surface_area == pytest.approx(sphere.surface_area, rel=2e-3)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_that_a_scan_with_every_fault_at_once_keeps_its_volume(seed):
+    """Rounded triangle soup with one face in twenty missing, one in five turned, and twenty twice."""
+    rng = np.random.default_rng(seed)
+    rough = 1 + 0.1 * rng.random((len(icosphere(4).vertices), 1))
+    whole = Mesh(icosphere(4).vertices * rough * (2.0, 1.0, 0.7), icosphere(4).faces)
+    kept = rng.permutation(len(whole.faces))[len(whole.faces) // 20 :]
+    corners = whole.triangles[np.concatenate([kept, kept[:20]])]
+    corners[::5] = corners[::5, ::-1]
+    corners = corners + rng.uniform(-3e-8, 3e-8, corners.shape)
+    result = repair(Mesh(corners.reshape(-1, 3), np.arange(corners.size // 3).reshape(-1, 3)))
+    assert result.mesh.volume == pytest.approx(whole.volume, rel=0.01)
+    assert result.mesh.surface_area == pytest.approx(whole.surface_area, rel=0.02)
 
 
 def test_that_a_rim_of_many_corners_is_closed_about_its_middle():
