@@ -66,6 +66,20 @@ def values(entries: list[str] | None, what: str) -> dict[str, bool | int | float
     return {key: _simplest(text) for key, text in _pairs(entries, what)}
 
 
+def whole_numbers(text: str, low: int, high: int) -> tuple[int, ...]:
+    """``1,2,5`` or ``1-20`` or both, ascending, each from `low` to `high`."""
+    found: set[int] = set()
+    for part in text.split(","):
+        first, dash, last = part.strip().partition("-")
+        try:
+            found.update(range(int(first), int(last if dash else first) + 1))
+        except ValueError:
+            raise typer.BadParameter(f"Write whole numbers as 1,2,5 or 1-20, got {text!r}.") from None
+    if not found or min(found) < low or max(found) > high:
+        raise typer.BadParameter(f"The numbers must lie between {low} and {high}, got {text!r}.")
+    return tuple(sorted(found))
+
+
 def _pairs(entries: list[str] | None, what: str) -> Iterator[tuple[str, str]]:
     for entry in entries or ():
         key, equals, text = entry.partition("=")

@@ -1,7 +1,7 @@
 """``study``: tables and figures over a sample."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -18,6 +18,8 @@ from regolith_studio.cli.options import (
     Settings,
     Target,
     Unit,
+    as_bad_use,
+    whole_numbers,
 )
 
 if TYPE_CHECKING:
@@ -28,14 +30,26 @@ app = typer.Typer(help="Tables and figures over a sample.", no_args_is_help=True
 
 @app.command("lmax")
 def lmax(
-    meshes: Meshes, output: Folder, unit: Unit = "um", json: Json = False, jobs: Jobs = 1, seed: Seed = 0
+    meshes: Meshes,
+    output: Folder,
+    degrees: Annotated[str, typer.Option("--degrees", help="Values of l_max: 1,2,5 or 1-20.")] = "1-20",
+    level: Annotated[int, typer.Option("--level", help="Subdivisions of the fits' surface.")] = 4,
+    unit: Unit = "um",
+    json: Json = False,
+    jobs: Jobs = 1,
+    seed: Seed = 0,
 ) -> None:
     """RMSRE of the descriptors against l_max (Fig. 3)."""
     from regolith_studio.cli.inputs import exit_code, read_inputs
     from regolith_studio.jobs.studying import study_lmax
+    from regolith_studio.session.choices import L_MAX_LIMIT, Choices
 
+    wanted = whole_numbers(degrees, 0, L_MAX_LIMIT)
+    with as_bad_use():
+        Choices(level=level, seed=seed)
     loaded = read_inputs(meshes, unit)
-    _conclude("lmax_study", study_lmax(loaded.particles, jobs, seed), output, json)
+    steps = study_lmax(loaded.particles, jobs, seed, degrees=wanted, level=level)
+    _conclude("lmax_study", steps, output, json)
     raise typer.Exit(exit_code(meshes, loaded))
 
 

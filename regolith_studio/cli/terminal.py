@@ -56,19 +56,16 @@ def print_json(document: Any) -> None:
 
 
 def print_table(table: "Table") -> None:
-    """A table on stdout, as wide as it needs to be where nobody looks at it."""
-    from rich.console import Console
-    from rich.table import Table as Drawn
-
+    """A table on stdout: words to the left, numbers to the right, two spaces between."""
     from regolith_studio.studies.tables import rows_as_text
 
-    header, *rows = rows_as_text(table, digits=4)
-    drawn = Drawn(title=table.title, title_justify="left")
-    for name in header:
-        drawn.add_column(name, overflow="fold")
-    for row in rows:
-        drawn.add_row(*row)
-    Console(width=None if sys.stdout.isatty() else 400).print(drawn)
+    lines = rows_as_text(table, digits=4)
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+    words = [any(isinstance(cell, str) for cell in table.column(column.name)) for column in table.columns]
+    for line in lines:
+        cells = zip(line, widths, words, strict=True)
+        row = "  ".join(cell.ljust(width) if word else cell.rjust(width) for cell, width, word in cells)
+        typer.echo(row.rstrip())
 
 
 def complain(sentences: Iterable[str]) -> None:

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
-from regolith_studio.descriptors.catalogue import CATALOGUE
+from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.fitting import Examined
 from regolith_studio.studies.tables import Column, Table
@@ -25,6 +25,17 @@ def described(particle: Particle, facts: Examined) -> dict[str, Any]:
     return entry
 
 
+def short_table(particles: Sequence[Particle], facts: Sequence[Examined]) -> Table:
+    """The descriptors of section 2.2 by their symbols, narrow enough for a terminal."""
+    keys = ("volume", "equivalent_radius", "surface_area", *(key for key in LOSS_KEYS if key != "volume"))
+    columns = [Column(CATALOGUE[key].symbol, _POWERS[CATALOGUE[key].dimension]) for key in keys]
+    rows = [
+        (particle.name, *[_value(each, key) for key in keys], "yes" if each.health.sound else "no")
+        for particle, each in zip(particles, facts, strict=True)
+    ]
+    return Table("", (Column("name"), *columns, Column("sound")), tuple(rows))
+
+
 def descriptor_table(particles: Sequence[Particle], facts: Sequence[Examined]) -> Table:
     """One row a particle, one column a descriptor with its unit."""
     keys = [key for key in CATALOGUE if any(key in (each.descriptors or ()) for each in facts)]
@@ -35,10 +46,14 @@ def descriptor_table(particles: Sequence[Particle], facts: Sequence[Examined]) -
         (
             particle.name,
             particle.group,
-            *[each.descriptors.get(key) if each.descriptors else None for key in keys],
+            *[_value(each, key) for key in keys],
             each.health.sound,
             " ".join(filter(None, [*each.health.problems, each.problem])),
         )
         for particle, each in zip(particles, facts, strict=True)
     ]
     return Table("Descriptors of the particles", tuple(columns), tuple(rows))
+
+
+def _value(facts: Examined, key: str) -> float | None:
+    return facts.descriptors.get(key) if facts.descriptors else None

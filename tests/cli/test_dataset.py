@@ -1,0 +1,44 @@
+"""``dataset build`` and ``validate``."""
+
+from pathlib import Path
+
+from regolith_studio.dataset.folder import read_dataset
+
+
+def test_that_a_built_dataset_is_sound_and_reads_back(command, grains: Path, tmp_path: Path) -> None:
+    said = command(
+        "dataset", "build", grains, "-o", tmp_path / "set", "--method", "quadric", "--name", "trio"
+    )
+    assert said.code == 0
+    dataset = read_dataset(tmp_path / "set")
+    assert dataset.name == "trio"
+    assert len(dataset) == 3
+    assert command("dataset", "validate", tmp_path / "set").code == 0
+
+
+def test_that_a_damaged_dataset_is_found_out(command, grains: Path, tmp_path: Path) -> None:
+    command("dataset", "build", grains, "-o", tmp_path / "set", "--method", "quadric")
+    mesh = next((tmp_path / "set").rglob("*.stl"))
+    mesh.write_bytes(mesh.read_bytes()[:-1])
+    said = command("dataset", "validate", tmp_path / "set", "--json")
+    assert said.code == 1
+    assert said.json["valid"] is False
+    assert any(mesh.name in problem for problem in said.json["problems"])
+
+
+def test_that_other_peoples_files_are_never_replaced(command, grains: Path, tmp_path: Path) -> None:
+    (tmp_path / "thesis.txt").write_text("important")
+    for overwrite in ([], ["--overwrite"]):
+        said = command("dataset", "build", grains, "-o", tmp_path, "--method", "quadric", *overwrite)
+        assert said.code == 1
+        assert len(said.err.strip().splitlines()) == 1
+    assert [path.name for path in tmp_path.iterdir()] == ["thesis.txt"]
+
+
+def test_that_a_dataset_of_the_same_place_is_replaced_only_if_allowed(
+    command, grains: Path, tmp_path: Path
+) -> None:
+    build = ("dataset", "build", grains / "grain-a.stl", "-o", tmp_path / "set", "--method", "quadric")
+    assert command(*build).code == 0
+    assert command(*build).code == 1
+    assert command(*build, "--overwrite").code == 0

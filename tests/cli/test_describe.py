@@ -1,0 +1,75 @@
+"""``describe`` against closed forms, and on input that is wrong."""
+
+import math
+from pathlib import Path
+
+import pytest
+
+from regolith_studio.descriptors.catalogue import CATALOGUE
+
+
+def test_that_an_ellipsoid_is_measured_in_micrometres(command, grains: Path) -> None:
+    said = command("describe", grains / "grain-a.stl", "--json")
+    assert said.code == 0
+    assert said.err == ""
+    (entry,) = said.json
+    assert entry["name"] == "grain-a"
+    assert entry["unit"] == "um"
+    assert entry["volume"] == pytest.approx(4 / 3 * math.pi * 30 * 20 * 15, rel=0.02)
+    assert entry["min_diameter"] == pytest.approx(30, rel=0.01)
+    assert entry["max_diameter"] == pytest.approx(60, rel=0.01)
+    assert entry["health"]["sound"] is True
+    assert set(CATALOGUE) & set(entry) >= {"sphericity", "aspect_ratio", "convex_hull_volume"}
+
+
+def test_that_the_unit_scales_lengths(command, grains: Path) -> None:
+    (micro,) = command("describe", grains / "grain-b.stl", "--json").json
+    (milli,) = command("describe", grains / "grain-b.stl", "--json", "--unit", "mm").json
+    assert milli["max_diameter"] == pytest.approx(1e3 * micro["max_diameter"])
+    assert milli["sphericity"] == pytest.approx(micro["sphericity"])
+
+
+def test_that_a_folder_gives_one_entry_a_mesh_in_the_order_of_names(command, grains: Path) -> None:
+    said = command("describe", grains, "--json", "--jobs", 2)
+    assert [entry["name"] for entry in said.json] == ["grain-a", "grain-b", "grain-c"]
+
+
+def test_that_a_table_names_particles_and_descriptors(command, grains: Path) -> None:
+    said = command("describe", grains)
+    assert said.code == 0
+    for word in ("grain-a", "grain-c", "D_min [um]", "V [um^3]"):
+        assert word in said.out
+
+
+def test_that_a_file_that_is_no_mesh_is_one_sentence(command, tmp_path: Path) -> None:
+    path = tmp_path / "letter.stl"
+    path.write_text("Dear Sir")
+    said = command("describe", path)
+    assert said.code == 1
+    assert len(said.err.strip().splitlines()) == 1
+    assert "Traceback" not in said.err
+
+
+def test_that_a_bad_file_among_good_ones_is_told_and_the_others_are_measured(
+    command, grains: Path, tmp_path: Path
+) -> None:
+    said = command("describe", grains / "grain-a.stl", tmp_path / "missing.stl", "--json")
+    assert said.code == 1
+    assert [entry["name"] for entry in said.json] == ["grain-a"]
+    assert "missing.stl" in said.err
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("describe",),
+        ("describe", "x.stl", "--unit", "furlong"),
+        ("describe", "x.stl", "--colour"),
+        ("juggle",),
+    ],
+)
+def test_that_bad_use_is_exit_code_2(command, arguments: tuple[str, ...]) -> None:
+    said = command(*arguments)
+    assert said.code == 2
+    assert said.out == ""
+    assert "Traceback" not in said.err

@@ -1,0 +1,99 @@
+"""The program as a process: start, help, check, interruption."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+PROGRAM = [sys.executable, "-m", "regolith_studio"]
+
+
+def start(*arguments: object, **options: object) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [*PROGRAM, *map(str, arguments)], capture_output=True, text=True, cwd=ROOT, timeout=240, **options
+    )  # type: ignore[call-overload]
+
+
+def test_that_help_lists_every_command_and_imports_nothing_heavy() -> None:
+    said = start("--help")
+    assert said.returncode == 0
+    for name in ("open", "describe", "fit", "coarsen", "extract", "study", "dataset", "run", "demo", "check"):
+        assert f"\n  {name} " in said.stdout
+    code = "import sys; from regolith_studio.cli.commands import app; print(*sys.modules)"
+    modules = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT, check=True
+    )
+    heavy = {"numpy", "scipy", "numba", "pyvista", "matplotlib", "pyshtools", "PySide6", "pydantic", "rich"}
+    assert not heavy & set(modules.stdout.split())
+
+
+def test_that_the_package_itself_imports_nothing_heavy() -> None:
+    code = "import sys, regolith_studio; print(*sys.modules); assert 'describe' in dir(regolith_studio)"
+    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT, check=True)
+    assert not {"numpy", "PySide6", "pyvista", "typer"} & set(said.stdout.split())
+
+
+def test_that_the_doors_of_the_package_lead_to_their_folders() -> None:
+    code = (
+        "import regolith_studio as rs, sys; names = set(rs.__all__) - {'__version__'};"
+        "assert all(callable(getattr(rs, name)) for name in names), names;"
+        "assert 'PySide6' not in sys.modules"
+    )
+    subprocess.run([sys.executable, "-c", code], cwd=ROOT, check=True, timeout=240)
+
+
+def test_that_the_version_is_printed() -> None:
+    assert start("--version").stdout.strip() == "0.1.0"
+
+
+def test_that_check_answers_without_a_display_and_survives_a_broken_opengl() -> None:
+    blind = {key: value for key, value in os.environ.items() if key not in ("DISPLAY", "WAYLAND_DISPLAY")}
+    said = start("check", "--json", env=blind)
+    assert said.returncode == 0
+    report = json.loads(said.stdout)
+    assert report["program"]["regolith-studio"] == "0.1.0"
+    assert set(report) == {"program", "packages", "machine", "opengl", "display", "missing"}
+    if sys.platform.startswith("linux"):
+        assert "no display" in report["display"]["problem"]
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals are a matter of POSIX")
+def test_that_ctrl_c_ends_with_130_without_a_traceback_or_half_an_output(
+    grains: Path, tmp_path: Path
+) -> None:
+    ready = tmp_path / "ready"
+    code = (
+        "import sys, pathlib\n"
+        "from regolith_studio.jobs import samples\n"
+        "def forever(*_, **__):\n"
+        f"    pathlib.Path({str(ready)!r}).write_text('')\n"
+        "    while True:\n"
+        "        yield samples.Progress(0, 1, '')\n"
+        "samples.coarsen_sample = forever\n"
+        "from regolith_studio.__main__ import main\n"
+        "main()\n"
+    )
+    arguments = ["coarsen", str(grains), "-o", str(tmp_path / "out")]
+    child = subprocess.Popen(
+        [sys.executable, "-c", code, *arguments],
+        stderr=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+        cwd=ROOT,
+    )
+    end = time.monotonic() + 120
+    while not ready.exists():
+        assert child.poll() is None
+        assert time.monotonic() < end
+        time.sleep(0.05)
+    child.send_signal(signal.SIGINT)
+    out, err = child.communicate(timeout=60)
+    assert child.returncode == 130
+    assert "Traceback" not in out + err
+    assert not (tmp_path / "out").exists()

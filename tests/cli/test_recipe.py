@@ -1,0 +1,64 @@
+"""``run``: a recipe from file to results."""
+
+import json
+from pathlib import Path
+
+from regolith_studio.cli.entry import run
+
+
+def recipe(folder: Path, grains: Path, **entries: object) -> Path:
+    path = folder / "recipe.json"
+    base = {"inputs": [str(grains)], "method": "quadric", "level": 2, "l_max": 4, "n_faces": 12}
+    path.write_text(json.dumps(base | entries))
+    return path
+
+
+def test_that_a_recipe_leaves_everything_it_asks_for(command, grains: Path, tmp_path: Path) -> None:
+    wish = recipe(tmp_path, grains, outputs={"fits": True})
+    said = command("run", wish, "-o", tmp_path / "out", "--json")
+    assert said.code == 0
+    files = set(said.json["files"])
+    expected = {"recipe.json", "summary.html", "descriptors.csv", "descriptors.json", "fit.json", "fit.npz"}
+    assert expected <= files
+    assert {"meshes/coarsening.json", "meshes/grain-a.stl", "dataset/dataset.json"} <= files
+    page = (tmp_path / "out" / "summary.html").read_text()
+    assert "grain-b" in page
+    assert "12 faces" in page
+
+
+def test_that_the_recipe_in_the_results_repeats_them(command, grains: Path, tmp_path: Path) -> None:
+    wish = recipe(tmp_path, grains, outputs={"meshes": True, "dataset": True, "summary": False})
+    assert command("run", wish, "-o", tmp_path / "one").code == 0
+    assert command("run", tmp_path / "one" / "recipe.json", "-o", tmp_path / "two").code == 0
+    for name in ("meshes/grain-a.stl", "meshes/grain-c.stl", "descriptors.json"):
+        assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes()
+
+
+def test_that_another_seed_can_be_given(command, grains: Path, tmp_path: Path) -> None:
+    wish = recipe(tmp_path, grains, outputs={"dataset": False, "summary": False})
+    assert command("run", wish, "-o", tmp_path / "out", "--seed", 77).code == 0
+    assert json.loads((tmp_path / "out" / "recipe.json").read_text())["seed"] == 77
+
+
+def test_that_inputs_are_found_beside_the_recipe(command, grains: Path, tmp_path: Path) -> None:
+    (tmp_path / "here.stl").write_bytes((grains / "grain-a.stl").read_bytes())
+    wish = recipe(tmp_path, grains, inputs=["here.stl"], outputs={"dataset": False, "summary": False})
+    assert command("run", wish, "-o", tmp_path / "out").code == 0
+    assert (tmp_path / "out" / "meshes" / "here.stl").exists()
+
+
+def test_that_a_bad_recipe_is_one_sentence(command, grains: Path, tmp_path: Path) -> None:
+    for entries in ({"n_faces": 1}, {"lmax": 3}, {"inputs": ["nowhere.stl"]}):
+        said = command("run", recipe(tmp_path, grains, **entries), "-o", tmp_path / "out")
+        assert said.code == 1
+        assert len(said.err.strip().splitlines()) == 1
+        assert not (tmp_path / "out").exists()
+
+
+def test_that_a_sentence_is_all_that_an_unknown_mistake_prints(capsys, monkeypatch) -> None:
+    def broken(*_: object, **__: object) -> None:
+        raise ZeroDivisionError("division by zero\nmore lines")
+
+    monkeypatch.setattr("regolith_studio.cli.commands.app", broken)
+    assert run(["describe"]) == 1
+    assert capsys.readouterr().err == "The program made a mistake (ZeroDivisionError: division by zero).\n"

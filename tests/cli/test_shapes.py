@@ -1,0 +1,163 @@
+"""``fit``, ``coarsen``, ``extract`` and ``study``: what they write, and that a stranger can read it."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import tifffile
+import trimesh
+
+from regolith_studio.geometry.directions import icosphere
+
+
+def test_that_a_fit_holds_the_mean_radius_of_a_ball(command, tmp_path: Path) -> None:
+    ball = trimesh.Trimesh(icosphere(4).vertices * 25.0, icosphere(4).faces, process=False)
+    ball.export(tmp_path / "ball.stl")
+    said = command("fit", tmp_path / "ball.stl", "-o", tmp_path / "fit", "--l-max", 6)
+    assert said.code == 0
+    document = json.loads((tmp_path / "fit.json").read_text())
+    with np.load(tmp_path / "fit.npz") as arrays:
+        coefficients = arrays["coefficients"]
+    assert coefficients.shape == (1, 49)
+    assert coefficients[0, 0] / np.sqrt(4 * np.pi) == pytest.approx(25.0, rel=2e-3)
+    assert document["particles"][0]["mean_radius"] == pytest.approx(25.0, rel=2e-3)
+    assert len(document["spectrum"]["values"]) == 7
+    assert "orthonormal" in document["convention"]
+
+
+def test_that_a_fit_can_be_named_by_either_of_its_files(command, grains: Path, tmp_path: Path) -> None:
+    assert command("fit", grains, "-o", tmp_path / "sample.json", "--l-max", 2).code == 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["sample.json", "sample.npz"]
+
+
+def test_that_coarsening_writes_convex_bodies_that_another_program_reads(
+    command, grains: Path, tmp_path: Path
+) -> None:
+    said = command("coarsen", grains, "-o", tmp_path / "c", "--faces", 16, "--method", "quadric", "--json")
+    assert said.code == 0
+    document = json.loads((tmp_path / "c" / "coarsening.json").read_text())
+    assert said.json == document
+    for entry in document["particles"]:
+        body = trimesh.load_mesh(tmp_path / "c" / entry["file"])
+        assert body.is_watertight
+        assert len(body.faces) == entry["n_triangles"]
+        assert body.volume == pytest.approx(entry["achieved"]["volume"], rel=1e-4)
+        assert body.convex_hull.volume == pytest.approx(body.volume, rel=1e-4)
+        assert entry["n_faces"] == entry["n_faces_asked"] == 16
+
+
+def without_seconds(path: Path) -> bytes:
+    if path.name != "coarsening.json":
+        return path.read_bytes()
+    document = json.loads(path.read_text())
+    for entry in document["particles"]:
+        entry.pop("seconds")
+    return json.dumps(document).encode()
+
+
+def test_that_the_number_of_processes_changes_no_byte(command, grains: Path, tmp_path: Path) -> None:
+    common = ("coarsen", grains, "--faces", 12, "--seed", 3, "--l-max", 4)
+    assert command(*common, "-o", tmp_path / "one", "--jobs", 1).code == 0
+    assert command(*common, "-o", tmp_path / "two", "--jobs", 2).code == 0
+    names = sorted(path.name for path in (tmp_path / "one").iterdir())
+    assert names == sorted(path.name for path in (tmp_path / "two").iterdir())
+    for name in names:
+        assert without_seconds(tmp_path / "one" / name) == without_seconds(tmp_path / "two" / name)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        ("--faces", 2),
+        ("--method", "magic"),
+        ("--preset", "favourites"),
+        ("--weight", "volume"),
+        ("--weight", "volume=much"),
+        ("--weight", "beauty=1"),
+        ("--weight", "volume=-1"),
+        ("--set", "colour=red"),
+        ("--target", "moon"),
+        ("--l-max", 99),
+        ("--seed", -1),
+    ],
+)
+def test_that_an_option_out_of_range_is_bad_use_and_writes_nothing(
+    command, grains: Path, tmp_path: Path, options: tuple[object, ...]
+) -> None:
+    said = command("coarsen", grains, "-o", tmp_path / "c", *options)
+    assert said.code == 2
+    assert not (tmp_path / "c").exists()
+
+
+def test_that_a_single_weight_is_the_only_one_and_beside_a_preset_changes_it(
+    command, grains: Path, tmp_path: Path
+) -> None:
+    common = ("coarsen", grains / "grain-b.stl", "--method", "quadric", "-o", tmp_path, "--json")
+    alone = command(*common, "--weight", "volume=2").json["order"]["weights"]
+    beside = command(*common, "--preset", "all", "--weight", "volume=2").json["order"]["weights"]
+    assert {key: value for key, value in alone.items() if value} == {"volume": 2.0}
+    assert beside["volume"] == 2.0
+    assert beside["sphericity"] == 1.0
+
+
+def test_that_a_particle_that_fails_does_not_stop_the_others(command, grains: Path, tmp_path: Path) -> None:
+    corners = [[0, 0, 0], [9, 0, 0], [0, 9, 0], [0, 0, 9]]
+    faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]
+    trimesh.Trimesh(corners, faces, process=False).export(tmp_path / "four.stl")
+    said = command(
+        "coarsen", grains / "grain-a.stl", tmp_path / "four.stl", "-o", tmp_path / "c", "--faces", 20,
+        "--method", "quadric", "--target", "particle", "--json",
+    )  # fmt: skip
+    assert said.code == 1
+    assert [entry["name"] for entry in said.json["particles"]] == ["grain-a"]
+    assert [entry["name"] for entry in said.json["failed"]] == ["four"]
+    assert "four" in said.err
+    assert (tmp_path / "c" / "grain-a.stl").exists()
+
+
+def labels_of_two_balls() -> np.ndarray:
+    z, y, x = np.mgrid[:40, :44, :60]
+    volume = np.zeros(z.shape, dtype=np.uint16)
+    volume[(x - 15) ** 2 + (y - 21) ** 2 + (z - 20) ** 2 < 10**2] = 1
+    volume[(x - 42) ** 2 + (y - 21) ** 2 + (z - 20) ** 2 < 12**2] = 2
+    return volume
+
+
+def test_that_balls_come_out_of_a_label_volume_at_their_size(command, tmp_path: Path) -> None:
+    tifffile.imwrite(tmp_path / "labels.tif", labels_of_two_balls())
+    said = command("extract", tmp_path / "labels.tif", "-o", tmp_path / "x", "--voxel-size", 2.5)
+    assert said.code == 0
+    radii = [
+        (trimesh.load_mesh(path).volume * 3 / 4 / np.pi) ** (1 / 3)
+        for path in sorted((tmp_path / "x").glob("*.stl"))
+    ]
+    assert radii == pytest.approx([25.0, 30.0], rel=0.01)
+    header, *rows = (tmp_path / "x" / "particles.csv").read_text().splitlines()
+    assert "volume [um^3]" in header
+    assert len(rows) == 2
+
+
+def test_that_a_volume_without_voxel_size_asks_for_it(command, tmp_path: Path) -> None:
+    tifffile.imwrite(tmp_path / "labels.tif", labels_of_two_balls())
+    said = command("extract", tmp_path / "labels.tif", "-o", tmp_path / "x")
+    assert said.code == 1
+    assert "how large a voxel is" in said.err
+
+
+@pytest.mark.parametrize("content", [b"", b"II*\0\x08\0\0\0", b"no picture at all"])
+def test_that_a_broken_volume_is_one_sentence(command, tmp_path: Path, content: bytes) -> None:
+    (tmp_path / "labels.tif").write_bytes(content)
+    said = command("extract", tmp_path / "labels.tif", "-o", tmp_path / "x", "--voxel-size", 1)
+    assert said.code == 1
+    assert "Traceback" not in said.err
+    assert not (tmp_path / "x").exists()
+
+
+def test_that_a_study_of_l_max_leaves_tables_and_pictures(command, grains: Path, tmp_path: Path) -> None:
+    said = command("study", "lmax", grains, "-o", tmp_path / "s", "--degrees", "1,4", "--level", 2, "--json")
+    assert said.code == 0
+    suffixes = {Path(name).suffix for name in said.json["files"]}
+    assert suffixes == {".csv", ".json", ".png", ".svg"}
+    for name in said.json["files"]:
+        assert (tmp_path / "s" / name).stat().st_size > 0
