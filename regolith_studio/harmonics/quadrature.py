@@ -19,7 +19,7 @@ from regolith_studio.harmonics.legendre import legendre, legendre_slopes
 from regolith_studio.harmonics.reference import Ellipsoid
 from regolith_studio.harmonics.transform import evaluate_on_grid, ray_grid
 
-AREA_TOLERANCE = 1e-7
+AREA_TOLERANCE = 1e-6
 """Relative change between two grids at which the area counts as converged."""
 HIGHEST_DEGREE = 480
 

@@ -1,0 +1,139 @@
+"""Fits of shapes with closed forms, their warnings, and what is refused."""
+
+import pickle
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from regolith_studio.errors import GeometryError, InputError
+from regolith_studio.geometry.directions import icosphere
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.harmonics.fit import fit_harmonics
+from regolith_studio.harmonics.surface import reconstruct
+from regolith_studio.harmonics.visibility import hidden_surface_share
+
+
+def test_that_a_sphere_has_one_coefficient():
+    fit = fit_harmonics(icosphere(5).moved(shift=(3.0, 1.0, -2.0), scale=7.0), 10)
+    np.testing.assert_allclose(fit.star_point, [21.0, 7.0, -14.0], atol=1e-9)
+    assert fit.coefficients.mean_radius == pytest.approx(7.0, rel=1e-3)
+    assert np.abs(fit.coefficients.values[1:]).max() < 1e-3 * fit.coefficients.values[0]
+    assert fit.star_shaped
+    assert fit.warnings == ()
+
+
+def test_that_a_sphere_off_centre_has_the_coefficients_of_its_closed_form():
+    """r(t) = -d cos t + sqrt(1 - d^2 sin^2 t) about a point d above the centre."""
+    d = 0.3
+    fit = fit_harmonics(icosphere(5), 6, star_point=(0.0, 0.0, d))
+    for degree in range(5):
+        legendre = np.polynomial.legendre.Legendre.basis(degree)
+
+        def integrand(z, legendre=legendre):
+            return legendre(z) * (-d * z + np.sqrt(1 - d**2 * (1 - z**2)))
+
+        wanted = 2 * np.pi * np.sqrt((2 * degree + 1) / (4 * np.pi)) * quad(integrand, -1, 1)[0]
+        assert fit.coefficients.values[degree**2 + degree] == pytest.approx(wanted, abs=3e-3)
+
+
+def test_that_an_ellipsoid_of_revolution_has_the_mean_radius_of_its_closed_form():
+    """Mean over the sphere of (sin^2 t + cos^2 t / c^2)^-1/2 = asinh(e) / e with e^2 = 1 / c^2 - 1."""
+    sphere = icosphere(5)
+    fit = fit_harmonics(Mesh(sphere.vertices * [1.0, 1.0, 0.5], sphere.faces), 20)
+    e = np.sqrt(3.0)
+    assert fit.coefficients.mean_radius == pytest.approx(np.arcsinh(e) / e, rel=1e-3)
+
+
+def test_that_fits_do_not_depend_on_where_the_particle_lies_or_on_its_unit(ellipsoid):
+    body = ellipsoid(1.5, 1.2, 1.0)
+    here = fit_harmonics(body, 8, sampling_degree=20)
+    for scale in (1e-6, 1e6):
+        there = fit_harmonics(body.moved(shift=(5.0, -3.0, 2.0), scale=scale), 8, sampling_degree=20)
+        np.testing.assert_allclose(there.coefficients.values / scale, here.coefficients.values, atol=1e-9)
+
+
+@pytest.mark.parametrize("grid", ["glq", "dh2"])
+def test_that_both_grids_find_the_same_coefficients(rough, grid):
+    surface = reconstruct(rough(8), level=4)
+    fit = fit_harmonics(surface, 8, star_point=(0, 0, 0), sampling_degree=40, grid=grid)
+    error = np.linalg.norm(fit.coefficients.values - rough(8).values)
+    assert error < 1e-3 * np.linalg.norm(rough(8).values)
+
+
+def test_that_a_ring_is_fitted_from_inside_its_tube_with_a_warning(torus):
+    fit = fit_harmonics(torus(2.0, 0.8), 10, sampling_degree=30)
+    assert "centre of mass lies outside" in fit.warnings[0]
+    assert "hidden from the star point" in fit.warnings[1]
+    assert fit.hidden_surface_share > 0.1
+    assert fit.unrepresentable_volume_share > 0.1
+
+
+def test_that_the_shares_of_a_bracket_are_reported(bracket):
+    fit = fit_harmonics(bracket, 10, star_point=(0.5, 2.0, 0.5), sampling_degree=40)
+    assert fit.hidden_surface_share == hidden_surface_share(bracket, fit.star_point)
+    assert not fit.star_shaped
+    shadow = 0.5 * (2.0 + 1.5) * 1.0
+    assert fit.unrepresentable_volume_share == pytest.approx(shadow / 5.0, abs=0.02)
+
+
+def test_that_a_flat_grain_oscillates_and_an_ellipsoid_as_reference_calms_it(ellipsoid):
+    flat = ellipsoid(4.0, 3.0, 0.6, level=4)
+    about_sphere = fit_harmonics(flat, 10)
+    about_ellipsoid = fit_harmonics(flat, 10, reference="ellipsoid")
+    assert about_sphere.radial_error > 0.05
+    assert f"{about_sphere.radial_error:.1%}" in about_sphere.warnings[0]
+    assert "oscillates" in about_sphere.warnings[0]
+    assert about_ellipsoid.radial_error < about_sphere.radial_error / 5
+    assert about_ellipsoid.warnings == ()
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        ({"l_max": 31, "sampling_degree": 30}, r"l_max must be a whole number from 0 to 30, got 31\."),
+        ({"l_max": -1}, r"from 0 to 60, got -1"),
+        ({"star_point": (9.0, 0.0, 0.0)}, r"star point \(9, 0, 0\) lies outside"),
+        ({"star_point": "nose"}, r"centre_of_mass, kernel_centre, least_hidden_volume, got 'nose'"),
+        ({"rule": "mean"}, r"volume, outermost, first, got 'mean'"),
+        ({"reference": "cube"}, r"sphere, ellipsoid, got 'cube'"),
+        ({"grid": "hexagons"}, r"glq, dh2, got 'hexagons'"),
+    ],
+)
+def test_that_bad_settings_are_refused_in_one_sentence(ellipsoid, change, sentence):
+    with pytest.raises(InputError, match=sentence):
+        fit_harmonics(ellipsoid(2.0, 1.0, 1.0, level=1), **({"l_max": 4} | change))
+
+
+def test_that_an_open_mesh_is_refused(ellipsoid):
+    body = ellipsoid(2.0, 1.0, 1.0, level=1)
+    with pytest.raises(GeometryError, match=r"The mesh is open"):
+        fit_harmonics(Mesh(body.vertices, body.faces[:-1]), 4)
+
+
+def test_that_star_points_are_chosen_by_name(bracket):
+    fit = fit_harmonics(bracket, 4, star_point="kernel_centre", sampling_degree=10)
+    np.testing.assert_allclose(fit.star_point, 0.5, atol=1e-9)
+    assert fit.star_shaped
+
+
+def test_that_a_fit_survives_pickling(ellipsoid):
+    fit = fit_harmonics(ellipsoid(2.0, 1.0, 0.5, level=1), 4, sampling_degree=8, reference="ellipsoid")
+    copy = pickle.loads(pickle.dumps(fit))
+    np.testing.assert_array_equal(copy.coefficients.values, fit.coefficients.values)
+    np.testing.assert_array_equal(copy.reference.semi_axes, fit.reference.semi_axes)
+    assert copy.warnings == fit.warnings
+
+
+@pytest.mark.real_data
+@pytest.mark.parametrize("name", ["cement140-anm-00012", "cement140-anm-00142"])
+def test_that_fits_of_voxel_grains_keep_their_volume(real_data, name):
+    import trimesh
+
+    loaded = trimesh.load(real_data(f"cement140/voxel/{name}.stl"))
+    grain = Mesh(loaded.vertices, loaded.faces)
+    fit = fit_harmonics(grain)
+    assert 0.0 < fit.hidden_surface_share < 0.05
+    assert fit.unrepresentable_volume_share < 0.001
+    assert reconstruct(fit, 30).volume == pytest.approx(grain.volume, rel=1e-3)
+    assert reconstruct(fit, 10).volume == pytest.approx(grain.volume, rel=6e-3)
