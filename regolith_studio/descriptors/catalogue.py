@@ -11,6 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from regolith_studio.descriptors.facts import ShapeFacts
+from regolith_studio.geometry.feret import feret_max, feret_min
+from regolith_studio.geometry.mean_incidence import mean_incidence
 
 __all__ = ["CATALOGUE", "DEFAULT_KEYS", "LOSS_KEYS", "Descriptor", "ShapeFacts"]
 
@@ -121,6 +123,31 @@ def krumbein_sphericity(facts: ShapeFacts) -> float:
     )
 
 
+def max_feret_diameter(facts: ShapeFacts) -> float:
+    """Largest distance between two points of the particle."""
+    return feret_max(facts.hull)
+
+
+def min_feret_diameter(facts: ShapeFacts) -> float:
+    """Smallest distance between two parallel planes that hold the particle."""
+    return feret_min(facts.hull)
+
+
+def roundness(facts: ShapeFacts) -> float:
+    """Mean over the surface of |n . x| / |x| about the centroid, after Bullard and Garboczi (2013)."""
+    return mean_incidence(facts.mesh, facts.mesh.centroid)
+
+
+def angularity(facts: ShapeFacts) -> float:
+    """Area of the hull over that of its ellipsoid: Kuo and Freeman's (2000) index, areas for perimeters."""
+    return facts.hull.surface_area / facts.hull_ellipsoid_area
+
+
+def roughness(facts: ShapeFacts) -> float:
+    """Area of the surface over that of the hull: Kuo and Freeman's (2000) index, areas for perimeters."""
+    return facts.surface_area / facts.hull.surface_area
+
+
 def principal_moment_min(facts: ShapeFacts) -> float:
     """Smallest principal moment of inertia at density 1."""
     return float(facts.principal_moments[0])
@@ -192,6 +219,40 @@ _ROWS = (
         "(D_min D_int / D_max²)^(1/3) (Krumbein)",
         krumbein_sphericity,
     ),
+    Descriptor(
+        "max_feret_diameter",
+        "F_max",
+        "Largest Feret diameter",
+        1,
+        "greatest distance of two points",
+        max_feret_diameter,
+    ),
+    Descriptor(
+        "min_feret_diameter",
+        "F_min",
+        "Smallest Feret diameter",
+        1,
+        "least distance of two parallel tangent planes",
+        min_feret_diameter,
+        costly=True,
+    ),
+    Descriptor(
+        "roundness",
+        "R",
+        "Roundness",
+        0,
+        "mean of |n·x|/|x| over the surface (Bullard and Garboczi)",
+        roundness,
+    ),
+    Descriptor(
+        "angularity",
+        "AI",
+        "Angularity",
+        0,
+        "A of the hull / A of its ellipsoid (after Kuo and Freeman)",
+        angularity,
+    ),
+    Descriptor("roughness", "RI", "Roughness", 0, "A / A of the hull (after Kuo and Freeman)", roughness),
     Descriptor(
         "principal_moment_min",
         "I_1",

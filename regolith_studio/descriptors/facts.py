@@ -8,6 +8,7 @@ import numpy as np
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.geometry.ellipsoid import ellipsoid_area, equal_ellipsoid
 from regolith_studio.geometry.heuristic_box import heuristic_box
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.oriented_box import OrientedBox, minimum_volume_box
@@ -64,7 +65,13 @@ class ShapeFacts:
     @cached_property
     def principal_moments(self) -> FloatArray:
         """Principal moments of inertia at density 1, rising, shape (3,)."""
-        return np.linalg.eigvalsh(self.mesh.inertia / self.volume ** (5 / 3)) * self.volume ** (5 / 3)
+        moments = np.linalg.eigvalsh(self.mesh.normalised().inertia)
+        return np.asarray(moments * self.volume ** (5 / 3))
+
+    @cached_property
+    def hull_ellipsoid_area(self) -> float:
+        """Surface area of the ellipsoid with the volume and the ratios of second moments of the hull."""
+        return ellipsoid_area(equal_ellipsoid(self.hull))
 
 
 def _checked_volume(mesh: Mesh) -> float:
