@@ -125,7 +125,9 @@ def _count_at(data: bytes, place: int, kind: str, element: Element) -> int:
     count = int.from_bytes(
         data[place : place + width], "little" if kind[0] == "<" else "big", signed=kind[1] == "i"
     )
-    if count < 0 or place + count > len(data):
+    if place + width + count > len(data):
+        raise _cut_short(element)
+    if count < 0:
         raise FileError(f"is not a proper PLY: a row of “{element.name}” has a list of {count:,} values.")
     return count
 

@@ -1,6 +1,8 @@
 """A unit cube, files of it in every format, and a check that a refusal is one plain sentence."""
 
+import io
 import struct
+import zipfile
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -63,6 +65,16 @@ class Cube:
             "property float x\nproperty float y\nproperty float z\n"
             "element face 6\nproperty list uchar int vertex_indices\nend_header\n"
         ).encode()
+
+    def three_mf(self) -> bytes:
+        points = "".join('<vertex x="{:g}" y="{:g}" z="{:g}"/>'.format(*corner) for corner in CORNERS)
+        faces = "".join('<triangle v1="{}" v2="{}" v3="{}"/>'.format(*face) for face in TRIANGLES)
+        model = f"<vertices>{points}</vertices><triangles>{faces}</triangles>"
+        model = f'<resources><object id="1"><mesh>{model}</mesh></object></resources>'
+        data = io.BytesIO()
+        with zipfile.ZipFile(data, "w") as archive:
+            archive.writestr("3D/3dmodel.model", f'<model>{model}<build><item objectid="1"/></build></model>')
+        return data.getvalue()
 
     def files(self) -> dict[str, bytes]:
         """One well-formed file for each way of writing, by its name."""
