@@ -26,14 +26,14 @@ SAMPLE_ANGLE = float(np.radians(13.0))
 """Step along the arcs that misses few boxes, in radians."""
 DENSE_ANGLE = float(np.radians(2.0))
 """Step that is fine enough for a verdict, in radians."""
-PROMISING = 1.15
+PROMISING = 1.12
 """Normals whose box is larger than this many times the least are not looked into."""
 SLACK = 1.02
 NO_ARC = 1e-7
 BESIDE = 1e-7
 NO_FACET = 1e-13
-NEAR = float(np.cos(np.radians(10.0)))
-WINDOW = float(np.radians(10.0))
+NEAR = float(np.cos(np.radians(7.0)))
+WINDOW = float(np.radians(7.0))
 MOST = 64
 """Largest number of boxes returned."""
 STATIONARY, ON_FACET = -1, -2
@@ -111,7 +111,7 @@ def local_boxes(solid: Solid, margin: float, sample_angle: float, near: FloatArr
     sample_angle
         Largest step between samples along an arc, in radians.
     near
-        Frames of boxes, shape (k, 3, 3): only boxes within about 10 degrees of one of them are looked for.
+        Frames of boxes, shape (k, 3, 3): only boxes within about 7 degrees of one of them are looked for.
         None (k = 0): everywhere.
     """
     boxes = Boxes(np.empty(MOST), np.empty((MOST, 3, 3)), np.empty((MOST, 3)), np.empty((MOST, 11), np.int64))
@@ -147,8 +147,7 @@ def local_boxes(solid: Solid, margin: float, sample_angle: float, near: FloatArr
                 best = min(best, volume)
                 if slot != ON_FACET and volume <= best * (1.0 + margin):
                     count = kept(count, boxes, volume, touch, slot, arc.start, arc.end, partner)
-            one.number[:] = two.number
-            one.piece[:] = two.piece
+            one, two = two, one
     for f in range(n):
         if (
             facets.resting[f] == 1
@@ -157,11 +156,41 @@ def local_boxes(solid: Solid, margin: float, sample_angle: float, near: FloatArr
         ):
             p, q, partner = corner_of(f, solid.edges)
             if p >= 0:
-                touch.frame[:], touch.extents[:] = facets.frame[f], facets.extents[f]
-                touch.piece[:] = facets.piece[f]
+                recalled(facets, f, touch)
                 touch.piece[0] = p
                 count = kept(count, boxes, facets.volume[f], touch, 0, p, q, partner)
     return ranked(boxes, count, best * (1.0 + margin))
+
+
+@kernel
+def copied(source: Sample, target: Sample) -> None:
+    """Copy a sample."""
+    for c in range(3):
+        target.number[c] = source.number[c]
+    for c in range(7):
+        target.piece[c] = source.piece[c]
+
+
+@kernel
+def remembered(facets: OnFacets, f: int, touch: Touch) -> None:
+    """Copy a box into the memory of facet f."""
+    for a in range(3):
+        facets.extents[f, a] = touch.extents[a]
+        for c in range(3):
+            facets.frame[f, a, c] = touch.frame[a, c]
+    for c in range(7):
+        facets.piece[f, c] = touch.piece[c]
+
+
+@kernel
+def recalled(facets: OnFacets, f: int, touch: Touch) -> None:
+    """Copy the box of facet f into `touch`."""
+    for a in range(3):
+        touch.extents[a] = facets.extents[f, a]
+        for c in range(3):
+            touch.frame[a, c] = facets.frame[f, a, c]
+    for c in range(7):
+        touch.piece[c] = facets.piece[f, c]
 
 
 @kernel
@@ -171,7 +200,7 @@ def box_on_facet(
     """Volume of the box with one side on facet f; it is remembered."""
     if np.isnan(facets.volume[f]):
         facets.volume[f] = box_at(solid.normals[f], solid, PROMISING * best, scratch, touch)
-        facets.frame[f], facets.extents[f], facets.piece[f] = touch.frame, touch.extents, touch.piece
+        remembered(facets, f, touch)
     return facets.volume[f]  # type: ignore[no-any-return]
 
 
@@ -234,7 +263,8 @@ def box_on_arc(
         touch.piece[0] = arc.start
         sample.number[1] = np.log(volume)
         sample.number[2] = slope_at(turn, solid, touch, scratch.work)
-        sample.piece[:] = touch.piece
+        for c in range(7):
+            sample.piece[c] = touch.piece[c]
     return volume
 
 
@@ -253,9 +283,10 @@ def sampled(  # type: ignore[no-untyped-def]
         turn = scratch.work[5]
         for c in range(3):
             turn[c] = np.cos(angle) * arc.across[c] - np.sin(angle) * arc.one[c]
-        touch.frame[:], touch.extents[:], touch.piece[:] = facets.frame[f], facets.extents[f], facets.piece[f]
+        recalled(facets, f, touch)
         touch.piece[0] = arc.start
-        sample.piece[:] = touch.piece
+        for c in range(7):
+            sample.piece[c] = touch.piece[c]
         sample.number[1] = np.log(volume)
         sample.number[2] = slope_at(turn, solid, touch, scratch.work)
         away = sample.number[2] if angle <= 0.0 else -sample.number[2]
@@ -310,7 +341,9 @@ def arc_minimum(
         if slot == STATIONARY:
             angle = low.number[0] - low.number[2] * gap / (high.number[2] - low.number[2])
         elif slot >= 0:
-            tie = tie_angle(arc, slot, low.piece[slot], high.piece[slot], low, solid.vertices)
+            tie = tie_angle(
+                arc, slot, low.piece[slot], high.piece[slot], low, solid.vertices, touch, scratch.work
+            )
             angle = tie - BESIDE if low.number[0] < tie - 1.5 * BESIDE else tie + BESIDE
         else:
             angle = meeting(low, high)
@@ -319,8 +352,7 @@ def arc_minimum(
             angle = 0.5 * (low.number[0] + high.number[0])
         volume = box_on_arc(arc, angle, solid, np.inf, scratch, touch, here)
         end = low if here.number[2] < 0.0 else high
-        end.number[:] = here.number
-        end.piece[:] = here.piece
+        copied(here, end)
         gap = high.number[0] - low.number[0]
         if abs(here.number[2]) < 1e-8 or gap < 3.0 * BESIDE:
             break
@@ -349,10 +381,16 @@ def differing_slot(one: IntArray, two: IntArray) -> int:
 
 
 @kernel
-def tie_angle(arc: Arc, slot: int, i: int, j: int, sample: Sample, vertices: FloatArray) -> float:
-    """Angle near a sample at which vertices i and j lie in one side of the box, by the secant method."""
-    axis, frame = np.empty(3), np.empty((3, 3))
-    edge = vertices[sample.piece[3]] - vertices[sample.piece[2]]
+def tie_angle(
+    arc: Arc, slot: int, i: int, j: int, sample: Sample, vertices: FloatArray, touch: Touch, work: FloatArray
+) -> float:
+    """Angle near a sample at which vertices i and j lie in one side of the box, by the secant method.
+
+    The frame of `touch` and `work` (6, 3) are overwritten.
+    """
+    axis, edge, frame = work[4], work[3], touch.frame
+    for c in range(3):
+        edge[c] = vertices[sample.piece[3], c] - vertices[sample.piece[2], c]
     row = 0 if slot == 1 else (1 if slot == 4 else 2)
     before, angle, last = 0.0, sample.number[0], 0.0
     for k in range(8):
@@ -365,7 +403,7 @@ def tie_angle(arc: Arc, slot: int, i: int, j: int, sample: Sample, vertices: Flo
         if k == 0:
             last, before, angle = angle, residual, angle + 1e-3
             continue
-        if residual == before or abs(residual) < 1e-15:
+        if residual == before or abs(residual) < 1e-13:
             break
         step = -residual * (angle - last) / (residual - before)
         last, before = angle, residual

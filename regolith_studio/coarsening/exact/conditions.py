@@ -26,7 +26,7 @@ AIM = 2e-4
 """Where they are not, they are pushed to this share."""
 CLOSE = 2e-3
 """Other boxes within this share take part in the steps."""
-WATCHED = 2e-2
+WATCHED = 6e-3
 """Other boxes within this share are looked for at every step."""
 MOST_RIVALS = 8
 ALIKE = 0.985
