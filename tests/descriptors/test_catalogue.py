@@ -1,0 +1,101 @@
+"""Every descriptor: its value for known solids, how it scales, and that rotation leaves it alone."""
+
+import numpy as np
+import pytest
+from scipy.integrate import dblquad
+
+from regolith_studio.descriptors.catalogue import CATALOGUE, DEFAULT_KEYS, LOSS_KEYS, ShapeFacts
+from regolith_studio.geometry import Mesh
+from regolith_studio.geometry.directions import icosphere
+from tests.geometry.solids import cuboid, random_polyhedron, rotation, rough_stone
+
+SOLIDS = {
+    "stone": rough_stone(3, level=3),
+    "cut stone": rough_stone(8, level=2, roughness=0.4),
+    "polyhedron": random_polyhedron(5, n_faces=16, stretch=0.4),
+}
+
+
+def value(key: str, mesh: Mesh) -> float:
+    return CATALOGUE[key].compute(ShapeFacts(mesh))
+
+
+@pytest.mark.parametrize("scale", [1e-9, 1e-3, 1e9])
+@pytest.mark.parametrize("name", SOLIDS)
+@pytest.mark.parametrize("key", CATALOGUE)
+def test_that_a_descriptor_scales_by_its_dimension_and_ignores_rotation(
+    key: str, name: str, scale: float
+) -> None:
+    solid = SOLIDS[name]
+    moved = solid.moved(rotation=rotation(len(key)), shift=(0.7, -0.4, 0.2), scale=scale)
+    wanted = value(key, solid) * scale ** CATALOGUE[key].dimension
+    assert value(key, moved) == pytest.approx(wanted, rel=1e-6)
+
+
+A, B, C = 3.0, 2.0, 1.0
+INCIDENCE = sum(
+    2 * dblquad(lambda x, y, h=h: h / np.sqrt(h * h + x * x + y * y), -p, p, -q, q)[0]
+    for h, p, q in ((C / 2, A / 2, B / 2), (B / 2, A / 2, C / 2), (A / 2, B / 2, C / 2))
+)
+CUBOID = {
+    "volume": 6.0,
+    "equivalent_radius": (18.0 / (4.0 * np.pi)) ** (1 / 3),
+    "surface_area": 22.0,
+    "sphericity": np.pi ** (1 / 3) * 36.0 ** (2 / 3) / 22.0,
+    "min_diameter": C,
+    "max_diameter": A,
+    "aspect_ratio": A / C,
+    "convex_hull_volume": 6.0,
+    "intermediate_diameter": B,
+    "convexity": 1.0,
+    "elongation": B / A,
+    "flatness": C / B,
+    "corey_shape_factor": C / np.sqrt(A * B),
+    "krumbein_sphericity": (B * C / A**2) ** (1 / 3),
+    "max_feret_diameter": np.sqrt(14.0),
+    "min_feret_diameter": C,
+    "roundness": INCIDENCE / 22.0,
+    "roughness": 1.0,
+    "principal_moment_min": 6.0 * (B**2 + C**2) / 12.0,
+    "principal_moment_mid": 6.0 * (A**2 + C**2) / 12.0,
+    "principal_moment_max": 6.0 * (A**2 + B**2) / 12.0,
+}
+
+
+@pytest.mark.parametrize("key", CUBOID)
+def test_that_a_cuboid_has_the_descriptor_of_the_closed_form(key: str) -> None:
+    assert value(key, cuboid(A, B, C).moved(rotation=rotation(2))) == pytest.approx(CUBOID[key], rel=1e-9)
+
+
+def test_that_the_angularity_of_a_cube_is_its_area_over_that_of_the_equal_ball() -> None:
+    ball = 4.0 * np.pi * (3.0 / (4.0 * np.pi)) ** (2 / 3)
+    assert value("angularity", cuboid(1.0, 1.0, 1.0)) == pytest.approx(6.0 / ball, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    "key", ["sphericity", "convexity", "elongation", "flatness", "roundness", "angularity"]
+)
+def test_that_a_ball_has_one_for_every_measure_of_form(key: str) -> None:
+    assert value(key, icosphere(4)) == pytest.approx(1.0, abs=1e-3)
+
+
+def test_that_the_first_rows_and_the_loss_are_those_of_the_paper() -> None:
+    assert list(CATALOGUE)[:8] == [
+        "volume",
+        "equivalent_radius",
+        "surface_area",
+        "sphericity",
+        "min_diameter",
+        "max_diameter",
+        "aspect_ratio",
+        "convex_hull_volume",
+    ]
+    assert set(LOSS_KEYS) == set(list(CATALOGUE)[:8]) - {"equivalent_radius", "surface_area"}
+
+
+def test_that_every_row_can_be_shown() -> None:
+    for key, row in CATALOGUE.items():
+        assert row.key == key
+        assert all([row.symbol, row.label, row.formula])
+        assert row.label[0].isupper()
+    assert [key for key in CATALOGUE if key not in DEFAULT_KEYS] == ["min_feret_diameter"]
