@@ -1,0 +1,71 @@
+"""Half-spaces: normalised, locked, and measured from the origin."""
+
+import pickle
+
+import numpy as np
+import pytest
+from scipy.spatial import HalfspaceIntersection
+
+from regolith_studio.errors import GeometryError
+from regolith_studio.geometry import HalfSpaces
+from regolith_studio.geometry.directions import fibonacci_directions
+
+CUBE = np.vstack([np.eye(3), -np.eye(3)])
+
+
+def test_that_normals_are_normalised_and_offsets_kept() -> None:
+    planes = HalfSpaces(3.0 * CUBE, np.arange(1.0, 7.0))
+    assert planes.normals == pytest.approx(CUBE)
+    assert planes.offsets == pytest.approx(np.arange(1.0, 7.0))
+    assert len(planes) == 6
+
+
+def test_that_foot_points_define_the_planes_of_equation_6() -> None:
+    feet = np.random.default_rng(0).normal(size=(12, 3))
+    planes = HalfSpaces.from_points(feet)
+    assert planes.points == pytest.approx(feet)
+    assert np.einsum("ij,ij->i", planes.normals, feet) == pytest.approx(planes.offsets)
+
+
+def test_that_equations_have_the_sign_of_scipy() -> None:
+    planes = HalfSpaces(CUBE, np.arange(1.0, 7.0))
+    corners = HalfspaceIntersection(planes.equations, np.zeros(3)).intersections
+    assert corners.max(axis=0) == pytest.approx([1.0, 2.0, 3.0])
+    assert corners.min(axis=0) == pytest.approx([-4.0, -5.0, -6.0])
+
+
+def test_that_radii_of_a_cube_are_those_of_its_slabs() -> None:
+    directions = fibonacci_directions(500)
+    wanted = 1.0 / np.abs(directions).max(axis=1)
+    assert HalfSpaces(CUBE, np.ones(6)).radii(directions) == pytest.approx(wanted)
+
+
+def test_that_radii_are_infinite_where_no_plane_is_met() -> None:
+    planes = HalfSpaces(CUBE[:5], np.ones(5))
+    assert planes.radii(np.array([[0.0, 0.0, -1.0], [0.0, 0.0, 1.0]])) == pytest.approx([np.inf, 1.0])
+
+
+def test_that_scaling_multiplies_the_offsets() -> None:
+    assert HalfSpaces(CUBE, np.ones(6)).scaled(2.5).offsets == pytest.approx(2.5)
+
+
+def test_that_planes_without_the_origin_inside_are_refused() -> None:
+    with pytest.raises(GeometryError, match="smallest offset"):
+        HalfSpaces(CUBE, [1.0, 1.0, 0.0, 1.0, 1.0, 1.0])
+    with pytest.raises(GeometryError, match="origin"):
+        HalfSpaces.from_points(np.zeros((1, 3)))
+    with pytest.raises(ValueError, match="vanish"):
+        HalfSpaces(np.zeros((1, 3)), [1.0])
+    with pytest.raises(ValueError, match="shape"):
+        HalfSpaces(CUBE, np.ones(5))
+
+
+def test_that_pickling_keeps_the_locks_and_the_callers_arrays_stay_writeable() -> None:
+    normals, offsets = CUBE.copy(), np.ones(6)
+    planes = HalfSpaces(normals, offsets)
+    again = pickle.loads(pickle.dumps(planes))
+    normals[0] = offsets[0] = 7.0
+    assert planes.offsets[0] == again.offsets[0] == 1.0
+    assert np.array_equal(again.normals, planes.normals)
+    assert not again.normals.flags.writeable
+    assert not again.offsets.flags.writeable
