@@ -251,7 +251,7 @@ def _fill(draft: _Draft) -> _Draft:
     share = holes.area / whole if whole > 0.0 else 1.0
     if share > LARGEST_FILLED_SHARE:
         raise GeometryError(
-            f"The mesh is an open sheet, not a body: {_percent(share)} of a closed surface are missing."
+            f"The mesh is an open sheet, not a body: to close it would take {_percent(share)} of the surface."
         )
     text = f"Filled {_count(holes.count, 'hole', 'holes')} with {_percent(share)} of the surface."
     return _Draft(holes.vertices, holes.faces, (*draft.actions, text), holes.area)

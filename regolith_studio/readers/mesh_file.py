@@ -67,7 +67,8 @@ def _checked(parsed: ParsedMesh) -> ParsedMesh:
         raise FileError("holds an empty mesh: it has no vertices.")
     if not len(faces):
         raise FileError(
-            f"is a point cloud: it has {len(vertices):,} points and no faces; reconstruct a surface first."
+            f"is a point cloud: its number of points is {len(vertices):,}, and it has no faces; "
+            "reconstruct a surface first."
         )
     if faces.min() < 0 or faces.max() >= len(vertices):
         raise FileError(f"has faces that point to vertices beyond its {len(vertices):,}.")
