@@ -5,10 +5,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from regolith_studio.errors import FileError, RegolithError
+from regolith_studio.errors import FileError, GeometryError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.events import Progress, Started, Steps
-from regolith_studio.readers.registry import read_particles
+from regolith_studio.readers.registry import MeshFile, mesh_files, read_file
 from regolith_studio.readers.sample import sample_particles
 
 
@@ -36,24 +36,30 @@ def load_particles(paths: Sequence[Path], unit: str = "um", repair: bool = True)
     FileError
         If nothing could be read: the first sentence.
     """
-    yield Started("Reading particles", len(paths))
-    particles: list[Particle] = []
     problems: list[Problem] = []
-
-    def note(path: Path, sentence: str) -> None:
-        problems.append(Problem(str(path), sentence))
-
-    for done, path in enumerate(paths, start=1):
-        noted = len(problems)
+    particles: list[Particle] = []
+    files = _found(paths, problems)
+    yield Started("Reading particles", len(files))
+    for done, file in enumerate(files, start=1):
         try:
-            particles += read_particles([path], unit=unit, repair=repair, on_problem=note)
-        except RegolithError as error:
-            if len(problems) == noted:
-                note(path, str(error))
-        yield Progress(done, len(paths), path.name)
+            particles.append(read_file(file, unit, repair))
+        except (FileError, GeometryError) as error:
+            problems.append(Problem(str(file.path), str(error)))
+        yield Progress(done, len(files), file.path.name)
     if not particles:
         raise FileError(problems[0].sentence if problems else "There is no file to read.")
     return Loaded(uniquely_named(particles), tuple(problems))
+
+
+def _found(paths: Sequence[Path], problems: list[Problem]) -> list[MeshFile]:
+    """The files behind `paths`; a folder without meshes is a problem of its own."""
+    try:
+        return mesh_files(paths)
+    except FileError as error:
+        if len(paths) == 1:
+            problems.append(Problem(str(paths[0]), str(error)))
+            return []
+    return [file for path in paths for file in _found([path], problems)]
 
 
 def load_sample() -> Steps:
@@ -63,13 +69,16 @@ def load_sample() -> Steps:
 
 
 def uniquely_named(particles: Sequence[Particle], taken: Sequence[str] = ()) -> tuple[Particle, ...]:
-    """The particles, those whose name has been `taken` or came before with a number behind it."""
+    """The particles; a name that has been `taken`, or came before, gets the group, then a number."""
     used, renamed = set(taken), []
     for particle in particles:
         name, number = particle.name, 1
+        if name in used and particle.group:
+            name = f"{particle.group.replace('/', '_')}_{name}"
+        base = name
         while name in used:
             number += 1
-            name = f"{particle.name}_{number}"
+            name = f"{base}_{number}"
         used.add(name)
         renamed.append(dataclasses.replace(particle, name=name))
     return tuple(renamed)

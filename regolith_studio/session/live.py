@@ -1,6 +1,6 @@
 """Keeps the results of the selected particle in step with the choices."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, Protocol
 
 from regolith_studio.descriptors.comparison import relative_errors
@@ -15,6 +15,7 @@ from regolith_studio.session.tasks import Reactions, TaskBoard
 if TYPE_CHECKING:
     from regolith_studio.coarsening.progress import CoarseningProgress
     from regolith_studio.coarsening.result import Coarsened
+    from regolith_studio.descriptors.describe import Descriptors
     from regolith_studio.harmonics.fit import HarmonicFit
 
 _TITLES = {
@@ -23,17 +24,13 @@ _TITLES = {
     Kind.DESCRIPTORS: "Measuring the fit",
     Kind.COARSENING: "Coarsening",
 }
-_EMPTY: dict[str, Any] = {
-    "fit": None,
-    "surface": None,
-    "particle_descriptors": None,
-    "fit_descriptors": None,
-    "fit_errors": {},
-    "best": None,
-    "coarsening_progress": None,
-    "coarsened": None,
-    "loss_history": (),
+_EMPTY: Mapping[Kind, Mapping[str, Any]] = {
+    Kind.FIT: {"fit": None},
+    Kind.SURFACE: {"surface": None},
+    Kind.DESCRIPTORS: {"particle_descriptors": None, "fit_descriptors": None, "fit_errors": {}},
+    Kind.COARSENING: {"best": None, "coarsening_progress": None, "coarsened": None, "loss_history": ()},
 }
+"""What the results hold of each kind while there is nothing to show."""
 
 
 class Owner(Protocol):
@@ -57,28 +54,30 @@ class LiveResults:
         self._owner, self._board = owner, board
         self._due: set[Kind] = set()
         self._fits: dict[str, HarmonicFit] = {}
+        self._measured: dict[tuple[str, str], Descriptors] = {}
 
     def forget(self) -> None:
-        """Drop the fits that are kept, because ids have got another meaning."""
+        """Drop what is kept of each particle, because ids have got another meaning."""
         self._fits.clear()
+        self._measured.clear()
 
     def follow(self, before: Choices | None, after: Choices) -> None:
         """Start, or start anew, what the change makes necessary."""
         requests = plan(before, after, self._fits.keys())
         if before is None or before.selected != after.selected:
-            for kind in LIVE:
-                self._board.stop_lane(kind)
-            self._owner.update(
-                "fit",
-                "surface",
-                "descriptors",
-                "coarsening",
-                **_EMPTY | {"fit": self._fits.get(after.selected)},
-            )
+            self._show_nothing(*LIVE)
+            self._owner.update("fit", fit=self._fits.get(after.selected))
         for request in requests:
             self._board.stop_lane(request.kind)
         self._due = {request.kind for request in requests} | (self._due if after.selected else set())
+        if self._owner.results.fit is None and not self._is_open(Kind.FIT):
+            self._drop_dependents(Kind.FIT)
         self._advance()
+
+    def _show_nothing(self, *kinds: Kind) -> None:
+        for kind in kinds:
+            self._board.stop_lane(kind)
+            self._owner.update(kind.value, **_EMPTY[kind])
 
     def _advance(self) -> None:
         for kind in LIVE:
@@ -98,15 +97,18 @@ class LiveResults:
 
         def failed(failure: Failed) -> None:
             self._drop_dependents(kind)
+            self._show_nothing(kind)
             self._owner.tell_failure(_TITLES[kind])(failure)
 
         reactions = Reactions(finished, partial, failed, lambda: self._drop_dependents(kind))
         self._board.start(kind, _TITLES[kind], job, reactions)
 
     def _drop_dependents(self, kind: Kind) -> None:
+        """Give up what is made from `kind`, and show nothing rather than something old."""
         for other in LIVE:
             if kind in needs(other, self._owner.choices) and other in self._due:
                 self._due.discard(other)
+                self._show_nothing(other)
                 self._drop_dependents(other)
 
     def _entry(self) -> ParticleEntry:
@@ -129,16 +131,20 @@ class LiveResults:
         return job, lambda mesh: self._owner.update("surface", surface=mesh), _ignore
 
     def _descriptors(self) -> "_Work":
-        meshes = {"particle": self._entry().particle.mesh, "fit": self._owner.results.surface}
+        entry, metric = self._entry(), self._owner.choices.box_metric
+        meshes = {"fit": self._owner.results.surface}
+        if (entry.id, metric) not in self._measured:
+            meshes["particle"] = entry.particle.mesh
 
-        def keep(described: dict[str, Any]) -> None:
-            particle, fit = described["particle"], described["fit"]
+        def keep(described: "dict[str, Descriptors]") -> None:
+            fit = described["fit"]
+            particle = self._measured.setdefault((entry.id, metric), described.get("particle", fit))
             errors = relative_errors(particle, fit)
             self._owner.update(
                 "descriptors", particle_descriptors=particle, fit_descriptors=fit, fit_errors=errors
             )
 
-        return Job(describe_meshes, (meshes, self._owner.choices.box_metric)), keep, _ignore
+        return Job(describe_meshes, (meshes, metric)), keep, _ignore
 
     def _coarsening(self) -> "_Work":
         choices, entry = self._owner.choices, self._entry()

@@ -268,3 +268,47 @@ def test_that_a_cancelled_task_leaves_the_session_usable(desk: Desk, grains: Pat
     session.choose(l_max=3)
     desk.run_until(lambda: not session.tasks)
     assert session.results.coarsened is not None
+
+
+def test_that_a_fit_that_cannot_be_made_shows_nothing_and_is_told_once(
+    opened: Session, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(*_: object, **__: object) -> None:
+        raise InputError("The grain is too shy.")
+
+    failures: list[str] = []
+    opened.topics.failed.connect(lambda failure: failures.append(failure.sentence))
+    monkeypatch.setattr("regolith_studio.jobs.fitting.fit_harmonics", refuse)
+    opened.select("grain-1")
+    results = opened.results
+    assert failures == ["The grain is too shy."]
+    assert (results.fit, results.surface, results.best) == (None, None, None)
+    opened.choose(l_max=7)
+    assert len(failures) == 1
+    opened.choose(target="particle")
+    assert opened.results.coarsened is not None
+
+
+def test_that_a_degree_without_a_solid_clears_the_old_picture(
+    opened: Session, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(*_: object, **__: object) -> None:
+        raise InputError("The expansion has a negative radius.")
+
+    monkeypatch.setattr("regolith_studio.jobs.fitting.reconstruct", refuse)
+    opened.choose(l_max=7)
+    results = opened.results
+    assert results.fit is not None
+    assert (results.surface, results.fit_descriptors, results.best) == (None, None, None)
+    monkeypatch.undo()
+    opened.choose(l_max=6)
+    assert opened.results.surface is not None
+    assert opened.results.coarsened is not None
+
+
+def test_that_the_particle_is_measured_once_whatever_l_max(opened: Session) -> None:
+    before = opened.results.particle_descriptors
+    opened.choose(l_max=2)
+    assert opened.results.particle_descriptors is before
+    opened.choose(box_metric="trimesh")
+    assert opened.results.particle_descriptors is not before
