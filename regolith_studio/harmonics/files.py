@@ -37,14 +37,16 @@ def fits_document(names: Sequence[str], fits: Sequence[HarmonicFit], unit: str =
         "version": 1,
         "convention": CONVENTION,
         "unit": unit,
-        "l_max": min((fit.l_max for fit in fits), default=0),
-        "particles": [_entry(name, fit) for name, fit in zip(names, fits, strict=True)],
+        "l_max": _common_degree(fits),
+        "particles": [
+            _entry(name, fit.truncated(_common_degree(fits))) for name, fit in zip(names, fits, strict=True)
+        ],
     }
 
 
 def fits_arrays(names: Sequence[str], fits: Sequence[HarmonicFit]) -> dict[str, NDArray[Any]]:
     """What the NPZ file holds: names (n,), coefficients (n, (l_max + 1)^2), star_points (n, 3)."""
-    l_max = min((fit.l_max for fit in fits), default=0)
+    l_max = _common_degree(fits)
     rows = [fit.coefficients.truncated(l_max).values for fit in fits]
     return {
         "names": np.array(list(names), dtype=np.str_),
@@ -73,6 +75,10 @@ def fits_from(document: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -
     }
 
 
+def _common_degree(fits: Sequence[HarmonicFit]) -> int:
+    return min((fit.l_max for fit in fits), default=0)
+
+
 def _entry(name: str, fit: HarmonicFit) -> dict[str, Any]:
     ellipsoid = fit.reference
     return {
@@ -88,7 +94,7 @@ def _entry(name: str, fit: HarmonicFit) -> dict[str, Any]:
         "reference": None
         if ellipsoid is None
         else {"axes": ellipsoid.axes.tolist(), "semi_axes": ellipsoid.semi_axes.tolist()},
-        "warnings": list(fit.warnings),
+        "notes": list(fit.notes),
     }
 
 
@@ -104,5 +110,5 @@ def _fit(entry: Mapping[str, Any], row: NDArray[Any], point: NDArray[Any]) -> Ha
         reference=None if given is None else Ellipsoid(given["axes"], given["semi_axes"]),
         rule=entry["rule"],
         sampling_degree=entry["sampling_degree"],
-        warnings=tuple(entry["warnings"]),
+        notes=tuple(entry["notes"]),
     )

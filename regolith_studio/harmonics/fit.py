@@ -21,7 +21,7 @@ from regolith_studio.harmonics.visibility import hidden_surface_share
 HIDDEN_TOLERANCE = 0.01
 """Hidden share of the surface from which on a fit carries a warning."""
 OSCILLATION_TOLERANCE = 0.05
-"""Root-mean-square radial error, as a share of the radius, from which on a fit carries a warning."""
+"""Root-mean-square radial error, as a share of the mean radius, from which on a fit carries a warning."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,17 +39,21 @@ class HarmonicFit:
     unrepresentable_volume_share
         Share of the volume behind the first crossing of a ray. By the default rule it is kept in sum
         but not in place.
-    radial_error, largest_radial_error
-        Root mean square and maximum over all directions of the relative difference between the
-        expansion and the radius function: truncation, and the swinging that flat grains suffer.
+    radial_error
+        Root mean square over all directions of the difference between the expansion and the radius
+        function, as a share of the mean radius (with a reference: of radius over reference):
+        truncation, and the swinging that flat grains suffer. Known at every lower degree by Parseval.
+    largest_radial_error
+        Largest share of the local radius by which the expansion misses it, or ``None`` where it was not
+        worked out, as for a truncated fit.
     reference
         Ellipsoid that the radius was divided by, or ``None``.
     rule
         Radius rule where a ray crosses the surface more than once.
     sampling_degree
         Degree of the ray grid.
-    warnings
-        One sentence for each thing to know before the fit is used.
+    notes
+        One sentence for each thing about the particle to know before the fit is used.
     """
 
     coefficients: ShCoefficients
@@ -57,11 +61,11 @@ class HarmonicFit:
     hidden_surface_share: float = 0.0
     unrepresentable_volume_share: float = 0.0
     radial_error: float = 0.0
-    largest_radial_error: float = 0.0
+    largest_radial_error: float | None = None
     reference: Ellipsoid | None = None
     rule: str = DEFAULT_RULE
     sampling_degree: int = SAMPLING_DEGREE
-    warnings: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "star_point", locked_floats(self.star_point, (3,), "star_point"))
@@ -78,6 +82,33 @@ class HarmonicFit:
     def star_shaped(self) -> bool:
         """Whether every ray from the star point crosses the surface once."""
         return self.hidden_surface_share == 0.0
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """The notes, and a sentence with the number where the expansion swings about the radius."""
+        if not self.radial_error > OSCILLATION_TOLERANCE:
+            return self.notes
+        most = "" if self.largest_radial_error is None else f", at most {self.largest_radial_error:.0%}"
+        return (
+            *self.notes,
+            f"The expansion up to l = {self.l_max} misses the radius by {self.radial_error:.1%} in the root "
+            f"mean square{most}: it oscillates, as it does on flat and elongated grains.",
+        )
+
+    def truncated(self, l_max: int) -> "HarmonicFit":
+        """The fit cut at `l_max`, with the radial error that it has there.
+
+        Raises
+        ------
+        InputError
+            If `l_max` is negative or above the degree of this fit.
+        """
+        if l_max == self.l_max:
+            return self
+        kept = self.coefficients.truncated(l_max)
+        dropped = float((self.coefficients.values[len(kept) :] ** 2).sum()) / (4 * np.pi)
+        error = np.sqrt(self.radial_error**2 + dropped / kept.mean_radius**2)
+        return replace(self, coefficients=kept, radial_error=float(error), largest_radial_error=None)
 
 
 def fit_harmonics(
@@ -123,7 +154,7 @@ def fit_harmonics(
     fit = expand_radius(radius, rays, l_max, ellipsoid)
     hidden = hidden_surface_share(solid, radius.star_point)
     fit = replace(fit, hidden_surface_share=hidden)
-    return replace(fit, warnings=(*notes, *_warnings(fit)))
+    return replace(fit, notes=(*notes, *_about_hidden(fit)))
 
 
 def expand_radius(
@@ -132,13 +163,14 @@ def expand_radius(
     """The expansion of a radius function that was sampled on a grid; its mesh is not looked at."""
     unit = 1.0 if reference is None else reference.radii(rays.directions)
     samples = radius.radii / unit
-    difference = smoothed(rays, samples, l_max) / samples - 1
+    coefficients = expand(rays, samples, l_max)
+    difference = smoothed(rays, samples, l_max) - samples
     return HarmonicFit(
-        expand(rays, samples, l_max),
+        coefficients,
         radius.star_point,
         unrepresentable_volume_share=rays.mean(radius.hidden_cubes) / rays.mean(radius.volume**3),
-        radial_error=float(np.sqrt(rays.mean(difference**2))),
-        largest_radial_error=float(np.abs(difference).max()),
+        radial_error=float(np.sqrt(rays.mean(difference**2))) / coefficients.mean_radius,
+        largest_radial_error=float(np.abs(difference / samples).max()),
         reference=reference,
         rule=radius.rule,
         sampling_degree=rays.degree,
@@ -164,16 +196,10 @@ def _sampled(
     return sample_radius(mesh, point, rays.directions, rule), (note,)
 
 
-def _warnings(fit: HarmonicFit) -> list[str]:
-    found = []
-    if fit.hidden_surface_share > HIDDEN_TOLERANCE:
-        found.append(
-            f"{fit.hidden_surface_share:.1%} of the surface and {fit.unrepresentable_volume_share:.1%} of "
-            "the volume are hidden from the star point and cannot be kept by a radius function."
-        )
-    if fit.radial_error > OSCILLATION_TOLERANCE:
-        found.append(
-            f"The expansion up to l = {fit.l_max} misses the radius by {fit.radial_error:.1%} on average and "
-            f"{fit.largest_radial_error:.0%} at most: it oscillates, as it does on flat and elongated grains."
-        )
-    return found
+def _about_hidden(fit: HarmonicFit) -> tuple[str, ...]:
+    if not fit.hidden_surface_share > HIDDEN_TOLERANCE:
+        return ()
+    return (
+        f"{fit.hidden_surface_share:.1%} of the surface and {fit.unrepresentable_volume_share:.1%} of the "
+        "volume are hidden from the star point and cannot be kept by a radius function.",
+    )

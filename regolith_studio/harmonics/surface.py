@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from regolith_studio.errors import GeometryError
-from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.arrays import FloatArray, IntArray
+from regolith_studio.geometry.compiled import kernel
 from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.harmonics import quadrature
@@ -107,15 +108,7 @@ def as_fit(expanded: Expanded, l_max: int | None = None) -> HarmonicFit:
     """
     if isinstance(expanded, ShCoefficients):
         return HarmonicFit(expanded if l_max is None else expanded.truncated(l_max), np.zeros(3))
-    if l_max is None or l_max == expanded.l_max:
-        return expanded
-    return HarmonicFit(
-        expanded.coefficients.truncated(l_max),
-        expanded.star_point,
-        reference=expanded.reference,
-        rule=expanded.rule,
-        sampling_degree=expanded.sampling_degree,
-    )
+    return expanded if l_max is None else expanded.truncated(l_max)
 
 
 def _meshed(fit: HarmonicFit, radius: FloatArray, between: FloatArray, level: int) -> Mesh:
@@ -127,9 +120,22 @@ def _meshed(fit: HarmonicFit, radius: FloatArray, between: FloatArray, level: in
     _refuse_negative(fit, radius)
     _refuse_negative(fit, between)
     sphere = icosphere(level)
-    flat = Mesh(sphere.vertices * (radius + edges.shortfalls(radius, between))[:, None], sphere.faces)
-    factor = np.cbrt(quadrature.enclosed_volume(fit.coefficients, fit.reference) / flat.volume)
-    return Mesh(flat.vertices * factor + fit.star_point, sphere.faces)
+    vertices = sphere.vertices * (radius + edges.shortfalls(radius, between))[:, None]
+    volume = quadrature.enclosed_volume(fit.coefficients, fit.reference)
+    factor = np.cbrt(volume / flat_volume(vertices, sphere.faces))
+    return Mesh(vertices * factor + fit.star_point, sphere.faces)
+
+
+@kernel
+def flat_volume(vertices: FloatArray, faces: IntArray) -> float:
+    """Volume of the cones from the origin to the triangles: that of the mesh, if it is closed."""
+    total = 0.0
+    for f in range(len(faces)):
+        a, b, c = vertices[faces[f, 0]], vertices[faces[f, 1]], vertices[faces[f, 2]]
+        total += a[0] * (b[1] * c[2] - b[2] * c[1])
+        total += a[1] * (b[2] * c[0] - b[0] * c[2])
+        total += a[2] * (b[0] * c[1] - b[1] * c[0])
+    return total / 6.0
 
 
 def _refuse_negative(fit: HarmonicFit, radius: FloatArray) -> None:

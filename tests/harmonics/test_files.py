@@ -88,7 +88,7 @@ def test_that_shtools_tables_are_checked(rough):
 
 def test_that_a_fitted_sample_comes_back_from_its_two_files(rough, ellipsoid, tmp_path):
     calm = fit_harmonics(ellipsoid(3.0, 2.0, 1.0, level=2), 4, sampling_degree=10, reference="ellipsoid")
-    fits = [HarmonicFit(rough(6), np.array([1.0, 2.0, 3.0]), warnings=("Look out.",)), calm]
+    fits = [HarmonicFit(rough(6), np.array([1.0, 2.0, 3.0]), notes=("Look out.",)), calm]
     text, numbers = write_fits(tmp_path / "new" / "sample", ["one", "two"], fits)
     document = json.loads(text.read_text("utf-8"))
     assert "orthonormal" in document["convention"]
@@ -99,7 +99,7 @@ def test_that_a_fitted_sample_comes_back_from_its_two_files(rough, ellipsoid, tm
     np.testing.assert_array_equal(back["one"].coefficients.values, rough(6).truncated(4).values)
     np.testing.assert_array_equal(back["one"].star_point, [1.0, 2.0, 3.0])
     np.testing.assert_array_equal(back["two"].reference.semi_axes, calm.reference.semi_axes)
-    assert back["one"].warnings == ("Look out.",)
+    assert back["one"].notes == ("Look out.",)
 
 
 def test_that_files_of_two_samples_do_not_mix():

@@ -84,8 +84,20 @@ def test_that_a_flat_grain_oscillates_and_an_ellipsoid_as_reference_calms_it(ell
     assert about_sphere.radial_error > 0.05
     assert f"{about_sphere.radial_error:.1%}" in about_sphere.warnings[0]
     assert "oscillates" in about_sphere.warnings[0]
+    assert "at most" in about_sphere.warnings[0]
     assert about_ellipsoid.radial_error < about_sphere.radial_error / 5
     assert about_ellipsoid.warnings == ()
+
+
+def test_that_a_truncated_fit_has_the_error_of_a_fit_to_that_degree(ellipsoid):
+    flat = ellipsoid(4.0, 3.0, 0.6, level=4)
+    cut = fit_harmonics(flat, 30).truncated(6)
+    direct = fit_harmonics(flat, 6)
+    assert cut.radial_error == pytest.approx(direct.radial_error, rel=1e-2)
+    assert "up to l = 6" in cut.warnings[0]
+    assert cut.truncated(6) is cut
+    with pytest.raises(InputError, match=r"0 to 6, got 7"):
+        cut.truncated(7)
 
 
 @pytest.mark.parametrize(

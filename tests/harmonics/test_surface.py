@@ -16,7 +16,14 @@ from regolith_studio.harmonics.icosphere_edges import icosphere_edges
 from regolith_studio.harmonics.legendre import harmonics
 from regolith_studio.harmonics.quadrature import _fields, measure, measure_on_grid
 from regolith_studio.harmonics.reference import Ellipsoid
-from regolith_studio.harmonics.surface import error_map, gallery, measures, radii, reconstruct
+from regolith_studio.harmonics.surface import (
+    error_map,
+    flat_volume,
+    gallery,
+    measures,
+    radii,
+    reconstruct,
+)
 
 UNIT_SPHERE = ShCoefficients([np.sqrt(4 * np.pi)])
 
@@ -176,5 +183,7 @@ def test_that_compiled_and_plain_kernels_agree(rough):
     )
     synthesis._evaluate.py_func(directions, particle.values, 3, values)
     np.testing.assert_allclose(values, particle.values @ basis, atol=1e-14)
+    sphere = icosphere(1)
+    assert flat_volume.py_func(sphere.vertices, sphere.faces) == pytest.approx(sphere.volume, rel=1e-13)
     sums = synthesis.running_sums.py_func(basis, particle.values, 3)
     np.testing.assert_allclose(sums, synthesis.running_sums(basis, particle.values, 3), atol=1e-15)
