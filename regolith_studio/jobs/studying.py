@@ -7,6 +7,7 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.batch import mapper
 from regolith_studio.jobs.coarsening import CoarseningOrder
 from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
+from regolith_studio.studies.coarsening import TargetChoice, coarsening_study
 from regolith_studio.studies.lmax import lmax_study
 from regolith_studio.studies.progress import StudyProgress
 
@@ -28,11 +29,29 @@ def study_lmax(particles: Sequence[Particle], workers: int = 1, seed: int = 0, *
 def study_coarsening(
     particles: Sequence[Particle], order: CoarseningOrder, workers: int = 1, **options: Any
 ) -> Steps:
-    """Fig. 8 for `particles`; partial results and the result are ``CoarseningStudy``."""
-    from regolith_studio.studies.coarsening import coarsening_study
+    """Fig. 8 for `particles`; partial results and the result are ``CoarseningStudy``.
 
-    yield Started("RMSRE against loss weights")
-    return (yield from _told(coarsening_study(particles, mapper=mapper(workers), **options)))
+    Parameters
+    ----------
+    order
+        Method, face count, settings, seed and target; its weights do not matter, the rows bring theirs.
+    workers
+        Processes at a time; 0 for one a core.
+    options
+        Further ones of :func:`~regolith_studio.studies.coarsening.coarsening_study`: rows, box_metric.
+    """
+    yield Started("RMSRE against loss weights", len(particles))
+    study = coarsening_study(
+        particles,
+        n_faces=order.n_faces,
+        method=order.method,
+        seed=order.seed,
+        settings=dict(order.settings),
+        target=TargetChoice(order.target, order.l_max, order.level),
+        mapper=mapper(workers),
+        **options,
+    )
+    return (yield from _told(study))
 
 
 def _told(steps: Generator[StudyProgress, None, Any]) -> Generator[Step, None, Any]:

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from regolith_studio.studies.coarsening import rmsre_table as coarsening_table
+from regolith_studio.studies.coarsening_figures import write_coarsening_study
 from regolith_studio.studies.lmax import rmsre_table as lmax_table
 from regolith_studio.studies.lmax_figures import write_lmax_study
 from regolith_studio.studies.tables import Table
@@ -35,6 +37,12 @@ class StudyKind:
 STUDIES: Mapping[str, StudyKind] = {
     "lmax_study": StudyKind(
         "RMSRE of the descriptors against l_max (Fig. 3)", "lmax_rmsre.png", write_lmax_study, lmax_table
+    ),
+    "coarsening_study": StudyKind(
+        "RMSRE of the descriptors for each set of loss weights (Fig. 8)",
+        "coarsening_rmsre.png",
+        write_coarsening_study,
+        coarsening_table,
     ),
 }
 """By the same words as :class:`~regolith_studio.session.plan.Kind`."""

@@ -1,0 +1,77 @@
+"""``demo`` on a shortened sample here; the whole one is measured by hand and in the slow tests."""
+
+import re
+import struct
+import time
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+
+from regolith_studio.cli.entry import run
+from regolith_studio.dataset.folder import read_dataset
+from regolith_studio.jobs import loading
+from regolith_studio.readers.sample import sample_particles
+
+EXPECTED = {
+    "summary.html",
+    "recipe.json",
+    "three-views.png",
+    "dataset/dataset.json",
+    "descriptors.csv",
+    "fit.json",
+    "fit.npz",
+    "meshes/coarsening.json",
+}
+
+
+class Pictures(HTMLParser):
+    """The files that a page shows."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.files: list[str] = []
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        if tag == "img":
+            self.files.append(str(dict(attrs)["src"]))
+
+
+def size_of_png(path: Path) -> tuple[int, int]:
+    header = path.read_bytes()[:24]
+    assert header[:8] == b"\x89PNG\r\n\x1a\n"
+    width, height = struct.unpack(">II", header[16:])
+    return width, height
+
+
+def check(folder: Path) -> None:
+    files = {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
+    assert files >= EXPECTED
+    page = (folder / "summary.html").read_text()
+    pictures = Pictures(page).files
+    assert "three-views.png" in pictures
+    assert {"studies/lmax_rmsre.png", "studies/coarsening_rmsre.png"} <= set(pictures)
+    for picture in pictures:
+        assert min(size_of_png(folder / picture)) > 200
+    assert len(re.findall("<h2>", page)) >= 4
+
+
+def test_that_the_demo_shows_the_whole_chain(
+    command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    few = [particle for particle in sample_particles() if particle.name in ("angular-1", "bead-2")]
+    monkeypatch.setattr(loading, "sample_particles", lambda: few)
+    said = command("demo", "-o", tmp_path / "demo", "--jobs", 1)
+    assert said.err == ""
+    assert said.code == 0
+    check(tmp_path / "demo")
+    assert len(read_dataset(tmp_path / "demo" / "dataset")) == 2
+
+
+@pytest.mark.slow
+def test_that_the_whole_demo_takes_at_most_ninety_seconds(tmp_path: Path) -> None:
+    begun = time.monotonic()
+    assert run(["demo", "-o", str(tmp_path / "demo")]) == 0
+    assert time.monotonic() - begun < 90
+    check(tmp_path / "demo")
