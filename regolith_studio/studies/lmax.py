@@ -1,8 +1,10 @@
 """What a chosen l_max means for the descriptors of a sample (section 3.1, Eq. 10, Fig. 3)."""
 
-from collections.abc import Callable, Generator, Iterable, Sequence
+from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
+from itertools import groupby
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -14,13 +16,16 @@ from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.harmonics.fit import fit_harmonics
+from regolith_studio.harmonics.fit import HarmonicFit, fit_harmonics
 from regolith_studio.harmonics.surface import DEFAULT_LEVEL, gallery
 from regolith_studio.studies.progress import StudyProgress
 from regolith_studio.studies.tables import Column, Table
 
 DEFAULT_DEGREES = tuple(range(1, 21))
 N_RESAMPLES = 1000
+LEVEL_BY_DEGREE = ((1, 2), (4, 3))
+"""Highest degree and the icosphere level that is enough up to there: ten vertices a wave or more. The
+exact box of a nearly round surface costs most, and finer triangles add nothing to it."""
 
 Mapper = Callable[[Callable[[Mesh], "FloatArray | str"], Iterable[Mesh]], Iterable["FloatArray | str"]]
 """Anything that maps a picklable function in order: ``map``, or ``imap`` of a process pool."""
@@ -76,12 +81,12 @@ class LmaxStudy:
         """Errors of one group, or of all particles if ``None``, shape (members, degrees, keys)."""
         if group is None:
             return self.errors
-        return self.errors[[name == group for name in self.groups]]
+        return np.asarray(self.errors[np.array([name == group for name in self.groups], dtype=np.bool_)])
 
     def rmsre(self, group: str | None = None) -> FloatArray:
         """RMSRE of Eq. 10, shape (degrees, keys); NaN where no particle has a value."""
         members = self.of_group(group)
-        return resampled_rmsre(members, np.ones((1, len(members))))[0]
+        return np.asarray(resampled_rmsre(members, np.ones((1, len(members))))[0])
 
     def bands(self, group: str | None = None) -> FloatArray:
         """Ends of the bootstrap band over particles, shape (2, degrees, keys)."""
@@ -136,8 +141,9 @@ def lmax_errors(
 ) -> FloatArray:
     """Relative errors of the descriptors of one particle's fit, shape (degrees, keys).
 
-    One fit to the highest degree, cut at each; the surfaces are meshed on ``icosphere(level)`` and
-    measured by the same routines as the particle. NaN where a fit has a negative radius.
+    One fit to the highest degree, cut at each; the surfaces are meshed on ``icosphere(level)``, those of
+    the lowest degrees on a coarser one, and measured by the same routines as the particle. NaN where a
+    fit has a negative radius.
 
     Raises
     ------
@@ -147,11 +153,19 @@ def lmax_errors(
     wanted = describe(mesh, keys)
     fit = fit_harmonics(mesh, max(degrees), rule=rule, reference=reference)
     errors = np.full((len(degrees), len(keys)), np.nan)
-    for row, (_, surface) in enumerate(gallery(fit, degrees, level)):
+    for row, surface in enumerate(_surfaces(fit, degrees, level)):
         if surface is not None:
             found = describe(surface, keys)
             errors[row] = [found[key] / wanted[key] - 1 for key in keys]
     return errors
+
+
+def _surfaces(fit: HarmonicFit, degrees: Sequence[int], level: int) -> Iterable[Mesh | None]:
+    """The fit cut at each of `degrees`, none finer than `level` nor than the degree asks for."""
+    levels = [min([level, *(enough for last, enough in LEVEL_BY_DEGREE if d <= last)]) for d in degrees]
+    for chosen, members in groupby(zip(levels, degrees, strict=True), key=itemgetter(0)):
+        for _, surface in gallery(fit, [degree for _, degree in members], chosen):
+            yield surface
 
 
 def lmax_study(
@@ -161,7 +175,8 @@ def lmax_study(
     keys: Sequence[str] = LOSS_KEYS,
     mapper: Mapper = map,
     seed: int = 0,
-    **fit_options: str,
+    rule: str = "volume",
+    reference: str = "sphere",
 ) -> Generator[StudyProgress, None, LmaxStudy]:
     """Fit every particle and compare its descriptors with those of the fits cut at `degrees`.
 
@@ -172,8 +187,8 @@ def lmax_study(
     ----------
     mapper
         ``map``, or the ordered lazy map of a process pool.
-    fit_options
-        ``rule`` and ``reference`` of :func:`fit_harmonics`.
+    rule, reference
+        As in :func:`fit_harmonics`.
 
     Raises
     ------
@@ -183,7 +198,8 @@ def lmax_study(
     if not particles or not degrees:
         raise InputError("A study of l_max needs at least one particle and one degree.")
     chosen = tuple(sorted(set(degrees)))
-    work = partial(errors_or_reason, degrees=chosen, level=level, keys=tuple(keys), **fit_options)
+    options = {"degrees": chosen, "level": level, "keys": tuple(keys), "rule": rule, "reference": reference}
+    work: Callable[[Mesh], FloatArray | str] = partial(errors_or_reason, options=options)
     study = LmaxStudy(chosen, tuple(keys), (), (), np.empty((0, len(chosen), len(keys))), seed=seed)
     outcomes = mapper(work, (particle.mesh for particle in particles))
     for done, (particle, outcome) in enumerate(zip(particles, outcomes, strict=True), start=1):
@@ -194,7 +210,7 @@ def lmax_study(
     return study
 
 
-def errors_or_reason(mesh: Mesh, **options: Any) -> FloatArray | str:
+def errors_or_reason(mesh: Mesh, options: Mapping[str, Any]) -> FloatArray | str:
     """:func:`lmax_errors`, or the sentence that says why there are none; for process pools."""
     try:
         return lmax_errors(mesh, **options)

@@ -73,6 +73,12 @@ def test_that_the_rmsre_is_equation_ten_of_the_same_fits(study, particles):
         np.testing.assert_allclose(row, [expected[key] for key in LOSS_KEYS], rtol=1e-6)
 
 
+def test_that_coarser_meshes_of_low_degrees_change_little(particles, monkeypatch):
+    quick = lmax_errors(particles[0].mesh, (1, 2, 4))
+    monkeypatch.setattr("regolith_studio.studies.lmax.LEVEL_BY_DEGREE", ())
+    np.testing.assert_allclose(quick, lmax_errors(particles[0].mesh, (1, 2, 4)), atol=0.015)
+
+
 def test_that_the_volume_error_falls_with_l_max(study):
     volume = study.rmsre()[:, study.keys.index("volume")]
     assert volume[0] > 5 * volume[1] > 5 * volume[2]
