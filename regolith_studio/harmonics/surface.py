@@ -120,7 +120,8 @@ def _meshed(fit: HarmonicFit, radius: FloatArray, between: FloatArray, level: in
     _refuse_negative(fit, radius)
     _refuse_negative(fit, between)
     sphere = icosphere(level)
-    vertices = sphere.vertices * (radius + edges.shortfalls(radius, between))[:, None]
+    lifted = np.maximum(radius + edges.shortfalls(radius, between), radius / 2)
+    vertices = sphere.vertices * lifted[:, None]
     volume = quadrature.enclosed_volume(fit.coefficients, fit.reference)
     factor = np.cbrt(volume / flat_volume(vertices, sphere.faces))
     return Mesh(vertices * factor + fit.star_point, sphere.faces)
@@ -139,9 +140,10 @@ def flat_volume(vertices: FloatArray, faces: IntArray) -> float:
 
 
 def _refuse_negative(fit: HarmonicFit, radius: FloatArray) -> None:
-    low = float(radius.min())
-    if not low > 0.0:
+    if not (radius > 0.0).all():
+        n_negative = int(np.count_nonzero(~(radius > 0.0)))
         raise GeometryError(
-            f"The expansion up to l = {fit.l_max} has a negative radius ({low:.3g} times the reference, mean "
-            f"{fit.coefficients.mean_radius:.3g}) and bounds no solid: choose another l_max."
+            f"The expansion up to l = {fit.l_max} has a negative radius in {n_negative} of {len(radius)} "
+            f"directions (lowest {radius.min():.3g}) and bounds no solid: choose another l_max, star point "
+            "or reference."
         )
