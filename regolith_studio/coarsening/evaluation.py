@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from regolith_studio.coarsening.core.box_search import SAMPLE_ANGLE
+from regolith_studio.coarsening.core.box_search import FINE_ANGLE
 from regolith_studio.coarsening.core.evaluate import AREA, LONGEST, SHARED, SHORTEST, VOLUME, evaluate
 from regolith_studio.coarsening.core.intersection import FINE
 from regolith_studio.coarsening.loss import loss
@@ -45,7 +45,7 @@ class LossFunction:
         self._overlap = everything or bool(weights[JACCARD])
 
     def __call__(
-        self, normals: FloatArray, offsets: FloatArray, sample_angle: float = SAMPLE_ANGLE
+        self, normals: FloatArray, offsets: FloatArray, sample_angle: float = FINE_ANGLE
     ) -> Evaluation | None:
         """Errors and loss, or ``None`` where the half-spaces bound no proper polyhedron."""
         rays = self._target.rays

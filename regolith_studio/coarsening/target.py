@@ -16,6 +16,8 @@ from regolith_studio.geometry.mesh import Mesh
 
 SMALLEST_SPAN = 1e-150
 """Below this size the volume of a mesh cannot be told from 0."""
+MOST_TANGLED = 0.05
+"""Share of wrong crossings above which a mesh counts as intersecting itself."""
 
 
 @dataclass(frozen=True)
@@ -71,10 +73,12 @@ class Target:
         Raises
         ------
         GeometryError
-            If the mesh is not closed or encloses no volume.
+            If the mesh is not closed, encloses no volume or largely intersects itself.
         """
         unit, centre, scale = _normalised(mesh)
-        return cls(unit, centre, scale, describe(unit))
+        target = cls(unit, centre, scale, describe(unit))
+        _check_simple(target.rays)
+        return target
 
     @property
     def solidity(self) -> float:
@@ -130,6 +134,19 @@ def _normalised(mesh: Mesh) -> tuple[Mesh, FloatArray, float]:
         )
     centre = middle + size * rough.centroid
     return rough.normalised(), centre, size * rough.volume ** (1 / 3)
+
+
+def _check_simple(rays: RayTable) -> None:
+    """Along a ray, leaving and entering must alternate and end with leaving."""
+    last = np.zeros(len(rays.sign), dtype=bool)
+    last[rays.first[1:][np.diff(rays.first) > 0] - 1] = True
+    following = np.where(last, -1.0, np.roll(rays.sign, -1))
+    wrong = float(np.mean(following == rays.sign))
+    if wrong > MOST_TANGLED:
+        raise GeometryError(
+            f"The mesh intersects itself: {100 * wrong:.0f} % of its crossings with rays enter or leave twice"
+            " in a row; repair it first."
+        )
 
 
 def _check_closed(mesh: Mesh) -> None:

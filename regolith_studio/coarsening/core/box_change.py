@@ -30,7 +30,7 @@ def box_of(
 ) -> float:
     """Fill `frame` and `extents` of the box at `angle` from `base`; residual of the third condition."""
     e0, e1, e2 = points[1, 0] - points[0, 0], points[1, 1] - points[0, 1], points[1, 2] - points[0, 2]
-    length = np.sqrt(e0 * e0 + e1 * e1 + e2 * e2)
+    length = max(1e-300, np.sqrt(e0 * e0 + e1 * e1 + e2 * e2))
     e0, e1, e2 = e0 / length, e1 / length, e2 / length
     along = base[0] * e0 + base[1] * e1 + base[2] * e2
     u = np.array([base[0] - along * e0, base[1] - along * e1, base[2] - along * e2])

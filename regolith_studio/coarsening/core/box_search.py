@@ -24,7 +24,9 @@ from regolith_studio.geometry.compiled import kernel
 
 SAMPLE_ANGLE = float(np.radians(13.0))
 """Step along the arcs that misses few boxes, in radians."""
-DENSE_ANGLE = float(np.radians(2.0))
+FINE_ANGLE = float(np.radians(8.0))
+"""Step that missed none of 383 boxes of random spiky polyhedra with 12 facets (13 degrees missed 3)."""
+DENSE_ANGLE = float(np.radians(4.0))
 """Step that is fine enough for a verdict, in radians."""
 PROMISING = 1.12
 """Normals whose box is larger than this many times the least are not looked into."""
@@ -32,13 +34,14 @@ SLACK = 1.02
 NO_ARC = 1e-7
 BESIDE = 1e-7
 NO_FACET = 1e-13
+SAME_SIDE = 0.99
 NEAR = float(np.cos(np.radians(7.0)))
 WINDOW = float(np.radians(7.0))
 MOST = 64
 """Largest number of boxes returned."""
-STATIONARY, ON_FACET = -1, -2
+STATIONARY, ON_FACET, SEVERAL = -1, -2, -3
 """In place of the slot of a third contact: none, the volume is stationary along the arc; or the second side
-rests on a facet, and that facet's own box is the same."""
+rests on a facet, and that facet's own box is the same; or more than one contact changes at once."""
 
 
 class Boxes(NamedTuple):
@@ -130,6 +133,7 @@ def local_boxes(solid: Solid, margin: float, sample_angle: float, near: FloatArr
             if solid.areas[f] > NO_FACET:
                 best = min(best, box_on_facet(f, facets, solid, best, scratch, touch))
     count = 0
+    fallback, lowest = empty_touch(), np.inf
     one, two = Sample(np.empty(3), np.empty(7, np.int64)), Sample(np.empty(3), np.empty(7, np.int64))
     for e in range(len(solid.edges)):
         arc = arc_between(solid, e)
@@ -142,6 +146,9 @@ def local_boxes(solid: Solid, margin: float, sample_angle: float, near: FloatArr
         for i in range(steps + 1):
             angle = low + (high - low) * i / steps
             best = sampled(arc, angle, solid, best, e, facets, scratch, touch, two)
+            if two.number[1] < lowest:
+                lowest = two.number[1]
+                kept_aside(touch, fallback)
             if i > 0 and worth_a_look(one, two, best * (1.0 + margin) * SLACK):
                 slot, partner, volume = arc_minimum(arc, one, two, solid, scratch, touch)
                 best = min(best, volume)
@@ -159,7 +166,20 @@ def local_boxes(solid: Solid, margin: float, sample_angle: float, near: FloatArr
                 recalled(facets, f, touch)
                 touch.piece[0] = p
                 count = kept(count, boxes, facets.volume[f], touch, 0, p, q, partner)
+    if count == 0 and lowest < np.inf:
+        count = kept(0, boxes, np.exp(lowest), fallback, STATIONARY, fallback.piece[0], fallback.piece[0], -1)
     return ranked(boxes, count, best * (1.0 + margin))
+
+
+@kernel
+def kept_aside(touch: Touch, aside: Touch) -> None:
+    """Copy a box."""
+    for a in range(3):
+        aside.extents[a] = touch.extents[a]
+        for c in range(3):
+            aside.frame[a, c] = touch.frame[a, c]
+    for c in range(7):
+        aside.piece[c] = touch.piece[c]
 
 
 @kernel
@@ -356,28 +376,46 @@ def arc_minimum(
         gap = high.number[0] - low.number[0]
         if abs(here.number[2]) < 1e-8 or gap < 3.0 * BESIDE:
             break
-        if gap < smallest and differing_slot(low.piece, high.piece) == ON_FACET:
-            break
+        if (
+            gap < smallest
+            and differing_slot(low.piece, high.piece) == ON_FACET
+            and same_side(low.piece, high.piece, touch.frame[0], solid.vertices)
+        ):
+            return ON_FACET, -1, volume
     if abs(here.number[2]) < 1e-6:
         return STATIONARY, -1, volume
     slot = differing_slot(low.piece, high.piece)
     if slot < 0:
-        return slot, -1, volume
+        return STATIONARY, -1, volume
     return slot, low.piece[slot] if here.piece[slot] == high.piece[slot] else high.piece[slot], volume
 
 
 @kernel
 def differing_slot(one: IntArray, two: IntArray) -> int:
-    """The one slot in which two pieces differ; STATIONARY if in none, ON_FACET if in others or several."""
+    """The slot in which two pieces differ, or STATIONARY (none), ON_FACET (flush edge), SEVERAL."""
     if one[2] != two[2] or one[3] != two[3]:
         return ON_FACET
     found = STATIONARY
     for slot in (1, 4, 5, 6):
         if one[slot] != two[slot]:
             if found != STATIONARY:
-                return ON_FACET
+                return SEVERAL
             found = slot
     return found
+
+
+@kernel
+def same_side(one: IntArray, two: IntArray, axis: FloatArray, vertices: FloatArray) -> bool:
+    """Whether the flush edges of two pieces lie in the same side of the box, as on a facet along `axis`."""
+    dot, first, second = 0.0, 0.0, 0.0
+    for c in range(3):
+        i, j = (c + 1) % 3, (c + 2) % 3
+        u = (vertices[one[3], i] - vertices[one[2], i]) * axis[j]
+        u -= (vertices[one[3], j] - vertices[one[2], j]) * axis[i]
+        v = (vertices[two[3], i] - vertices[two[2], i]) * axis[j]
+        v -= (vertices[two[3], j] - vertices[two[2], j]) * axis[i]
+        dot, first, second = dot + u * v, first + u * u, second + v * v
+    return bool(dot > SAME_SIDE * np.sqrt(first * second))
 
 
 @kernel
@@ -408,7 +446,7 @@ def tie_angle(
         step = -residual * (angle - last) / (residual - before)
         last, before = angle, residual
         angle += min(0.5, max(-0.5, step))
-    return angle
+    return float(angle)
 
 
 @kernel

@@ -1,0 +1,323 @@
+"""What a choice of loss weights means for the descriptors of coarsened particles (section 3.2, Fig. 8)."""
+
+from collections.abc import Callable, Generator, Iterable, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from regolith_studio.coarsening.coarsen import DEFAULT_METHOD, coarsen
+from regolith_studio.coarsening.result import Coarsened
+from regolith_studio.coarsening.target import Target
+from regolith_studio.coarsening.weights import JACCARD, WEIGHT_KEYS, LossWeights, presets
+from regolith_studio.descriptors.catalogue import LOSS_KEYS
+from regolith_studio.descriptors.comparison import relative_errors
+from regolith_studio.descriptors.describe import describe
+from regolith_studio.errors import InputError, RegolithError
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.harmonics.fit import fit_harmonics
+from regolith_studio.harmonics.surface import reconstruct
+from regolith_studio.studies.progress import StudyProgress
+from regolith_studio.studies.tables import Column, Table
+
+PAPER_ROWS = (
+    "quadric",
+    "descriptors",
+    "volume_sphericity_aspect_ratio",
+    "overlap",
+    "aspect_ratio_overlap",
+    "all",
+)
+"""Presets that stand for the rows of Fig. 8."""
+FACE_COUNTS = (8, 12, 16, 20, 30, 50)
+COLUMNS = (*LOSS_KEYS, JACCARD)
+"""Columns of the errors: the descriptors of Eq. 8 and the distance of Eq. 7."""
+N_RESAMPLES = 1000
+
+Mapper = Callable[[Callable[[Any], Any], Iterable[Any]], Iterable[Any]]
+"""Anything that maps a picklable function in order: ``map``, or the ordered map of a process pool."""
+
+
+@dataclass(frozen=True)
+class StudyRow:
+    """One row of the study: how every particle is coarsened.
+
+    Parameters
+    ----------
+    label
+        As printed.
+    weights
+        Of the loss; all 0 stands for the quadric start itself.
+    method
+        Key of the coarsening method.
+    n_faces
+        Facets.
+    settings
+        Of the method, as (name, value) pairs.
+    """
+
+    label: str
+    weights: LossWeights
+    method: str = DEFAULT_METHOD
+    n_faces: int = 20
+    settings: tuple[tuple[str, Any], ...] = ()
+
+    @property
+    def is_baseline(self) -> bool:
+        """Whether the decimated mesh itself is measured, as in the first row of Fig. 8."""
+        return self.weights.all_zero or self.method == "quadric"
+
+
+@dataclass(frozen=True)
+class TargetChoice:
+    """What is coarsened: the ``particle`` itself, or its ``fit`` cut at `l_max` (as in the paper)."""
+
+    kind: str = "particle"
+    l_max: int = 10
+    level: int = 4
+
+    def mesh_of(self, mesh: Mesh) -> Mesh:
+        """The mesh to be coarsened."""
+        return (
+            reconstruct(fit_harmonics(mesh, self.l_max), self.l_max, self.level)
+            if self.kind == "fit"
+            else mesh
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class CoarseningStudy:
+    """Relative errors of coarsened particles, by row.
+
+    Parameters
+    ----------
+    rows
+        How they were coarsened.
+    names
+        Of the particles that could be coarsened by every row.
+    errors
+        Absolute relative errors of Eq. 8 by particle, row and :data:`COLUMNS` (the last is the Jaccard
+        distance), shape (particles, rows, 7).
+    failures
+        Name and sentence of each particle that could not be coarsened.
+    n_unmet
+        By row, the number of particles whose request could not be met exactly, with a reason given.
+    box_metric
+        Of the bounding boxes: ``exact``, or ``trimesh`` to compare with the paper's program.
+    confidence, seed
+        Of the bootstrap bands.
+    """
+
+    rows: tuple[StudyRow, ...]
+    names: tuple[str, ...] = ()
+    errors: FloatArray = field(default_factory=lambda: np.empty((0, 0, len(COLUMNS))))
+    failures: tuple[tuple[str, str], ...] = ()
+    n_unmet: tuple[int, ...] = ()
+    box_metric: str = "exact"
+    confidence: float = 0.95
+    seed: int = 0
+
+    @property
+    def rmsre(self) -> FloatArray:
+        """RMSRE of Eq. 10 by row and column; the last column is the mean Jaccard distance."""
+        return _pooled(self.errors, np.ones((1, len(self.names))))[0]
+
+    @property
+    def bands(self) -> FloatArray:
+        """Ends of the bootstrap band over particles, shape (2, rows, columns)."""
+        rng = np.random.default_rng(np.random.SeedSequence(self.seed))
+        n = len(self.names)
+        counts = rng.multinomial(n, np.full(n, 1.0 / n), N_RESAMPLES)
+        tail = 50.0 * (1.0 - self.confidence)
+        return np.asarray(np.percentile(_pooled(self.errors, counts), [tail, 100.0 - tail], axis=0))
+
+
+def _pooled(errors: FloatArray, counts: ArrayLike) -> FloatArray:
+    """RMSRE (last column: mean) with each particle counted `counts` times, shape (b, rows, columns)."""
+    weights = np.asarray(counts, dtype=np.float64)
+    weights = weights / weights.sum(axis=1, keepdims=True)
+    pooled = np.asarray(np.sqrt(np.tensordot(weights, errors**2, axes=1)), dtype=np.float64)
+    pooled[..., -1] = np.tensordot(weights, errors[..., -1], axes=1)
+    result: FloatArray = np.asarray(pooled, dtype=np.float64)
+    return result
+
+
+def paper_rows(method: str = DEFAULT_METHOD, n_faces: int = 20, **settings: Any) -> tuple[StudyRow, ...]:
+    """The rows of Fig. 8, coarsened by `method`."""
+    return tuple(
+        StudyRow(presets()[name].label, presets()[name].weights, method, n_faces, tuple(settings.items()))
+        for name in PAPER_ROWS
+    )
+
+
+def face_count_rows(
+    weights: LossWeights, method: str = DEFAULT_METHOD, counts: Sequence[int] = FACE_COUNTS, **settings: Any
+) -> tuple[StudyRow, ...]:
+    """One row for each number of faces."""
+    return tuple(StudyRow(f"{n} faces", weights, method, n, tuple(settings.items())) for n in counts)
+
+
+def overlap_rows(
+    weights: LossWeights, method: str, factors: Sequence[float], n_faces: int = 20, **settings: Any
+) -> tuple[StudyRow, ...]:
+    """One row for each factor on the weight of the Jaccard distance: overlap against descriptors."""
+    return tuple(
+        StudyRow(
+            f"overlap x {factor:g}",
+            weights.replaced(**{JACCARD: weights[JACCARD] * factor}),
+            method,
+            n_faces,
+            tuple(settings.items()),
+        )
+        for factor in factors
+    )
+
+
+def sensitivity_rows(
+    weights: LossWeights, method: str, factor: float = 4.0, n_faces: int = 20, **settings: Any
+) -> tuple[StudyRow, ...]:
+    """The weights themselves, and each of them multiplied by `factor` alone."""
+    changed = [(key, weights.replaced(**{key: weights[key] * factor})) for key in WEIGHT_KEYS if weights[key]]
+    cases = [("as given", weights), *[(f"{key} x {factor:g}", each) for key, each in changed]]
+    return tuple(StudyRow(label, each, method, n_faces, tuple(settings.items())) for label, each in cases)
+
+
+def coarsening_errors(
+    numbered: tuple[int, Mesh],
+    rows: Sequence[StudyRow],
+    seed: int = 0,
+    target: TargetChoice | None = None,
+    box_metric: str = "exact",
+) -> tuple[FloatArray, tuple[bool, ...]] | str:
+    """Errors of one particle by row and column, and which rows met their request; or why there are none.
+
+    Pure and picklable: for process pools.
+
+    Parameters
+    ----------
+    numbered
+        Index of the particle (for its random numbers) and its mesh.
+    """
+    index, mesh = numbered
+    try:
+        goal = Target.of((target or TargetChoice()).mesh_of(mesh))
+        wanted = describe(goal.mesh, LOSS_KEYS, box_metric)
+        table = [_row_errors(goal, row, seed, index, wanted, box_metric) for row in rows]
+    except RegolithError as error:
+        return str(error)
+    return np.array([values for values, _ in table]), tuple(met for _, met in table)
+
+
+def _row_errors(
+    target: Target, row: StudyRow, seed: int, index: int, wanted: Any, box_metric: str
+) -> tuple[list[float], bool]:
+    method = "quadric" if row.is_baseline else row.method
+    settings = None if row.is_baseline else dict(row.settings)
+    found = coarsen(target, row.n_faces, method, row.weights, seed, index, settings)
+    if row.is_baseline:
+        errors: dict[str, float] = dict(found.variants["mesh"])
+        if box_metric != "exact":
+            errors |= _measured(found, wanted, box_metric)
+    else:
+        errors = dict(found.errors) if box_metric == "exact" else _measured(found, wanted, box_metric)
+    return [*[errors[key] for key in LOSS_KEYS], found.jaccard_distance], found.reason is None
+
+
+def _measured(found: Coarsened, wanted: Any, box_metric: str) -> dict[str, float]:
+    unit = found.polyhedron.moved(scale=found.target["volume"] ** (-1 / 3))
+    return relative_errors(wanted, describe(unit, LOSS_KEYS, box_metric))
+
+
+def coarsening_study(
+    particles: Sequence[Particle],
+    rows: Sequence[StudyRow] | None = None,
+    n_faces: int = 20,
+    method: str = DEFAULT_METHOD,
+    seed: int = 0,
+    settings: Any = None,
+    target: TargetChoice | None = None,
+    box_metric: str = "exact",
+    mapper: Mapper = map,
+) -> Generator[StudyProgress, None, CoarseningStudy]:
+    """Coarsen every particle by every row and compare descriptors (Fig. 8).
+
+    Yields a :class:`StudyProgress` a particle, whose `partial` is the study so far, and returns the study.
+    A particle that cannot be coarsened is listed in `failures` and stops nothing.
+
+    Parameters
+    ----------
+    rows
+        The paper's rows with `method`, `n_faces` and `settings` where not given.
+
+    Raises
+    ------
+    InputError
+        If there is no particle or no row, or no particle can be coarsened.
+    """
+    chosen = paper_rows(method, n_faces, **dict(settings or {})) if rows is None else tuple(rows)
+    if not particles or not chosen:
+        raise InputError("A study of the coarsening needs at least one particle and one row of weights.")
+    work = partial(coarsening_errors, rows=chosen, seed=seed, target=target, box_metric=box_metric)
+    study = CoarseningStudy(
+        chosen, errors=np.empty((0, len(chosen), len(COLUMNS))), box_metric=box_metric, seed=seed
+    )
+    outcomes = mapper(work, list(enumerate(particle.mesh for particle in particles)))
+    for done, (particle, outcome) in enumerate(zip(particles, outcomes, strict=True), start=1):
+        study = _with_outcome(study, particle, outcome)
+        yield StudyProgress(done, len(particles), particle.name, study if study.names else None)
+    if not study.names:
+        raise InputError(f"None of the {len(particles)} particles can be coarsened: {study.failures[0][1]}")
+    return study
+
+
+def _with_outcome(study: CoarseningStudy, particle: Particle, outcome: Any) -> CoarseningStudy:
+    if isinstance(outcome, str):
+        return replace(study, failures=(*study.failures, (particle.name, outcome)))
+    errors, met = outcome
+    before = study.n_unmet or (0,) * len(study.rows)
+    return replace(
+        study,
+        names=(*study.names, particle.name),
+        errors=np.concatenate([study.errors, errors[None]]),
+        n_unmet=tuple(count + (not fine) for count, fine in zip(before, met, strict=True)),
+    )
+
+
+def rmsre_table(study: CoarseningStudy) -> Table:
+    """Fig. 8 as numbers: a row for each row of weights and each descriptor."""
+    values, (low, high) = 100 * study.rmsre, 100 * study.bands
+    lines = [
+        (row.label, row.method, row.n_faces, key, values[r, k], low[r, k], high[r, k], study.n_unmet[r])
+        for r, row in enumerate(study.rows)
+        for k, key in enumerate(COLUMNS)
+    ]
+    percent = [Column(name, "%") for name in ("rmsre", "rmsre_low", "rmsre_high")]
+    columns = (*map(Column, ("row", "method", "faces", "descriptor")), *percent, Column("n_unmet"))
+    weights = [
+        f"{row.label}: "
+        + (", ".join(f"{key} {value:g}" for key, value in row.weights.items() if value) or "0")
+        for row in study.rows
+    ]
+    notes = (
+        "Root mean square over particles of the relative errors of Eq. 8; jaccard_distance: mean (Eq. 7).",
+        f"{len(study.names)} particles; bounding boxes: {study.box_metric}.",
+        f"Bands: {study.confidence:.0%}, {N_RESAMPLES} resamples of the particles, seed {study.seed}.",
+        *weights,
+        *(f"{name} was left out: {reason}" for name, reason in study.failures),
+    )
+    return Table("RMSRE of coarsened particles by loss", columns, tuple(lines), notes)
+
+
+def particle_table(study: CoarseningStudy) -> Table:
+    """Relative error of every descriptor of every particle in every row."""
+    lines = [
+        (name, row.label, row.method, row.n_faces, *study.errors[i, r])
+        for i, name in enumerate(study.names)
+        for r, row in enumerate(study.rows)
+    ]
+    columns = (*map(Column, ("name", "row", "method", "faces")), *map(Column, COLUMNS))
+    return Table("Relative errors of every coarsened particle", columns, tuple(lines))

@@ -1,0 +1,85 @@
+"""Fig. 8 as a heat map, and error against face count."""
+
+from pathlib import Path
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from regolith_studio.coarsening.weights import JACCARD, WEIGHT_KEYS
+from regolith_studio.descriptors.catalogue import CATALOGUE
+from regolith_studio.studies.coarsening import COLUMNS, CoarseningStudy, particle_table, rmsre_table
+from regolith_studio.studies.figure_files import write_figure
+from regolith_studio.studies.tables import write_table
+
+FLOOR = 1e-3
+"""Errors below this percentage are drawn as this."""
+PAPER_SYMBOLS = {JACCARD: "IoU"}
+
+
+def coarsening_figure(study: CoarseningStudy) -> Figure:
+    """Rows of weights against descriptors; the number in a cell is the RMSRE in percent."""
+    values = 100 * study.rmsre
+    n_rows = len(study.rows)
+    figure = Figure(figsize=(9.0, 1.6 + 0.55 * n_rows), layout="constrained")
+    axis = figure.subplots()
+    image = axis.imshow(np.log10(np.maximum(values, FLOOR)), aspect="auto", cmap="viridis", vmin=-3, vmax=2)
+    for r in range(n_rows):
+        for k in range(len(COLUMNS)):
+            dark = np.log10(max(values[r, k], FLOOR)) < 0.5
+            axis.text(
+                k, r, _printed(values[r, k]), ha="center", va="center", color="white" if dark else "black"
+            )
+    axis.set_xticks(range(len(COLUMNS)), [_symbol(key) for key in COLUMNS])
+    axis.set_yticks(range(n_rows), [_described(study, r) for r in range(n_rows)])
+    axis.xaxis.tick_top()
+    bar = figure.colorbar(image, ax=axis, ticks=[-3, -2, -1, 0, 1, 2])
+    bar.ax.set_yticklabels(["≤0.001", "0.01", "0.1", "1", "10", "100"])
+    bar.set_label("RMSRE (%); IoU: mean Jaccard distance (%)")
+    return figure
+
+
+def face_count_figure(study: CoarseningStudy) -> Figure:
+    """Errors against the number of faces, with bootstrap bands."""
+    counts = [row.n_faces for row in study.rows]
+    values, (low, high) = 100 * study.rmsre, 100 * study.bands
+    figure = Figure(figsize=(6.0, 4.0), layout="constrained")
+    axis = figure.subplots()
+    for k, key in enumerate(COLUMNS):
+        axis.fill_between(
+            counts, np.maximum(low[:, k], FLOOR), np.maximum(high[:, k], FLOOR), alpha=0.15, linewidth=0
+        )
+        axis.plot(counts, np.maximum(values[:, k], FLOOR), marker="o", markersize=3.5, label=_symbol(key))
+    axis.set_yscale("log")
+    axis.set_xlabel("faces")
+    axis.set_ylabel("RMSRE (%); IoU: mean (%)")
+    axis.grid(True, which="major", alpha=0.3)
+    figure.legend(loc="outside right upper", frameon=False)
+    return figure
+
+
+def write_coarsening_study(
+    study: CoarseningStudy, folder: Path, stem: str = "coarsening"
+) -> tuple[Path, ...]:
+    """Tables (CSV, JSON) of rows and of particles, and the figures (PNG, SVG)."""
+    paths: tuple[Path, ...] = (
+        *write_table(rmsre_table(study), folder, f"{stem}_rmsre"),
+        *write_table(particle_table(study), folder, f"{stem}_particles"),
+        *write_figure(coarsening_figure(study), folder, f"{stem}_rmsre"),
+    )
+    if len({row.n_faces for row in study.rows}) == len(study.rows) > 1:
+        paths += write_figure(face_count_figure(study), folder, f"{stem}_faces")
+    return paths
+
+
+def _symbol(key: str) -> str:
+    return PAPER_SYMBOLS.get(key) or CATALOGUE[key].symbol
+
+
+def _described(study: CoarseningStudy, r: int) -> str:
+    row = study.rows[r]
+    weights = " ".join(f"{row.weights[key]:g}" for key in WEIGHT_KEYS)
+    return f"{row.label}\n({weights})"
+
+
+def _printed(value: float) -> str:
+    return "0" if value < 5e-5 else f"{value:.2g}"

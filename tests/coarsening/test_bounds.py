@@ -1,0 +1,57 @@
+"""What no polyhedron can do better."""
+
+import numpy as np
+import pytest
+
+from regolith_studio.coarsening.bounds import (
+    attainable_errors,
+    greatest_sphericity,
+    least_faces,
+    least_loss,
+    sphericity_reason,
+)
+from regolith_studio.coarsening.weights import LossWeights
+
+SHAPE = {"volume": 0.8, "convex_hull_volume": 1.0, "sphericity": 0.9}
+
+
+def test_that_the_platonic_solids_attain_goldbergs_bound() -> None:
+    tetrahedron = np.pi ** (1 / 3) * (6 * np.sqrt(2) / 12) ** (2 / 3) / np.sqrt(3)
+    cube = (np.pi / 6) ** (1 / 3)
+    golden = (1 + 5**0.5) / 2
+    dodecahedron = np.pi ** (1 / 3) * (6 * (15 + 7 * 5**0.5) / 4) ** (2 / 3) / (3 * np.sqrt(25 + 10 * 5**0.5))
+    assert golden > 1
+    assert greatest_sphericity(4) == pytest.approx(tetrahedron)
+    assert greatest_sphericity(6) == pytest.approx(cube)
+    assert greatest_sphericity(12) == pytest.approx(dodecahedron)
+
+
+def test_that_the_fewest_faces_are_the_first_whose_bound_reaches() -> None:
+    n = least_faces(0.957)
+    assert n is not None
+    assert greatest_sphericity(n) >= 0.957 > greatest_sphericity(n - 1)
+    assert least_faces(0.999999999) is None
+
+
+def test_that_an_impossible_sphericity_is_explained_with_numbers() -> None:
+    assert sphericity_reason(0.957, 20) == (
+        f"Sphericity 0.957 needs at least {least_faces(0.957)} faces; with 20 the most is 0.948."
+    )
+    assert sphericity_reason(0.9, 20) is None
+
+
+def test_that_volume_and_hull_cannot_both_be_met() -> None:
+    both = attainable_errors(SHAPE, 20, LossWeights.from_preset("all"))
+    assert both["volume"] == 0.0
+    assert both["convex_hull_volume"] == pytest.approx(0.2)
+    hull = attainable_errors(SHAPE, 20, LossWeights.of(convex_hull_volume=1, volume=0.1))
+    assert hull["convex_hull_volume"] == 0.0
+    assert hull["volume"] == pytest.approx(0.25)
+
+
+@pytest.mark.parametrize(("of_volume", "of_hull"), [(1, 1), (1, 3), (2, 1), (0, 1)])
+def test_that_the_bound_is_the_least_of_the_loss_over_all_volumes(of_volume: float, of_hull: float) -> None:
+    volumes = np.linspace(0.5, 1.5, 200_001)
+    losses = of_volume * abs(volumes - 0.8) / 0.8 + of_hull * abs(volumes - 1.0)
+    weights = LossWeights.of(volume=of_volume, convex_hull_volume=of_hull)
+    assert least_loss(SHAPE, 20, weights) == pytest.approx(losses.min(), abs=1e-5)

@@ -1,0 +1,203 @@
+"""The three methods through their common door."""
+
+import itertools
+import pickle
+
+import numpy as np
+import pytest
+from scipy.spatial import ConvexHull, HalfspaceIntersection
+
+from regolith_studio.coarsening.coarsen import coarsen, coarsening_steps
+from regolith_studio.coarsening.methods import METHODS
+from regolith_studio.coarsening.methods.annealing import AnnealingSettings
+from regolith_studio.coarsening.result import Coarsened
+from regolith_studio.coarsening.target import Target
+from regolith_studio.coarsening.weights import LossWeights
+from regolith_studio.descriptors.catalogue import LOSS_KEYS
+from regolith_studio.errors import GeometryError, InputError
+from regolith_studio.geometry.directions import icosphere
+from regolith_studio.geometry.mesh import Mesh
+
+EXACT = ("volume", "sphericity", "min_diameter", "max_diameter", "aspect_ratio")
+
+
+@pytest.fixture(scope="module")
+def exact(particle: Mesh) -> Coarsened:
+    return coarsen(particle, 20, "exact", seed=1)
+
+
+def test_that_the_methods_announce_themselves() -> None:
+    assert {"quadric", "annealing", "exact"} <= set(METHODS)
+    assert all(method.label for method in METHODS.values())
+
+
+def test_that_all_descriptors_but_one_are_met_and_the_hull_misses_by_its_bound(exact: Coarsened) -> None:
+    for key in EXACT:
+        assert exact.errors[key] < 1e-6
+    assert exact.errors["convex_hull_volume"] == pytest.approx(exact.bounds["convex_hull_volume"], abs=1e-6)
+    assert exact.reason is None
+
+
+def test_that_scipy_finds_the_same_volume_and_sphericity(exact: Coarsened) -> None:
+    planes = exact.half_spaces
+    hull = ConvexHull(HalfspaceIntersection(planes.equations, np.zeros(3)).intersections)
+    assert hull.volume == pytest.approx(exact.target["volume"], rel=1e-8)
+    sphericity = np.pi ** (1 / 3) * (6 * hull.volume) ** (2 / 3) / hull.area
+    assert sphericity == pytest.approx(exact.target["sphericity"], rel=1e-8)
+
+
+def test_that_every_half_space_bounds_a_facet(exact: Coarsened) -> None:
+    assert exact.n_faces == exact.n_faces_asked == 20
+    assert exact.n_vertices == 36
+    assert exact.n_triangles == 68
+
+
+def test_that_the_result_lies_where_the_particle_lies(exact: Coarsened, particle: Mesh) -> None:
+    assert exact.centre == pytest.approx(particle.centroid, rel=1e-12)
+    size = particle.volume ** (1 / 3)
+    assert np.linalg.norm(exact.mesh.centroid - particle.centroid) < 0.1 * size
+    assert exact.jaccard_distance < 0.12
+
+
+@pytest.mark.parametrize("scale", [1e-9, 1e9])
+def test_that_the_unit_of_length_does_not_matter(exact: Coarsened, particle: Mesh, scale: float) -> None:
+    other = coarsen(particle.moved(scale=scale), 20, "exact", seed=1)
+    assert other.jaccard_distance == pytest.approx(exact.jaccard_distance, abs=1e-6)
+    assert other.half_spaces.offsets == pytest.approx(exact.half_spaces.offsets * scale, rel=1e-5)
+
+
+def test_that_the_same_seed_gives_the_same_polyhedron(exact: Coarsened, particle: Mesh) -> None:
+    again = coarsen(particle, 20, "exact", seed=1)
+    assert (again.half_spaces.points == exact.half_spaces.points).all()
+
+
+def test_that_a_result_travels_between_processes(exact: Coarsened) -> None:
+    copy = pickle.loads(pickle.dumps(exact))
+    assert copy.loss == exact.loss
+    assert copy.n_triangles == exact.n_triangles
+
+
+def test_that_the_steps_begin_with_a_polyhedron_and_end_with_the_result(particle: Mesh) -> None:
+    steps = coarsening_steps(particle, 12, "exact")
+    first = next(steps)
+    assert first.polyhedron is not None
+    assert first.mesh is not None
+    assert first.mesh.centroid == pytest.approx(particle.centroid, abs=0.2 * particle.volume ** (1 / 3))
+    shown = [step.polyhedron for step in steps]
+    assert any(polyhedron is not None for polyhedron in shown)
+
+
+def test_that_a_weight_of_zero_frees_a_descriptor(particle: Mesh) -> None:
+    weights = LossWeights.of(volume=1, aspect_ratio=1, jaccard_distance=1)
+    found = coarsen(particle, 12, "exact", weights)
+    assert found.errors["volume"] < 1e-6
+    assert found.errors["aspect_ratio"] < 1e-6
+    assert found.errors["sphericity"] > 1e-6
+    assert found.jaccard_distance < coarsen(particle, 12, "exact").jaccard_distance
+
+
+def test_that_the_volume_gives_way_where_the_hull_weighs_more(particle: Mesh) -> None:
+    found = coarsen(particle, 16, "exact", LossWeights.from_preset("hull"))
+    assert found.errors["convex_hull_volume"] < 1e-6
+    assert found.errors["volume"] == pytest.approx(found.bounds["volume"], rel=1e-5)
+
+
+def test_that_an_impossible_request_is_explained() -> None:
+    found = coarsen(icosphere(3), 12, "exact", settings={"retries": 0})
+    assert found.reason is not None
+    assert "needs at least" in found.reason
+    assert found.n_faces >= 4
+
+
+def test_that_quadric_reports_its_three_readings(particle: Mesh) -> None:
+    found = coarsen(particle, 20, "quadric", LossWeights.from_preset("quadric"))
+    assert set(found.variants) == {"mesh", "half_spaces", "volume_restored"}
+    assert found.variants["volume_restored"]["volume"] < 1e-12
+    assert found.errors["volume"] == pytest.approx(found.variants["half_spaces"]["volume"], rel=1e-9)
+    restored = coarsen(particle, 20, "quadric", settings={"restore_volume": True})
+    assert restored.errors["volume"] < 1e-9
+
+
+def test_that_annealing_takes_every_improvement_and_others_with_probability_t(particle: Mesh) -> None:
+    assert AnnealingSettings().acceptance_probability(1) == pytest.approx(0.18)
+    cold = coarsen(particle, 12, "annealing", settings={"start_temperature": 0.0, "iterations": 40})
+    assert all(after <= before for before, after in itertools.pairwise(cold.loss_history))
+    assert len(cold.loss_history) == 41
+
+
+def test_that_annealing_repeats_by_seed_and_particle(particle: Mesh) -> None:
+    def points(seed: int, index: int) -> np.ndarray:
+        found = coarsen(particle, 12, "annealing", None, seed, index, {"iterations": 30})
+        return found.half_spaces.points
+
+    assert np.array_equal(points(1, 2), points(1, 2))
+    assert not np.array_equal(points(1, 2), points(1, 3))
+
+
+def test_that_the_best_so_far_is_kept_on_demand(particle: Mesh) -> None:
+    options = {"iterations": 60, "start_temperature": 1.0, "cooling": 1.0, "step_factor": 0.3}
+    last = coarsen(particle, 12, "annealing", settings=options)
+    best = coarsen(particle, 12, "annealing", settings=options | {"best_so_far": True})
+    assert last.loss_history == best.loss_history
+    assert best.loss == pytest.approx(min(best.loss_history), abs=5e-3)
+    assert best.loss < last.loss
+
+
+def test_that_facet_repair_keeps_all_facets(particle: Mesh) -> None:
+    options = {"iterations": 40, "facet_repair": True}
+    assert coarsen(particle, 12, "annealing", settings=options).n_faces >= 11
+
+
+def test_that_the_measured_errors_are_those_of_the_target(exact: Coarsened) -> None:
+    for key in LOSS_KEYS:
+        wanted, found = exact.target[key], exact.achieved[key]
+        assert abs(found - wanted) / wanted == pytest.approx(exact.errors[key], abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        ({"n_faces": 4}, "number of faces must be a whole number from 5 to 200, got 4"),
+        ({"n_faces": 201}, "got 201"),
+        ({"method": "magic"}, "no coarsening method 'magic'"),
+        ({"weights": LossWeights.of()}, "All weights"),
+        ({"settings": {"speed": 1}}, "no setting 'speed'"),
+        ({"settings": {"level": "perfect"}}, "level must be one of"),
+        ({"seed": -1}, "seed must not be negative"),
+        ({"method": "annealing", "settings": {"cooling": 2.0}}, "cooling must lie between"),
+    ],
+)
+def test_that_bad_requests_are_refused_in_one_sentence(
+    particle: Mesh, options: dict[str, object], sentence: str
+) -> None:
+    with pytest.raises(InputError, match=sentence):
+        coarsen(particle, **options)  # type: ignore[arg-type]
+
+
+def test_that_bad_meshes_are_refused_in_one_sentence() -> None:
+    sphere = icosphere(2)
+    with pytest.raises(GeometryError, match="not closed"):
+        coarsen(Mesh(sphere.vertices, sphere.faces[3:]))
+    with pytest.raises(GeometryError, match="flat"):
+        coarsen(Mesh(sphere.vertices * (1, 1, 0), sphere.faces))
+    with pytest.raises(GeometryError, match="at least 4 triangles"):
+        coarsen(Mesh(sphere.vertices, sphere.faces[:2]))
+    with pytest.raises(GeometryError, match="single point"):
+        coarsen(Mesh(sphere.vertices * 0.0, sphere.faces))
+    crossed = Mesh(
+        np.vstack([sphere.vertices, sphere.vertices * 0.9 + (0.5, 0.0, 0.0)]),
+        np.vstack([sphere.faces, sphere.faces + len(sphere.vertices)]),
+    )
+    with pytest.raises(GeometryError, match="intersects itself"):
+        coarsen(crossed)
+
+
+def test_that_a_hull_with_too_few_triangles_is_refused_by_the_baseline() -> None:
+    with pytest.raises(InputError, match="fewer than the 50 faces"):
+        coarsen(icosphere(0), 50, "quadric")
+
+
+def test_that_a_mesh_inside_out_is_turned(particle: Mesh, exact: Coarsened) -> None:
+    turned = Target.of(Mesh(particle.vertices, particle.faces[:, ::-1]))
+    assert turned.descriptors["volume"] == pytest.approx(1.0)
+    assert turned.descriptors["sphericity"] == pytest.approx(exact.target["sphericity"])

@@ -1,0 +1,112 @@
+"""Fig. 8 for small samples."""
+
+import pickle
+from collections.abc import Generator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from regolith_studio.coarsening.weights import LossWeights
+from regolith_studio.errors import InputError
+from regolith_studio.geometry.directions import icosphere
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.studies.coarsening import (
+    COLUMNS,
+    CoarseningStudy,
+    StudyRow,
+    coarsening_study,
+    face_count_rows,
+    paper_rows,
+    particle_table,
+    rmsre_table,
+    sensitivity_rows,
+)
+from regolith_studio.studies.coarsening_figures import write_coarsening_study
+from regolith_studio.studies.progress import StudyProgress
+
+ROWS = (
+    StudyRow("quadric", LossWeights.of(), "quadric", 12),
+    StudyRow("all", LossWeights.from_preset("all"), "exact", 12, (("retries", 3),)),
+)
+
+
+def egg(stretch: float) -> Mesh:
+    sphere = icosphere(3)
+    x, y, z = sphere.vertices.T
+    bumps = 1.0 + 0.2 * np.sin(5 * x + 1) * np.cos(4 * y) + 0.1 * np.sin(6 * z)
+    return Mesh(sphere.vertices * bumps[:, None] * (stretch, 1.0, 0.7), sphere.faces)
+
+
+def finished(steps: Generator[StudyProgress, None, CoarseningStudy]) -> tuple[Any, CoarseningStudy]:
+    told = []
+    while True:
+        try:
+            told.append(next(steps))
+        except StopIteration as end:
+            return told, end.value
+
+
+@pytest.fixture(scope="module")
+def study() -> CoarseningStudy:
+    particles = [Particle(f"egg {s}", egg(s)) for s in (1.2, 1.5)]
+    particles.insert(1, Particle("open", Mesh(egg(1.0).vertices, egg(1.0).faces[5:])))
+    return finished(coarsening_study(particles, ROWS))[1]
+
+
+def test_that_the_rmsre_is_that_of_equation_10(study: CoarseningStudy) -> None:
+    by_hand = np.sqrt((study.errors[0] ** 2 + study.errors[1] ** 2) / 2)
+    assert study.rmsre[:, :-1] == pytest.approx(by_hand[:, :-1])
+    assert study.rmsre[:, -1] == pytest.approx(study.errors[:, :, -1].mean(axis=0))
+
+
+def test_that_the_exact_method_beats_the_baseline_on_what_it_keeps(study: CoarseningStudy) -> None:
+    kept = [COLUMNS.index(key) for key in ("volume", "sphericity", "min_diameter", "max_diameter")]
+    assert (study.rmsre[1, kept] < 1e-6).all()
+    assert (study.rmsre[0, kept] > 1e-3).all()
+
+
+def test_that_a_bad_particle_is_listed_and_stops_nothing(study: CoarseningStudy) -> None:
+    assert study.names == ("egg 1.2", "egg 1.5")
+    assert study.failures[0][0] == "open"
+    assert "not closed" in study.failures[0][1]
+
+
+def test_that_the_band_holds_the_value(study: CoarseningStudy) -> None:
+    low, high = study.bands
+    assert (low <= study.rmsre + 1e-12).all()
+    assert (study.rmsre <= high + 1e-12).all()
+
+
+def test_that_tables_and_figures_are_written(study: CoarseningStudy, tmp_path: Path) -> None:
+    table = rmsre_table(study)
+    assert len(table.rows) == len(ROWS) * len(COLUMNS)
+    assert len(particle_table(study).rows) == 4
+    paths = write_coarsening_study(study, tmp_path)
+    assert {path.name for path in paths} >= {"coarsening_rmsre.csv", "coarsening_rmsre.png"}
+    assert all(path.stat().st_size > 0 for path in paths)
+
+
+def test_that_a_study_travels_between_processes(study: CoarseningStudy) -> None:
+    assert (pickle.loads(pickle.dumps(study)).errors == study.errors).all()
+
+
+def test_that_progress_counts_particles() -> None:
+    told, _ = finished(coarsening_study([Particle("a", egg(1.3))], ROWS[:1]))
+    assert [(step.done, step.total) for step in told] == [(1, 1)]
+    assert told[0].partial is not None
+
+
+def test_that_the_rows_are_those_of_the_figure() -> None:
+    assert len(paper_rows()) == 6
+    assert paper_rows()[0].is_baseline
+    assert [row.n_faces for row in face_count_rows(LossWeights.from_preset("all"), counts=(8, 12))] == [8, 12]
+    changed = sensitivity_rows(LossWeights.of(volume=1, sphericity=2), "annealing", 3.0)
+    assert [row.weights["sphericity"] for row in changed] == [2, 2, 6]
+
+
+def test_that_an_empty_study_is_refused() -> None:
+    with pytest.raises(InputError, match="at least one particle"):
+        next(coarsening_study([], ROWS))
