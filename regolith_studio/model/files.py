@@ -1,0 +1,104 @@
+"""The two files of a fitted model: JSON says what it is and where it comes from, NPZ holds its arrays."""
+
+import hashlib
+import io
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from regolith_studio.errors import FileError, InputError
+from regolith_studio.harmonics.coefficients import CONVENTION
+from regolith_studio.model.models import MODELS
+from regolith_studio.model.protocol import FittedModel
+
+FORMAT = "regolith-studio model"
+LARGEST_FILE = 2**31
+
+
+def write_model(
+    stem: Path, model: FittedModel, provenance: Mapping[str, Any] | None = None
+) -> tuple[Path, Path]:
+    """Write ``stem.json`` and ``stem.npz``; the same model gives the same bytes.
+
+    Parameters
+    ----------
+    provenance
+        Plain values that say what the model was fitted to and by what.
+    """
+    stem.parent.mkdir(parents=True, exist_ok=True)
+    text, numbers = Path(f"{stem}.json"), Path(f"{stem}.npz")
+    values, arrays = model.stored()
+    packed = io.BytesIO()
+    np.savez_compressed(packed, **arrays)  # type: ignore[arg-type]
+    document = {
+        "format": FORMAT,
+        "version": 1,
+        "model": model.key,
+        "unit": model.unit,
+        "l_max": model.l_max,
+        "convention": CONVENTION,
+        "provenance": dict(provenance or {}),
+        "values": values,
+        "arrays": {"file": numbers.name, "sha256": hashlib.sha256(packed.getvalue()).hexdigest()},
+    }
+    text.write_text(json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False) + "\n", "utf-8")
+    numbers.write_bytes(packed.getvalue())
+    return text, numbers
+
+
+def read_model(path: Path) -> FittedModel:
+    """The model whose JSON file (or stem) is `path`; its NPZ file lies beside it.
+
+    Raises
+    ------
+    FileError
+        If a file is missing, broken, or not the one that was written with the other.
+    """
+    text = path if path.suffix == ".json" else Path(f"{path}.json")
+    try:
+        document = json.loads(_bytes_of(text))
+        packed = _bytes_of(text.with_suffix(".npz"))
+    except (json.JSONDecodeError, UnicodeDecodeError, RecursionError) as error:
+        raise FileError(f"{text.name} is not JSON: {error}.") from error
+    if not isinstance(document, dict) or document.get("format") != FORMAT:
+        raise FileError(f"{text.name} does not say that it is a model of shapes.")
+    return model_from(document, packed)
+
+
+def model_from(document: Mapping[str, Any], packed: bytes) -> FittedModel:
+    """The model from what its two files held.
+
+    Raises
+    ------
+    FileError
+        If the files do not belong together, or hold no model.
+    """
+    try:
+        expected, key, values = document["arrays"]["sha256"], document["model"], document["values"]
+        if hashlib.sha256(packed).hexdigest() != expected:
+            raise FileError("The two files of the model do not belong together.")
+        if key not in MODELS:
+            raise FileError(f"There is no model called {key!r}, only {', '.join(MODELS)}.")
+        return MODELS[key].restored(values, _arrays(packed))
+    except (KeyError, TypeError, ValueError, AttributeError, InputError) as error:
+        if isinstance(error, FileError):
+            raise
+        raise FileError(f"The model is broken: {error}.") from error
+
+
+def _arrays(packed: bytes) -> dict[str, NDArray[Any]]:
+    with np.load(io.BytesIO(packed), allow_pickle=False) as stored:
+        return {name: stored[name] for name in stored.files}
+
+
+def _bytes_of(path: Path) -> bytes:
+    try:
+        if path.stat().st_size > LARGEST_FILE:
+            raise FileError(f"{path.name} is larger than a model can be.")
+        return path.read_bytes()
+    except OSError as error:
+        raise FileError(f"{path.name} cannot be read: {error.strerror}.") from error

@@ -1,0 +1,251 @@
+"""Laws of particle size: how equivalent radii are distributed, counted by number.
+
+One class, a mixture of log-normals, is the log-normal law (one component), a kernel estimate in ln r
+(one component a particle) and a fitted mixture; the other is Rosin and Rammler's.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Protocol
+
+import numpy as np
+from scipy.optimize import brentq
+from scipy.special import log_ndtr, ndtr, ndtri
+
+from regolith_studio.errors import InputError
+from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
+
+Bounds = tuple[float, float] | None
+_TABLE = 4001
+
+
+class SizeLaw(Protocol):
+    """A distribution of equivalent radii."""
+
+    def draw(self, n: int, rng: np.random.Generator, bounds: Bounds = None) -> tuple[FloatArray, IntArray]:
+        """`n` radii inside `bounds`, and the component that each came from."""
+
+    def stored(self) -> dict[str, Any]:
+        """Plain values for JSON."""
+
+
+def checked_bounds(bounds: Bounds) -> Bounds:
+    """The range itself, if it is one.
+
+    Raises
+    ------
+    InputError
+        If an end is not positive and finite, or they are not in order.
+    """
+    if bounds is None:
+        return None
+    low, high = float(bounds[0]), float(bounds[1])
+    if not 0 < low < high < np.inf:
+        raise InputError(
+            f"A range of sizes needs two positive radii, the smaller first, got {low:g} to {high:g}."
+        )
+    return low, high
+
+
+@dataclass(frozen=True, eq=False)
+class LogNormalSizes:
+    """Mixture of normal distributions of ln r.
+
+    Parameters
+    ----------
+    weights, means, deviations
+        Of the components, shape (k,); means and standard deviations of ln r, r in the sample's unit.
+    """
+
+    weights: FloatArray
+    means: FloatArray
+    deviations: FloatArray
+
+    def __post_init__(self) -> None:
+        for name in ("weights", "means", "deviations"):
+            object.__setattr__(self, name, locked_floats(getattr(self, name), (None,), name))
+        if not len(self.weights) == len(self.means) == len(self.deviations) or not len(self.weights):
+            raise ValueError("weights, means and deviations must have one length")
+        if not (self.deviations > 0).all() or not (self.weights >= 0).all() or not self.weights.sum() > 0:
+            raise ValueError("deviations must be positive, weights not negative and not all zero")
+
+    def __reduce__(self) -> tuple[Callable[..., "LogNormalSizes"], tuple[Any, ...]]:
+        return LogNormalSizes, (self.weights, self.means, self.deviations)
+
+    @classmethod
+    def log_normal(cls, radii: FloatArray) -> "LogNormalSizes":
+        """One log-normal law, by mean and standard deviation of ln r."""
+        logs = np.log(radii)
+        return cls(np.ones(1), logs[None].mean(axis=1), _deviation(logs)[None])
+
+    @classmethod
+    def kernel(cls, radii: FloatArray, width: float | None = None) -> "LogNormalSizes":
+        """A kernel estimate in ln r: a component a particle.
+
+        `width` is its standard deviation in ln r; by default Silverman's (1986, Eq. 3.31), the smaller
+        of the standard deviation and the interquartile range / 1.34 times 0.9 n^(-1/5).
+        """
+        logs = np.log(radii)
+        n = len(logs)
+        if width is None:
+            quarter = float(np.subtract(*np.percentile(logs, [75, 25]))) / 1.34
+            width = 0.9 * min(float(_deviation(logs)), quarter or np.inf) * n**-0.2
+        return cls(np.full(n, 1 / n), logs, np.full(n, max(width, 1e-9)))
+
+    def draw(self, n: int, rng: np.random.Generator, bounds: Bounds = None) -> tuple[FloatArray, IntArray]:
+        """Exactly `n` radii from the law cut to `bounds`, whatever its share there.
+
+        Where the law holds less than 1e-300 inside the bounds, radii are even in ln r and components
+        those nearest to the range.
+        """
+        picks, shares = rng.random(n), rng.random(n)
+        limits = checked_bounds(bounds)
+        if limits is None:
+            component = _picked(self.weights, picks)
+            return np.exp(self.means[component] + self.deviations[component] * ndtri(shares)), component
+        low, high = np.log(limits[0]), np.log(limits[1])
+        below, above = (low - self.means) / self.deviations, (high - self.means) / self.deviations
+        mass = self.weights * _mass(below, above)
+        if not mass.sum() > 1e-300:
+            nearest = np.abs(np.clip(self.means, low, high) - self.means)
+            component = np.argsort(nearest, kind="stable")[(picks * min(20, len(nearest))).astype(np.int64)]
+            return np.exp(low + shares * (high - low)), component
+        component = _picked(mass, picks)
+        standard = _truncated(below[component], above[component], shares)
+        logs = self.means[component] + self.deviations[component] * standard
+        return np.clip(np.exp(np.clip(logs, low, high)), *limits), component
+
+    def stored(self) -> dict[str, Any]:
+        """Plain values for JSON."""
+        return {
+            "type": "log_normal_mixture",
+            "weights": self.weights.tolist(),
+            "means": self.means.tolist(),
+            "deviations": self.deviations.tolist(),
+        }
+
+
+@dataclass(frozen=True)
+class RosinRammlerSizes:
+    """Share of the volume in particles larger than r is exp(-(r / scale)^spread), between two limits.
+
+    Counted by number the law diverges towards small particles, so that a lower limit is part of it.
+
+    Parameters
+    ----------
+    scale, spread
+        Radius that 36.8 % of the volume exceeds, and the exponent.
+    smallest, largest
+        Limits of the radii.
+    """
+
+    scale: float
+    spread: float
+    smallest: float
+    largest: float
+
+    def __post_init__(self) -> None:
+        if not (self.scale > 0 and self.spread > 0 and 0 < self.smallest < self.largest < np.inf):
+            raise ValueError(f"scale, spread and limits must be positive and in order, got {self}")
+
+    @classmethod
+    def fitted(cls, radii: FloatArray) -> "RosinRammlerSizes":
+        """Maximum likelihood with each particle weighted by its volume; limits of the sample."""
+        weights = (radii / radii.max()) ** 3
+        weights /= weights.sum()
+        logs = np.log(radii / radii.max())
+
+        def score(spread: float) -> float:
+            powers = weights * np.exp(spread * logs)
+            return float(powers @ logs / powers.sum() - 1 / spread - weights @ logs)
+
+        spread = float(brentq(score, 1e-2, 1e3))
+        scale = float(radii.max() * (weights @ np.exp(spread * logs)) ** (1 / spread))
+        return cls(scale, spread, float(radii.min()), float(radii.max() * (1 + 1e-9)))
+
+    def draw(self, n: int, rng: np.random.Generator, bounds: Bounds = None) -> tuple[FloatArray, IntArray]:
+        """Radii from the law by number, cut to `bounds` if given."""
+        shares = rng.random(n)
+        limits = checked_bounds(bounds)
+        logs, rising = self._table if limits is None else self._tabulated(*limits)
+        return np.exp(np.interp(shares, rising, logs)), np.zeros(n, dtype=np.int64)
+
+    @cached_property
+    def _table(self) -> tuple[FloatArray, FloatArray]:
+        return self._tabulated(self.smallest, self.largest)
+
+    def _tabulated(self, low: float, high: float) -> tuple[FloatArray, FloatArray]:
+        """ln r and the share of particles below it."""
+        logs = np.linspace(np.log(low), np.log(high), _TABLE)
+        logs[[0, -1]] = np.nextafter(np.log(low), np.inf), np.nextafter(np.log(high), -np.inf)
+        relative = logs - np.log(self.scale)
+        exponent = (self.spread - 3) * relative - np.exp(np.minimum(self.spread * relative, 700.0))
+        density = np.exp(exponent - exponent.max())
+        rising = np.concatenate([[0.0], np.cumsum((density[1:] + density[:-1]) / 2)])
+        return logs, rising / rising[-1]
+
+    def stored(self) -> dict[str, Any]:
+        """Plain values for JSON."""
+        return {
+            "type": "rosin_rammler",
+            "scale": self.scale,
+            "spread": self.spread,
+            "smallest": self.smallest,
+            "largest": self.largest,
+        }
+
+
+SIZE_LAWS: Mapping[str, Callable[[FloatArray], SizeLaw]] = {
+    "kernel": LogNormalSizes.kernel,
+    "log_normal": LogNormalSizes.log_normal,
+    "rosin_rammler": RosinRammlerSizes.fitted,
+}
+"""What a law can be fitted as, from equivalent radii (n,)."""
+
+
+def size_law_from(values: Mapping[str, Any]) -> SizeLaw:
+    """A law from what it stored.
+
+    Raises
+    ------
+    InputError
+        If the values are no law.
+    """
+    try:
+        if values["type"] == "log_normal_mixture":
+            return LogNormalSizes(values["weights"], values["means"], values["deviations"])
+        if values["type"] == "rosin_rammler":
+            return RosinRammlerSizes(
+                *(float(values[name]) for name in ("scale", "spread", "smallest", "largest"))
+            )
+    except (KeyError, TypeError, ValueError) as error:
+        raise InputError(f"The law of sizes is broken: {error}.") from error
+    raise InputError(f"There is no law of sizes called {values['type']!r}.")
+
+
+def _deviation(logs: FloatArray) -> FloatArray:
+    """Standard deviation of ln r (unbiased variance), at least 1e-9: sizes may be equal."""
+    return np.asarray(np.maximum(logs.std(ddof=1), 1e-9))
+
+
+def _picked(weights: FloatArray, shares: FloatArray) -> IntArray:
+    rising = np.cumsum(weights)
+    place = np.searchsorted(rising / rising[-1], shares, side="right")
+    return np.minimum(place, len(weights) - 1).astype(np.int64)
+
+
+def _mass(below: FloatArray, above: FloatArray) -> FloatArray:
+    """Share of the standard normal law between two values, accurate in both tails."""
+    flipped = below > 0
+    low, high = np.where(flipped, -above, below), np.where(flipped, -below, above)
+    return np.asarray(np.exp(log_ndtr(high)) - np.exp(log_ndtr(low)))
+
+
+def _truncated(below: FloatArray, above: FloatArray, shares: FloatArray) -> FloatArray:
+    """Quantiles of the standard normal law cut to [below, above]."""
+    flipped = below > 0
+    low, high = np.where(flipped, -above, below), np.where(flipped, -below, above)
+    first, last = ndtr(low), ndtr(high)
+    values = ndtri(first + shares * (last - first))
+    return np.asarray(np.clip(np.where(flipped, -values, values), below, above))
