@@ -254,14 +254,15 @@ def _slope(height: float, wide: float, high: float) -> float:
 def shadow(graph: HullGraph, axis: Vector, first: Vector, second: Vector, search: Search) -> int:
     """Outline of the shadow along `axis` in `search`, in coordinates along `first` and `second`."""
     points, near, x, y = graph.points, search.near, search.x, search.y
-    n = walk_rim(graph, axis, near[2], search.rim)
+    way = walk_rim(graph, axis, near[2], search.rim)
+    n = abs(way)
     leftmost = np.inf
     for i in range(n):
         x[i] = along(points, search.rim[i], first)
         y[i] = along(points, search.rim[i], second)
         leftmost = min(leftmost, x[i])
     lowest = along(points, near[3], first)
-    if n < 3 or leftmost > lowest + ROUNDING or max(_reversals(x, n), _reversals(y, n)) > 2:
+    if n < 3 or leftmost > lowest + ROUNDING or (way < 0 and max(_reversals(x, n), _reversals(y, n)) > 2):
         for i in range(len(points)):
             x[i], y[i] = along(points, i, first), along(points, i, second)
         corners = outline(x, y)

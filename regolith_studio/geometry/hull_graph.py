@@ -20,6 +20,9 @@ SLIVER = 1e-14
 COPLANAR = 1e-9
 """Neighbouring faces whose normals differ by less, in radians, are one facet."""
 
+EDGE_ON = 1e-9
+"""A face whose normal times the axis is below this is seen edge-on."""
+
 
 class HullGraph(NamedTuple):
     """A closed triangulated convex solid as half-edges; half-edge 3 f + k starts at corner k of face f.
@@ -195,32 +198,34 @@ def walk_rim(graph: HullGraph, axis: Vector, start: int, rim: IntArray) -> int:
     Returns
     -------
     int
-        Number of vertices, 0 where rounding hides the outline (an edge-on sliver).
+        Number of vertices; negative if a face is edge-on, so that the outline may run back on itself;
+        0 where rounding hides it.
     """
     h = graph.outgoing[start]
-    while not _on_rim(graph, axis, h):
+    while not (_up(graph, axis, h) > 0.0 and _up(graph, axis, graph.twin[h]) <= 0.0):
         h = graph.twin[after(after(h))]
         if h == graph.outgoing[start]:
             return 0
     first = h
-    n = 0
+    n, way = 0, 1
     while n < len(rim):
         rim[n] = graph.origin[h]
         n += 1
         h = after(h)
-        turns = 0
-        while not _on_rim(graph, axis, h):
-            h = after(graph.twin[h])
-            turns += 1
-            if turns > len(rim):
-                return 0
+        for _ in range(len(rim)):
+            beyond = graph.twin[h]
+            up = _up(graph, axis, beyond)
+            if abs(up) < EDGE_ON:
+                way = -1
+            if up <= 0.0:
+                break
+            h = after(beyond)
         if h == first:
-            return n
+            return way * n
     return 0
 
 
 @inlined
-def _on_rim(graph: HullGraph, axis: Vector, h: int) -> bool:
-    """Whether the face of half-edge `h` looks up and the one beyond looks down."""
-    up = along(graph.normals, h // 3, axis) > 0.0
-    return bool(up and not along(graph.normals, graph.twin[h] // 3, axis) > 0.0)
+def _up(graph: HullGraph, axis: Vector, h: int) -> float:
+    """How far the face of half-edge `h` looks along `axis`."""
+    return along(graph.normals, h // 3, axis)

@@ -100,13 +100,35 @@ def smallest_rectangle(x: FloatArray, y: FloatArray, n: int) -> tuple[float, flo
             left = k
         wide = (x[right] - x[left]) * dx + (y[right] - y[left]) * dy
         high = (y[up] - y[i]) * dx - (x[up] - x[i]) * dy
-        if wide * high < least * (1.0 + TIE):
-            # Rounding in a very short side may have sent a caliper too far: measure all corners.
-            wide, high = _extents(x, y, n, dx, dy)
-            area, longer = wide * high, max(wide, high)
-            shorter = longest - longer > TIE * longest
-            if area < least * (1.0 - TIE) or (area < least * (1.0 + TIE) and shorter):
+        area = wide * high
+        if area < least * (1.0 + TIE):
+            longer = max(wide, high)
+            if area < least * (1.0 - TIE) or longer < longest * (1.0 - TIE):
                 least, cosine, sine, longest = area, dx, dy, longer
+    wide, high = _extents(x, y, n, cosine, sine)
+    if wide * high > least * (1.0 + TIE):
+        return _measured_rectangle(x, y, n)
+    return wide * high, cosine, sine, max(wide, high)
+
+
+@kernel
+def _measured_rectangle(x: FloatArray, y: FloatArray, n: int) -> tuple[float, float, float, float]:
+    """As :func:`smallest_rectangle`, but measuring all corners for each side.
+
+    For when rounding in a very short side sent a caliper too far.
+    """
+    least, cosine, sine, longest = np.inf, 1.0, 0.0, np.inf
+    for i in range(n):
+        j = i + 1 if i + 1 < n else 0
+        dx, dy = x[j] - x[i], y[j] - y[i]
+        size = np.sqrt(dx * dx + dy * dy)
+        if size < SHORTEST:
+            continue
+        wide, high = _extents(x, y, n, dx / size, dy / size)
+        area, longer = wide * high, max(wide, high)
+        shorter = longest - longer > TIE * longest
+        if area < least * (1.0 - TIE) or (area < least * (1.0 + TIE) and shorter):
+            least, cosine, sine, longest = area, dx / size, dy / size, longer
     return least, cosine, sine, longest
 
 
