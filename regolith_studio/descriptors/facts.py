@@ -12,6 +12,7 @@ from regolith_studio.geometry.ellipsoid import ellipsoid_area, equal_ellipsoid
 from regolith_studio.geometry.heuristic_box import heuristic_box
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.oriented_box import OrientedBox, minimum_volume_box
+from regolith_studio.geometry.volume_and_area import volume_and_area
 
 FLAT = 1e-9
 """A mesh whose volume is below this share of its size cubed encloses nothing."""
@@ -45,12 +46,8 @@ class ShapeFacts:
         self._solid = solid
         self.box_metric = box_metric
         self.mesh = solid.mesh if isinstance(solid, ConvexPolyhedron) else solid
-        self.volume = _checked_volume(self.mesh)
-
-    @property
-    def surface_area(self) -> float:
-        """Surface area, squared length unit."""
-        return self.mesh.surface_area
+        self.volume, self.surface_area = volume_and_area(self.mesh)
+        _check_volume(self.mesh, self.volume)
 
     @cached_property
     def hull(self) -> Mesh:
@@ -74,15 +71,14 @@ class ShapeFacts:
         return ellipsoid_area(equal_ellipsoid(self.hull))
 
 
-def _checked_volume(mesh: Mesh) -> float:
+def _check_volume(mesh: Mesh, volume: float) -> None:
     if len(mesh.faces) < 4:
         raise GeometryError(f"The mesh has {len(mesh.faces)} faces; a solid needs at least 4.")
     low, high = mesh.bounds
     size = float((high - low).max())
-    if not abs(mesh.volume) > FLAT * size**3:
+    if not abs(volume) > FLAT * size**3:
         raise GeometryError(
-            f"The mesh is flat: it encloses a volume of {abs(mesh.volume):.3g} at a size of {size:.3g}."
+            f"The mesh is flat: it encloses a volume of {abs(volume):.3g} at a size of {size:.3g}."
         )
-    if mesh.volume < 0.0:
-        raise GeometryError(f"The mesh is inside out: its signed volume is {mesh.volume:.3g}.")
-    return mesh.volume
+    if volume < 0.0:
+        raise GeometryError(f"The mesh is inside out: its signed volume is {volume:.3g}.")
