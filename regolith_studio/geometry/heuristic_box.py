@@ -27,7 +27,7 @@ def heuristic_box(solid: Mesh | ConvexPolyhedron) -> OrientedBox:
     size = float((high - low).max())
     middle = (low + high) / 2
     try:
-        to_box, extents = oriented_bounds((hull.vertices - middle) / size)
+        to_box, extents = oriented_bounds((hull.vertices - middle) / size)  # type: ignore[no-untyped-call]
     except (ValueError, IndexError) as error:
         raise GeometryError("The mesh is too small or too flat for trimesh's bounding box.") from error
     order = np.argsort(-extents, kind="stable")

@@ -51,11 +51,11 @@ def test_that_the_box_of_a_ball_is_the_cube_around_it() -> None:
     assert minimum_volume_box(icosphere(3)).extents == pytest.approx(np.full(3, 2.0), rel=0.01)
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", range(6))
 @pytest.mark.parametrize("stretch", [0.0, 0.6])
 def test_that_no_simplex_search_finds_a_smaller_box(seed: int, stretch: float) -> None:
-    solid = random_polyhedron(seed, n_faces=8 + 3 * seed, stretch=stretch)
-    assert minimum_volume_box(solid).volume <= by_simplex_search(solid.vertices, 5, seed) * (1 + 1e-9)
+    solid = random_polyhedron(seed, n_faces=8 + 5 * seed, stretch=stretch)
+    assert minimum_volume_box(solid).volume <= by_simplex_search(solid.vertices, 3, seed) * (1 + 1e-9)
 
 
 @pytest.mark.slow
