@@ -9,6 +9,7 @@ import numpy as np
 from regolith_studio.coarsening.bounds import attainable_errors
 from regolith_studio.coarsening.loss import loss
 from regolith_studio.coarsening.methods import METHODS, CoarseningMethod
+from regolith_studio.coarsening.polyhedra import polyhedron_of
 from regolith_studio.coarsening.progress import CoarseningProgress
 from regolith_studio.coarsening.result import Coarsened, MethodResult
 from regolith_studio.coarsening.target import Target
@@ -91,7 +92,7 @@ def coarsening_steps(
             return _measured(target, end.value, method, n_faces, weights)
         polyhedron = None
         if step.half_spaces is not None:
-            polyhedron = ConvexPolyhedron.from_half_spaces(target.in_particle_unit(step.half_spaces))
+            polyhedron = polyhedron_of(target.in_particle_unit(step.half_spaces))
         yield CoarseningProgress(step.step, step.steps, step.loss, polyhedron, target.centre)
 
 
@@ -137,7 +138,7 @@ def _measured(
 ) -> Coarsened:
     """Measure the result by the public descriptors, independently of the method."""
     unit = ConvexPolyhedron.from_half_spaces(result.half_spaces)
-    polyhedron = ConvexPolyhedron.from_half_spaces(target.in_particle_unit(unit.half_spaces))
+    polyhedron = unit.moved(scale=target.scale)
     achieved = describe(unit)
     errors = relative_errors(target.descriptors, achieved)
     overlap = target.jaccard_distance(unit.half_spaces)
