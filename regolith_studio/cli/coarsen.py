@@ -45,7 +45,7 @@ def coarsen(
     """Coarsen meshes to convex polyhedra that keep the chosen descriptors (section 2.4)."""
     from regolith_studio.cli.inputs import exit_code, read_inputs
     from regolith_studio.cli.terminal import complain, follow, print_json
-    from regolith_studio.jobs.samples import coarsen_sample
+    from regolith_studio.jobs.coarsening import coarsen_sample
     from regolith_studio.session.outputs.coarsening import coarsening_document, write_coarsening
     from regolith_studio.session.outputs.staging import staged_folder
 

@@ -9,7 +9,7 @@ def describe(meshes: Meshes, unit: Unit = "um", json: Json = False, jobs: Jobs =
     """Measure meshes: volume, area, sphericity, diameters ..., and what is wrong with them."""
     from regolith_studio.cli.inputs import exit_code, read_inputs
     from regolith_studio.cli.terminal import complain, follow, print_json, print_table
-    from regolith_studio.jobs.samples import examine_sample
+    from regolith_studio.jobs.examining import examine_sample
     from regolith_studio.session.outputs.descriptors import described, short_table
 
     del seed  # taken by every command; nothing here is random

@@ -29,8 +29,8 @@ def extract(
     """Turn each label of a CT volume into a particle mesh (section 2.1)."""
     from regolith_studio.cli.terminal import follow, print_json
     from regolith_studio.imaging.extraction import ExtractionSettings
+    from regolith_studio.jobs.examining import examine_sample
     from regolith_studio.jobs.extracting import extract_file
-    from regolith_studio.jobs.samples import examine_sample
     from regolith_studio.readers.units import unit_factor
     from regolith_studio.session.outputs.descriptors import described
     from regolith_studio.session.outputs.particles import write_particles

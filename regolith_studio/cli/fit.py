@@ -25,7 +25,7 @@ def fit(
     """Fit spherical harmonics to meshes; write coefficients and spectrum."""
     from regolith_studio.cli.inputs import exit_code, read_inputs
     from regolith_studio.cli.terminal import complain, follow, print_json
-    from regolith_studio.jobs.samples import fit_sample
+    from regolith_studio.jobs.fitting import fit_sample
     from regolith_studio.session.choices import Choices
     from regolith_studio.session.outputs.fits import FittedSample, fits_document, write_fits
 

@@ -1,14 +1,12 @@
 """Many jobs through one runner: few at a time, answers in the order of the questions."""
 
 import queue
-from collections.abc import Callable, Generator, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable
 from itertools import count
 from typing import Any
 
 from regolith_studio.errors import Cancelled, RegolithError
 from regolith_studio.jobs.events import Ending, Event, Failed, Finished, Job, Started, Steps, Stopped
-from regolith_studio.jobs.runners.inline import InlineRunner
-from regolith_studio.jobs.runners.process_pool import ProcessPoolRunner, cores
 from regolith_studio.jobs.runners.protocol import Handle, Runner
 
 _PATIENCE = 0.1
@@ -48,26 +46,6 @@ def in_order(runner: Runner, jobs: Iterable[Job], window: int = 2) -> Generator[
             handle.cancel()
 
 
-def mapper(workers: int) -> Callable[[Callable[[Any], Any], Iterable[Any]], Iterator[Any]]:
-    """As ``map``, for `workers` processes (0: one a core): in order, lazily, few at a time.
-
-    An item whose call raises ends the mapping with a ``RegolithError`` of its sentence.
-    """
-
-    def mapped(function: Callable[[Any], Any], items: Iterable[Any]) -> Iterator[Any]:
-        runner = batch_runner(workers)
-        try:
-            for ending in in_order(
-                runner, (Job(call, (function, item)) for item in items), window_for(workers)
-            ):
-                if ending is not None:
-                    yield value_of(ending)
-        finally:
-            runner.close()
-
-    return mapped
-
-
 def call(function: Callable[[Any], Any], item: Any) -> Steps:
     """A job of a single step: `function` of `item`."""
     yield Started("Working")
@@ -93,20 +71,9 @@ def value_of(ending: Ending) -> Any:
             raise Cancelled("The work was stopped.")
 
 
-def window_for(workers: int) -> int:
-    """How many jobs to have under way so that `workers` processes never wait (0: one a core)."""
-    return 1 if workers == 1 else 2 * (workers or cores())
-
-
 def _noting(answers: "queue.SimpleQueue[tuple[int, Ending]]", number: int) -> Callable[[Event], None]:
     def note(event: Event) -> None:
         if isinstance(event, Finished | Failed | Stopped):
             answers.put((number, event))
 
     return note
-
-
-def batch_runner(workers: int) -> Runner:
-    """The runner for `workers` jobs at a time: inline for one, processes for more (0: all cores)."""
-    workers = workers or cores()
-    return InlineRunner() if workers == 1 else ProcessPoolRunner(workers)

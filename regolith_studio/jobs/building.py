@@ -10,9 +10,8 @@ from regolith_studio.dataset.folder import write_dataset
 from regolith_studio.errors import DatasetError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.sample_spectrum import sample_spectrum
-from regolith_studio.jobs.coarsening import CoarsenedParticle, CoarseningOrder
+from regolith_studio.jobs.coarsening import CoarsenedParticle, CoarseningOrder, coarsen_sample
 from regolith_studio.jobs.events import Progress, Started, Steps
-from regolith_studio.jobs.samples import coarsen_sample
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
-"""Coarsens one particle, with every better polyhedron on the way."""
+"""Coarsens one particle, with every better polyhedron on the way, or a whole sample."""
 
 import time
-from collections.abc import Generator
+from collections.abc import Generator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -10,12 +10,14 @@ from regolith_studio.coarsening.coarsen import coarsening_steps
 from regolith_studio.coarsening.result import Coarsened
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import LossWeights
+from regolith_studio.errors import Cancelled
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.fit import fit_harmonics
 from regolith_studio.harmonics.surface import reconstruct
-from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
+from regolith_studio.jobs.crew import Crew, hired
+from regolith_studio.jobs.events import Ending, Failed, Finished, Job, Partial, Progress, Started, Step, Steps
 from regolith_studio.jobs.fitting import FIT_DEGREE
 
 
@@ -89,6 +91,29 @@ def coarsen_particle(particle: Particle, order: CoarseningOrder, index: int) -> 
     coarsened = yield from _told(mesh, order, index)
     seconds = time.perf_counter() - begun
     return CoarsenedParticle(particle.name, index, coarsened, "", coefficients, notes, seconds)
+
+
+def coarsen_sample(particles: Sequence[Particle], order: CoarseningOrder, workers: int | Crew = 1) -> Steps:
+    """Fit and coarsen every particle; returns a tuple of :class:`CoarsenedParticle`.
+
+    A particle that fails is told with its sentence and does not stop the others. The results do not
+    depend on `workers` (0: one process a core).
+    """
+    yield Started("Coarsening", len(particles))
+    jobs = [Job(coarsen_particle, (particle, order, at)) for at, particle in enumerate(particles)]
+    with hired(workers) as crew:
+        endings = yield from crew.all(jobs, [particle.name for particle in particles])
+    return tuple(_outcome(at, p, endings[at]) for at, p in enumerate(particles))
+
+
+def _outcome(at: int, particle: Particle, ending: Ending) -> CoarsenedParticle:
+    match ending:
+        case Finished(value) if isinstance(value, CoarsenedParticle):
+            return value
+        case Failed(sentence):
+            return CoarsenedParticle(particle.name, at, None, sentence, notes=particle.notes)
+        case _:
+            raise Cancelled("The coarsening was stopped.")
 
 
 @lru_cache(maxsize=4)

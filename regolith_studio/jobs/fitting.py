@@ -1,62 +1,18 @@
 """Spherical-harmonics coefficients of one particle, its surface at a degree, and descriptors."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 from regolith_studio.descriptors.describe import Descriptors, describe
-from regolith_studio.errors import RegolithError
-from regolith_studio.geometry.health import MeshHealth, inspect
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.fit import HarmonicFit, fit_harmonics
 from regolith_studio.harmonics.surface import reconstruct
-from regolith_studio.jobs.events import Partial, Progress, Started, Steps
+from regolith_studio.jobs.batch import value_of
+from regolith_studio.jobs.crew import Crew, hired
+from regolith_studio.jobs.events import Failed, Job, Partial, Progress, Started, Steps
 
 FIT_DEGREE = 30
 """Everything is fitted to this degree once; lower ones are truncations of that fit."""
-
-
-@dataclass(frozen=True)
-class Examined:
-    """What is known of a particle before anything is fitted.
-
-    Parameters
-    ----------
-    descriptors
-        ``None`` where the mesh has none, for example because it is flat.
-    problem
-        Why, in one sentence.
-    """
-
-    health: MeshHealth
-    descriptors: Descriptors | None
-    problem: str = ""
-
-
-def examine(particle: Particle, box_metric: str = "exact") -> Examined:
-    """Health and descriptors of one particle; never raises for what is wrong with the mesh."""
-    health = inspect(particle.mesh)
-    try:
-        return Examined(health, describe(particle.mesh, box_metric=box_metric))
-    except RegolithError as error:
-        return Examined(health, None, str(error))
-
-
-def examine_one(particle: Particle, box_metric: str = "exact") -> Steps:
-    """As :func:`examine`, for a runner."""
-    yield Started("Measuring")
-    return examine(particle, box_metric)
-
-
-def examine_particles(particles: Sequence[Particle], box_metric: str = "exact") -> Steps:
-    """Each particle in order; partial results and the result are tuples of :class:`Examined`, so far."""
-    yield Started("Measuring particles", len(particles))
-    seen: list[Examined] = []
-    for particle in particles:
-        seen.append(examine(particle, box_metric))
-        yield Partial(tuple(seen))
-        yield Progress(len(seen), len(particles), particle.name)
-    return tuple(seen)
 
 
 def fit_one(mesh: Mesh, l_max: int = FIT_DEGREE) -> Steps:
@@ -80,3 +36,12 @@ def describe_meshes(meshes: Mapping[str, Mesh], box_metric: str = "exact") -> St
         yield Partial(dict(described))
         yield Progress(len(described), len(meshes), name)
     return described
+
+
+def fit_sample(particles: Sequence[Particle], l_max: int = FIT_DEGREE, workers: int | Crew = 1) -> Steps:
+    """Fit every particle; returns a tuple of ``HarmonicFit``, or the sentence where that is impossible."""
+    yield Started("Fitting spherical harmonics", len(particles))
+    jobs = [Job(fit_one, (particle.mesh, l_max)) for particle in particles]
+    with hired(workers) as crew:
+        endings = yield from crew.all(jobs, [particle.name for particle in particles])
+    return tuple(e.sentence if isinstance(e, Failed) else value_of(e) for e in endings)

@@ -4,15 +4,17 @@ from collections.abc import Generator, Sequence
 from typing import Any
 
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.jobs.batch import mapper
 from regolith_studio.jobs.coarsening import CoarseningOrder
+from regolith_studio.jobs.crew import Crew, hired
 from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
 from regolith_studio.studies.coarsening import TargetChoice, coarsening_study
 from regolith_studio.studies.lmax import lmax_study
 from regolith_studio.studies.progress import StudyProgress
 
 
-def study_lmax(particles: Sequence[Particle], workers: int = 1, seed: int = 0, **options: Any) -> Steps:
+def study_lmax(
+    particles: Sequence[Particle], workers: int | Crew = 1, seed: int = 0, **options: Any
+) -> Steps:
     """Fig. 3 for `particles`; partial results and the result are ``LmaxStudy``.
 
     Parameters
@@ -23,11 +25,12 @@ def study_lmax(particles: Sequence[Particle], workers: int = 1, seed: int = 0, *
         Further ones of :func:`~regolith_studio.studies.lmax.lmax_study`: degrees, level, keys ...
     """
     yield Started("RMSRE against l_max", len(particles))
-    return (yield from _told(lmax_study(particles, mapper=mapper(workers), seed=seed, **options)))
+    with hired(workers) as crew:
+        return (yield from _told(lmax_study(particles, mapper=crew.map, seed=seed, **options)))
 
 
 def study_coarsening(
-    particles: Sequence[Particle], order: CoarseningOrder, workers: int = 1, **options: Any
+    particles: Sequence[Particle], order: CoarseningOrder, workers: int | Crew = 1, **options: Any
 ) -> Steps:
     """Fig. 8 for `particles`; partial results and the result are ``CoarseningStudy``.
 
@@ -41,17 +44,18 @@ def study_coarsening(
         Further ones of :func:`~regolith_studio.studies.coarsening.coarsening_study`: rows, box_metric.
     """
     yield Started("RMSRE against loss weights", len(particles))
-    study = coarsening_study(
-        particles,
-        n_faces=order.n_faces,
-        method=order.method,
-        seed=order.seed,
-        settings=dict(order.settings),
-        target=TargetChoice(order.target, order.l_max, order.level),
-        mapper=mapper(workers),
-        **options,
-    )
-    return (yield from _told(study))
+    with hired(workers) as crew:
+        study = coarsening_study(
+            particles,
+            n_faces=order.n_faces,
+            method=order.method,
+            seed=order.seed,
+            settings=dict(order.settings),
+            target=TargetChoice(order.target, order.l_max, order.level),
+            mapper=crew.map,
+            **options,
+        )
+        return (yield from _told(study))
 
 
 def _told(steps: Generator[StudyProgress, None, Any]) -> Generator[Step, None, Any]:

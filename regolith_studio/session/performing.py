@@ -9,11 +9,12 @@ from regolith_studio.dataset.folder import write_dataset
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.building import dataset_of
-from regolith_studio.jobs.coarsening import CoarsenedParticle
+from regolith_studio.jobs.coarsening import CoarsenedParticle, coarsen_sample
+from regolith_studio.jobs.crew import Crew, hired
 from regolith_studio.jobs.events import Progress, Started, Step, Steps
-from regolith_studio.jobs.fitting import Examined
+from regolith_studio.jobs.examining import Examined, examine_sample
+from regolith_studio.jobs.fitting import fit_sample
 from regolith_studio.jobs.loading import Loaded, load_particles, load_sample
-from regolith_studio.jobs.samples import coarsen_sample, examine_sample, fit_sample
 from regolith_studio.jobs.studying import study_coarsening, study_lmax
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.outputs.coarsening import write_coarsening
@@ -80,22 +81,28 @@ def perform(recipe: Recipe, base: Path, folder: Path, workers: int = 1) -> Steps
     """
     done = Performed(folder, recipe, recipe.choices())
     yield from _load(done, base)
-    wish = recipe.outputs
-    if wish.descriptors or wish.summary:
-        yield from _describe(done, workers)
-    if wish.fits:
-        yield from _fit(done, workers)
-    if wish.meshes or wish.dataset or wish.summary:
-        yield from _coarsen(done, workers)
-    if wish.lmax_study:
-        yield from _study(done, "lmax_study", study_lmax(done.particles, workers=workers))
-    if wish.coarsening_study:
-        steps = study_coarsening(done.particles, done.choices.order, workers=workers)
-        yield from _study(done, "coarsening_study", steps)
+    with hired(workers) as crew:
+        yield from _parts(done, crew)
     write_bytes(folder / "recipe.json", recipe.to_json().encode("utf-8"))
-    if wish.summary:
+    if recipe.outputs.summary:
         write_summary(folder, summary_facts(done))
     return done
+
+
+def _parts(done: Performed, crew: Crew) -> Part:
+    """Everything between reading and the last page, by one crew that stays warm."""
+    wish = done.recipe.outputs
+    if wish.descriptors or wish.summary:
+        yield from _describe(done, crew)
+    if wish.fits:
+        yield from _fit(done, crew)
+    if wish.meshes or wish.dataset or wish.summary:
+        yield from _coarsen(done, crew)
+    if wish.lmax_study:
+        yield from _study(done, "lmax_study", study_lmax(done.particles, crew, done.recipe.seed))
+    if wish.coarsening_study:
+        steps = study_coarsening(done.particles, done.choices.order, crew)
+        yield from _study(done, "coarsening_study", steps)
 
 
 def summary_facts(done: Performed, pictures: tuple[tuple[str, str], ...] = ()) -> SummaryFacts:
@@ -125,24 +132,24 @@ def _load(done: Performed, base: Path) -> Part:
     done.particles = tuple(found)
 
 
-def _describe(done: Performed, workers: int) -> Part:
-    done.facts = yield from examine_sample(done.particles, done.choices.box_metric, workers)
+def _describe(done: Performed, crew: Crew) -> Part:
+    done.facts = yield from examine_sample(done.particles, done.choices.box_metric, crew)
     entries = [described(p, facts) for p, facts in zip(done.particles, done.facts, strict=True)]
     table = descriptor_table(done.particles, done.facts)
     write_bytes(done.folder / "descriptors.json", json_bytes(entries))
     write_bytes(done.folder / "descriptors.csv", csv_text(table).encode("utf-8"))
 
 
-def _fit(done: Performed, workers: int) -> Part:
-    outcomes = yield from fit_sample(done.particles, workers=workers)
+def _fit(done: Performed, crew: Crew) -> Part:
+    outcomes = yield from fit_sample(done.particles, workers=crew)
     sample = FittedSample.of(done.particles, outcomes)
     done.problems += [f"{name}: {sentence}" for name, sentence in sample.failed]
     write_fits(done.folder / "fit", sample)
 
 
-def _coarsen(done: Performed, workers: int) -> Part:
+def _coarsen(done: Performed, crew: Crew) -> Part:
     order = done.choices.order
-    done.outcomes = yield from coarsen_sample(done.particles, order, workers)
+    done.outcomes = yield from coarsen_sample(done.particles, order, crew)
     done.problems += [f"{each.name}: {each.problem}" for each in done.outcomes if not each.coarsened]
     if done.recipe.outputs.meshes:
         with staged_folder(done.folder / "meshes") as stage:

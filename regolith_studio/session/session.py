@@ -9,7 +9,7 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.building import Built, DatasetOptions, build_dataset_folder
 from regolith_studio.jobs.events import Failed, Job
-from regolith_studio.jobs.fitting import Examined, examine_particles
+from regolith_studio.jobs.examining import Examined, examine_particles
 from regolith_studio.jobs.loading import Loaded, Problem, load_particles, load_sample, uniquely_named
 from regolith_studio.jobs.runners.protocol import Runner
 from regolith_studio.session.choices import Choices

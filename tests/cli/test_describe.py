@@ -30,7 +30,7 @@ def test_that_the_unit_scales_lengths(command, grains: Path) -> None:
 
 
 def test_that_a_folder_gives_one_entry_a_mesh_in_the_order_of_names(command, grains: Path) -> None:
-    said = command("describe", grains, "--json", "--jobs", 2)
+    said = command("describe", grains, "--json")
     assert [entry["name"] for entry in said.json] == ["grain-a", "grain-b", "grain-c"]
 
 

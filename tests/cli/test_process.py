@@ -70,12 +70,12 @@ def test_that_ctrl_c_ends_with_130_without_a_traceback_or_half_an_output(
     ready = tmp_path / "ready"
     code = (
         "import sys, pathlib\n"
-        "from regolith_studio.jobs import samples\n"
+        "from regolith_studio.jobs import coarsening\n"
         "def forever(*_, **__):\n"
         f"    pathlib.Path({str(ready)!r}).write_text('')\n"
         "    while True:\n"
-        "        yield samples.Progress(0, 1, '')\n"
-        "samples.coarsen_sample = forever\n"
+        "        yield coarsening.Progress(0, 1, '')\n"
+        "coarsening.coarsen_sample = forever\n"
         "from regolith_studio.__main__ import main\n"
         "main()\n"
     )

@@ -10,7 +10,8 @@ from collections.abc import Callable, Iterator
 import pytest
 
 from regolith_studio.errors import Cancelled, InputError
-from regolith_studio.jobs.batch import batch_runner, in_order
+from regolith_studio.jobs.batch import in_order
+from regolith_studio.jobs.crew import Crew, hired
 from regolith_studio.jobs.events import (
     Event,
     Failed,
@@ -214,12 +215,25 @@ def test_that_closing_stops_the_threads_and_refuses_new_jobs(owner: Owner) -> No
 
 @pytest.mark.parametrize("workers", [1, 2])
 def test_that_a_batch_answers_in_the_order_of_the_questions(workers: int) -> None:
-    runner = batch_runner(workers)
-    try:
-        endings = [e for e in in_order(runner, (Job(square, (x,)) for x in range(7)), window=4) if e]
-    finally:
-        runner.close()
+    with hired(workers) as crew:
+        endings = [e for e in crew.endings(Job(square, (x,)) for x in range(7)) if e]
+        again = list(crew.map(abs, [-1, 2, -3]))
     assert endings == [Finished(x * x) for x in range(7)]
+    assert again == [1, 2, 3]
+
+
+def test_that_a_crew_that_was_lent_is_not_dismissed(pool: ProcessPoolRunner) -> None:
+    crew = Crew(2)
+    crew._runner = pool
+    with hired(crew) as lent:
+        assert lent is crew
+    assert list(crew.map(abs, [-5])) == [5]
+
+
+def test_that_one_worker_can_be_stopped_within_a_job() -> None:
+    endings = Crew(1).endings([Job(wait_forever)])
+    assert [next(endings) for _ in range(3)] == [None] * 3
+    endings.close()
 
 
 def test_that_a_batch_asks_for_no_more_than_its_window() -> None:

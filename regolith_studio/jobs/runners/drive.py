@@ -1,10 +1,10 @@
 """Drives one job from its first step to its ending; the only place that catches everything."""
 
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Generator
 
 from regolith_studio.errors import Cancelled, RegolithError
-from regolith_studio.jobs.events import Ending, Failed, Finished, Job, Listener, Stopped
+from regolith_studio.jobs.events import Ending, Failed, Finished, Job, Listener, Step, Stopped
 
 
 def drive(job: Job, listener: Listener, stopped: Callable[[], bool]) -> Ending:
@@ -17,17 +17,23 @@ def drive(job: Job, listener: Listener, stopped: Callable[[], bool]) -> Ending:
     """
     if stopped():
         return Stopped()
+    story = told(job)
+    while True:
+        try:
+            step = next(story)
+        except StopIteration as end:
+            ending: Ending = end.value
+            return ending
+        if stopped():
+            story.close()
+            return Stopped()
+        listener(step)
+
+
+def told(job: Job) -> Generator[Step, None, Ending]:
+    """The steps of `job`; returns how it ended, whatever it raised."""
     try:
-        steps = job.steps()
-        while True:
-            try:
-                step = next(steps)
-            except StopIteration as end:
-                return Finished(end.value)
-            if stopped():
-                steps.close()
-                return Stopped()
-            listener(step)
+        return Finished((yield from job.steps()))
     except Cancelled:
         return Stopped()
     except Exception as error:  # noqa: BLE001  whatever a job raises must reach its listener

@@ -5,7 +5,7 @@ from typing import Any
 
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.jobs.fitting import Examined
+from regolith_studio.jobs.examining import Examined
 from regolith_studio.studies.tables import Column, Table
 
 _POWERS = {0: "", 1: "um", 2: "um^2", 3: "um^3", 5: "um^5"}

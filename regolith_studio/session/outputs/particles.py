@@ -5,7 +5,7 @@ from pathlib import Path
 
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.imaging.stl import stl_bytes
-from regolith_studio.jobs.fitting import Examined
+from regolith_studio.jobs.examining import Examined
 from regolith_studio.session.outputs.descriptors import descriptor_table
 from regolith_studio.session.outputs.staging import write_bytes
 from regolith_studio.studies.tables import Cell, Column, Table, csv_text

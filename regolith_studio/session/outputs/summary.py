@@ -10,7 +10,7 @@ from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.descriptors.comparison import rmsre
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.coarsening import CoarsenedParticle
-from regolith_studio.jobs.fitting import Examined
+from regolith_studio.jobs.examining import Examined
 from regolith_studio.session.outputs.staging import write_bytes
 from regolith_studio.session.outputs.studies import STUDIES
 from regolith_studio.session.recipe import Recipe

@@ -1,0 +1,66 @@
+"""What is known of particles before anything is fitted: health and descriptors."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from regolith_studio.descriptors.describe import Descriptors, describe
+from regolith_studio.errors import RegolithError
+from regolith_studio.geometry.health import MeshHealth, inspect
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.jobs.batch import value_of
+from regolith_studio.jobs.crew import Crew, hired
+from regolith_studio.jobs.events import Job, Partial, Progress, Started, Steps
+
+
+@dataclass(frozen=True)
+class Examined:
+    """What is known of a particle before anything is fitted.
+
+    Parameters
+    ----------
+    descriptors
+        ``None`` where the mesh has none, for example because it is flat.
+    problem
+        Why, in one sentence.
+    """
+
+    health: MeshHealth
+    descriptors: Descriptors | None
+    problem: str = ""
+
+
+def examine(particle: Particle, box_metric: str = "exact") -> Examined:
+    """Health and descriptors of one particle; never raises for what is wrong with the mesh."""
+    health = inspect(particle.mesh)
+    try:
+        return Examined(health, describe(particle.mesh, box_metric=box_metric))
+    except RegolithError as error:
+        return Examined(health, None, str(error))
+
+
+def examine_one(particle: Particle, box_metric: str = "exact") -> Steps:
+    """As :func:`examine`, for a runner."""
+    yield Started("Measuring")
+    return examine(particle, box_metric)
+
+
+def examine_particles(particles: Sequence[Particle], box_metric: str = "exact") -> Steps:
+    """Each particle in order; partial results and the result are tuples of :class:`Examined`, so far."""
+    yield Started("Measuring particles", len(particles))
+    seen: list[Examined] = []
+    for particle in particles:
+        seen.append(examine(particle, box_metric))
+        yield Partial(tuple(seen))
+        yield Progress(len(seen), len(particles), particle.name)
+    return tuple(seen)
+
+
+def examine_sample(
+    particles: Sequence[Particle], box_metric: str = "exact", workers: int | Crew = 1
+) -> Steps:
+    """As :func:`examine_particles`, by several processes; returns a tuple of :class:`Examined`."""
+    yield Started("Measuring", len(particles))
+    jobs = [Job(examine_one, (particle, box_metric)) for particle in particles]
+    with hired(workers) as crew:
+        endings = yield from crew.all(jobs, [particle.name for particle in particles])
+    return tuple(value_of(ending) for ending in endings)
