@@ -19,7 +19,7 @@ class ActionSpec:
     Parameters
     ----------
     menu
-        Title of its menu; ``Directions`` is a menu within View.
+        Title of its menu; those of :data:`WITHIN_VIEW` are menus within View.
     name
         Of the command that it runs, and its object name.
     text
@@ -47,6 +47,7 @@ class ActionSpec:
 
 
 BREAK = "-"
+WITHIN_VIEW = ("Look &from", "&Theme")
 _DIRECTION_KEYS = {"isometric": "Ctrl+0", "front": "Ctrl+1", "right": "Ctrl+3", "top": "Ctrl+7"}
 
 ROWS: tuple[ActionSpec, ...] = (
@@ -68,12 +69,16 @@ ROWS: tuple[ActionSpec, ...] = (
     ActionSpec("&View", "link", "&Link cameras", "link", "Ctrl+L", "Turn all views together", True, "icon"),
     ActionSpec("&View", "reset", "&Reset cameras", "reset", "Ctrl+R", "Show the whole particle", bar="icon"),
     *(
-        ActionSpec("Directions", f"look_{key}", each.label, "", _DIRECTION_KEYS.get(key, ""))
+        ActionSpec("Look &from", f"look_{key}", each.label, "", _DIRECTION_KEYS.get(key, ""))
         for key, each in DIRECTIONS.items()
     ),
     ActionSpec("&View", BREAK, ""),
     ActionSpec("&View", "wireframe", "&Wireframe", "wireframe", "Ctrl+M", "Show triangles", False, "icon"),
     ActionSpec("&View", "heat", "&Distance map", "heat", "Ctrl+D", "Show fitting errors", False, "icon"),
+    ActionSpec("&View", BREAK, ""),
+    ActionSpec("&Theme", "theme_system", "As the &system"),
+    ActionSpec("&Theme", "theme_light", "&Light"),
+    ActionSpec("&Theme", "theme_dark", "&Dark"),
     ActionSpec("&Help", "shortcuts", "&Keyboard and mouse", "help", "F1"),
     ActionSpec("&Help", "about", "&About Regolith Studio"),
 )
@@ -100,8 +105,6 @@ class Actions:
         window.addToolBar(self.bar)
         for row in ROWS:
             self._add(row, commands)
-        directions = self._menus["Directions"].menuAction()
-        directions.setText("Look &from")
         self.recent = QMenu("Open &recent", window)
         self.by_name["recent"].setMenu(self.recent)
         self.bar.insertSeparator(self.by_name["undo"])
@@ -146,7 +149,7 @@ class Actions:
 
     def _menu(self, title: str) -> QMenu:
         if title not in self._menus:
-            parent = self._menus["&View"] if title == "Directions" else None
+            parent = self._menus["&View"] if title in WITHIN_VIEW else None
             made = parent.addMenu(title) if parent else self._window.menuBar().addMenu(title)
             self._menus[title] = made
         return self._menus[title]

@@ -25,7 +25,7 @@ from regolith_studio.ui.panels.loss import LossPanel
 from regolith_studio.ui.panels.particle_list import ParticleListPanel
 from regolith_studio.ui.panels.tasks import TasksPanel
 from regolith_studio.ui.plot_area import PlotArea
-from regolith_studio.ui.theme import apply_theme, current_theme
+from regolith_studio.ui.theme import THEMES, apply_theme, choose_theme, current_theme
 from regolith_studio.ui.views.triptych import Triptych
 from regolith_studio.ui.widgets.toast import Toast
 from regolith_studio.ui.wiring import Wiring
@@ -50,6 +50,7 @@ class MainWindow(QMainWindow):
         self.setWindowTitle("Regolith Studio")
         self.setAcceptDrops(True)
         self.session, self.preferences = session, preferences
+        choose_theme(str(preferences.window.get("theme", "system")))
         self.particles, self.fit = ParticleListPanel(), FitPanel()
         self.coarsening, self.loss = CoarseningPanel(), LossPanel()
         self.triptych = Triptych(views)
@@ -78,6 +79,7 @@ class MainWindow(QMainWindow):
         return {
             **{name: getattr(self.commands, name) for name in ours},
             **{f"look_{key}": partial(self.triptych.link.look_from, key) for key in DIRECTIONS},
+            **{f"theme_{name}": partial(self._choose_theme, name) for name in ("system", *THEMES)},
             "quit": self.close,
             "link": self.triptych.link.set_linked,
             "reset": self.triptych.reset_cameras,
@@ -98,7 +100,8 @@ class MainWindow(QMainWindow):
         wiring.refresh("coarsening", self._show_coarsening)
         wiring.refresh("tasks", lambda: self.tasks.setValue(session.tasks))
         wiring.refresh("tasks", self.commands.show_tasks)
-        wiring.refresh("choices", self._show_undo)
+        wiring.hear("choices", self._show_undo)
+        self._show_undo()
         wiring.hear("failed", lambda failure: self.toast.problem(failure.sentence, failure.details))
         wiring.hear("problems", lambda problems: self.toast.note(problems[0], "\n".join(problems)))
         wiring.hear("exported", self.commands.tell_exported)
@@ -123,6 +126,12 @@ class MainWindow(QMainWindow):
         self.menus.recent.clear()
         for name in self.preferences.recent:
             self.menus.recent.addAction(name, partial(self.commands.open_paths, [Path(name)]))
+
+    def _choose_theme(self, name: str) -> None:
+        choose_theme(name)
+        self.preferences.window = self.preferences.window | {"theme": name}
+        self.preferences.save()
+        self._apply_theme()
 
     def _apply_theme(self) -> None:
         theme = current_theme()

@@ -7,6 +7,7 @@ from regolith_studio.session.plan import Kind
 from regolith_studio.session.session import Session
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.layout import tabs
+from regolith_studio.ui.panels.coarsening_study import CoarseningStudyPanel
 from regolith_studio.ui.panels.descriptor_table import DescriptorTablePanel
 from regolith_studio.ui.panels.error_bars import ErrorBarsPanel
 from regolith_studio.ui.panels.lmax_study import LmaxStudyPanel
@@ -25,7 +26,7 @@ class PlotArea(QSplitter):
         self.setHandleWidth(7)
         self.error_bars, self.table = ErrorBarsPanel(), DescriptorTablePanel()
         self.loss_curve, self.spectrum = LossCurvePanel(), SpectrumPanel()
-        self.lmax_study = LmaxStudyPanel()
+        self.lmax_study, self.coarsening_study = LmaxStudyPanel(), CoarseningStudyPanel()
         self.left = tabs("plots_left", [(self.error_bars, "Errors"), (self.table, "Descriptors")])
         self.right = tabs(
             "plots_right",
@@ -33,6 +34,7 @@ class PlotArea(QSplitter):
                 (self.loss_curve, "Loss"),
                 (self.spectrum, "Spectrum"),
                 (self.lmax_study, "RMSRE over l_max"),
+                (self.coarsening_study, "RMSRE by loss"),
             ],
         )
         for number, group in enumerate((self.left, self.right)):
@@ -42,7 +44,8 @@ class PlotArea(QSplitter):
 
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
-        for panel in (self.error_bars, self.loss_curve, self.spectrum, self.lmax_study):
+        live = (self.error_bars, self.loss_curve, self.spectrum)
+        for panel in (*live, self.lmax_study, self.coarsening_study):
             panel.set_theme(theme)
 
     def wire(self, session: Session, wiring: Wiring, commands: Commands) -> None:
@@ -60,9 +63,15 @@ class PlotArea(QSplitter):
         wiring.refresh("coarsening", lambda: self.loss_curve.show_results(session.results))
         wiring.refresh("fit choices", spectrum)
         self._wire_study(session, wiring, commands, Kind.LMAX_STUDY, self.lmax_study)
+        self._wire_study(session, wiring, commands, Kind.COARSENING_STUDY, self.coarsening_study)
 
     def _wire_study(
-        self, session: Session, wiring: Wiring, commands: Commands, kind: Kind, panel: LmaxStudyPanel
+        self,
+        session: Session,
+        wiring: Wiring,
+        commands: Commands,
+        kind: Kind,
+        panel: LmaxStudyPanel | CoarseningStudyPanel,
     ) -> None:
         def show() -> None:
             panel.show_study(getattr(session.results, kind.value), kind.value in session.results.outdated)

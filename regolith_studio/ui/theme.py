@@ -88,11 +88,20 @@ DARK = Theme(
     surroundings=palette.DARK,
 )
 
+THEMES = {"light": LIGHT, "dark": DARK}
+
+_chosen: list[str] = ["system"]
+
+
+def choose_theme(name: str) -> None:
+    """From now on ``light``, ``dark``, or whatever the system asks for: ``system``."""
+    _chosen[0] = name if name in THEMES else "system"
+
 
 def current_theme() -> Theme:
-    """The theme that the system asks for at the moment."""
-    hints = QGuiApplication.styleHints()
-    return DARK if hints.colorScheme() == Qt.ColorScheme.Dark else LIGHT
+    """The theme that was chosen, or that the system asks for at the moment."""
+    dark = QGuiApplication.styleHints().colorScheme() == Qt.ColorScheme.Dark
+    return THEMES.get(_chosen[0], DARK if dark else LIGHT)
 
 
 def apply_theme(app: QApplication, theme: Theme) -> None:

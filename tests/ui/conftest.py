@@ -48,6 +48,7 @@ def nothing_left_behind(request):
     gc.freeze()  # what was there before is left out of all that follows
     threads, windows = set(threading.enumerate()), set(QApplication.topLevelWidgets())
     yield
+    request.node.funcargs.clear()  # pytest holds on to them longer than it needs
     _settle()
     left = _newcomers() + [each.name for each in threading.enumerate() if each not in threads]
     left += [_name(each) for each in QApplication.topLevelWidgets() if each not in windows]
@@ -104,10 +105,10 @@ def _newcomers():
     """Widgets, running timers and VTK objects that have been made since the last freeze."""
     found = []
     for each in gc.get_objects():
-        if isinstance(each, vtkRenderer | vtkRenderWindow):
+        if issubclass(type(each), vtkRenderer | vtkRenderWindow):  # not the proxies of what is gone
             found.append(_name(each))
             continue
-        if not isinstance(each, QWidget | QTimer) or not shiboken6.isValid(each):
+        if not issubclass(type(each), QWidget | QTimer) or not shiboken6.isValid(each):
             continue
         if isinstance(each, QWidget):
             found.append(_name(each))

@@ -59,9 +59,12 @@ class FitPanel(QWidget):
             self.warnings.hide()
             return
         self.findings.setVisible(not fit.warnings)
-        self.findings.setText(
-            f"{fit.hidden_surface_share:.1%} of the surface is hidden from the star point; "
-            f"{fit.unrepresentable_volume_share:.1%} of the volume cannot be represented."
-        )
+        if fit.star_shaped:
+            self.findings.setText("Star-shaped: no part of the surface is hidden from the star point.")
+        else:
+            self.findings.setText(
+                f"{fit.hidden_surface_share:.2%} of the surface is hidden from the star point; "
+                f"{fit.unrepresentable_volume_share:.2%} of the volume cannot be represented."
+            )
         self.warnings.setText(" ".join(fit.warnings))
         self.warnings.setVisible(bool(fit.warnings))

@@ -41,6 +41,7 @@ class TasksPanel(QWidget):
         layout.addWidget(self.bar)
         layout.addWidget(self.stop)
         layout.addWidget(self.text, 1)
+        self.setFixedHeight(self.stop.sizeHint().height() + 4)  # the views keep their size when work begins
         self._timer = QTimer(self, interval=PATIENCE, singleShot=True)
         self._timer.timeout.connect(self._show)
         self.stop.clicked.connect(self._request)

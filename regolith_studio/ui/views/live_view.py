@@ -1,9 +1,11 @@
 """The view that draws with OpenGL straight into the window."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
+from PySide6.QtCore import QMessageLogContext, QtMsgType, qInstallMessageHandler
 from PySide6.QtGui import QKeyEvent, QMouseEvent, QWheelEvent
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 from pyvistaqt import QtInteractor
@@ -21,7 +23,8 @@ class _Canvas(QtInteractor):
     mouse: CameraMouse | None = None
 
     def __init__(self, parent: QWidget) -> None:
-        super().__init__(parent, auto_update=False, multi_samples=0)
+        with _without_format_warning():
+            super().__init__(parent, auto_update=False, multi_samples=0)
         self.setAcceptDrops(False)
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
@@ -48,6 +51,21 @@ class _Canvas(QtInteractor):
 
     def keyReleaseEvent(self, event: QKeyEvent) -> None:
         event.ignore()
+
+
+@contextmanager
+def _without_format_warning() -> Iterator[None]:
+    """pyvistaqt sets the default format once more; that it is the one already in use, Qt cannot see."""
+
+    def handle(kind: QtMsgType, context: QMessageLogContext, text: str) -> None:
+        if "Setting a new default format" not in text and before is not None:
+            before(kind, context, text)
+
+    before = qInstallMessageHandler(handle)
+    try:
+        yield
+    finally:
+        qInstallMessageHandler(before)
 
 
 class LiveView(QWidget):

@@ -45,6 +45,7 @@ class Plot(QWidget):
     def _arrange(self) -> None:
         top = QHBoxLayout()
         top.setContentsMargins(8, 4, 8, 0)
+        top.setSpacing(16)
         top.addWidget(self.legend)
         top.addStretch(1)
         top.addWidget(self.remark)

@@ -35,6 +35,7 @@ class StudyFrame(QWidget):
         self.remark = ElidedLabel(role="remark")
         row = QHBoxLayout()
         row.setContentsMargins(8, 6, 8, 0)
+        row.setSpacing(10)
         row.addWidget(self.start)
         row.addWidget(self.stop)
         row.addWidget(self.bar, 1)

@@ -1,0 +1,103 @@
+"""A table of percentages whose cells are the darker the larger they are."""
+
+import math
+from collections.abc import Sequence
+
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QColor, QResizeEvent
+from PySide6.QtWidgets import (
+    QAbstractItemView,
+    QHeaderView,
+    QLabel,
+    QStackedLayout,
+    QTableWidget,
+    QTableWidgetItem,
+    QWidget,
+)
+
+from regolith_studio.ui.theme import Theme, current_theme
+
+_ROWS_SHARE = 0.42
+"""Of the width, that the names of the rows take at most."""
+
+
+def percentage(share: float) -> str:
+    """A share in per cent with as many digits as can be read at a glance; a dash where there is none."""
+    percent = 100.0 * share
+    if not math.isfinite(percent):
+        return "–"
+    if 0.0 < percent < 0.01:
+        return "<0.01"
+    return f"{percent:.2f}" if percent < 1.0 else f"{percent:.1f}"
+
+
+class HeatTable(QWidget):
+    """Shows shares as percentages, or a sentence where there are none yet."""
+
+    def __init__(self, placeholder: str, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._theme = current_theme()
+        self._values: tuple[tuple[float, ...], ...] = ()
+        self.table = QTableWidget()
+        self.table.setAccessibleName("Table of errors")
+        self.table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
+        self.table.setSelectionMode(QAbstractItemView.SelectionMode.NoSelection)
+        self.table.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self.table.setShowGrid(False)
+        self.table.setFrameShape(self.table.Shape.NoFrame)
+        self.table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
+        self.table.horizontalHeader().setMinimumSectionSize(34)
+        self.table.verticalHeader().setTextElideMode(Qt.TextElideMode.ElideRight)
+        self.table.verticalHeader().setDefaultSectionSize(self.table.fontMetrics().height() + 7)
+        empty = QLabel(placeholder)
+        empty.setProperty("role", "remark")
+        empty.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        empty.setWordWrap(True)
+        self._stack = QStackedLayout(self)
+        self._stack.addWidget(empty)
+        self._stack.addWidget(self.table)
+
+    def values(self) -> tuple[tuple[float, ...], ...]:
+        """What is shown, as shares."""
+        return self._values
+
+    def set_values(
+        self, rows: Sequence[str], columns: Sequence[str], values: Sequence[Sequence[float]]
+    ) -> None:
+        """Show other shares; no rows bring back the sentence."""
+        self._values = tuple(tuple(float(value) for value in row) for row in values)
+        self._stack.setCurrentIndex(1 if rows else 0)
+        self.table.setRowCount(len(rows))
+        self.table.setColumnCount(len(columns))
+        self.table.setVerticalHeaderLabels(list(rows))
+        self.table.setHorizontalHeaderLabels(list(columns))
+        for number, text in enumerate(rows):
+            if (item := self.table.verticalHeaderItem(number)) is not None:
+                item.setToolTip(text)
+        self._fill()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self.table.verticalHeader().setMaximumWidth(round(_ROWS_SHARE * self.width()))
+
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        self._theme = theme
+        self._fill()
+
+    def _fill(self) -> None:
+        top = max((value for row in self._values for value in row if math.isfinite(value)), default=0.0)
+        for at, row in enumerate(self._values):
+            for column, value in enumerate(row):
+                self.table.setItem(
+                    at, column, self._cell(value, math.sqrt(value / top) if top > 0.0 else 0.0)
+                )
+
+    def _cell(self, share: float, heat: float) -> QTableWidgetItem:
+        item = QTableWidgetItem(percentage(share))
+        item.setTextAlignment(Qt.AlignmentFlag.AlignCenter)
+        if math.isfinite(heat):
+            colour = QColor(self._theme.polyhedron)
+            colour.setAlphaF(0.75 * min(1.0, heat))
+            item.setBackground(colour)
+        return item

@@ -1,0 +1,220 @@
+"""The real window on a display, driven by mouse and keys only: from "open file" to a dataset on disk.
+
+With ``--update`` the picture of the documentation is written anew.
+"""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PySide6.QtCore import QPoint, Qt, QTimer
+from PySide6.QtGui import QGuiApplication
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import (
+    QApplication,
+    QDialog,
+    QDialogButtonBox,
+    QFileDialog,
+    QLineEdit,
+    QPushButton,
+    QSlider,
+    QWidget,
+)
+
+from regolith_studio.dataset.folder import read_dataset, validate_dataset
+from regolith_studio.resources import resource
+from regolith_studio.ui.app import open_window
+from regolith_studio.ui.dialogs.export import ExportDialog
+from regolith_studio.ui.dialogs.unit import UnitDialog
+
+pytestmark = pytest.mark.window
+
+DOCUMENTATION = Path(__file__).resolve().parents[2] / "docs" / "images" / "window.png"
+SECONDS = 60.0
+
+
+@pytest.fixture
+def window(shown, preferences, wait):
+    if QGuiApplication.platformName() == "offscreen":
+        pytest.skip("needs a display")
+    made = open_window(views="live", preferences=preferences)
+    made.resize(1480, 900)
+    shown(made)
+    QTest.qWaitForWindowExposed(made)
+    wait(lambda: is_done(made), SECONDS)
+    return made
+
+
+def is_done(window):
+    return window.session.results.coarsened is not None and not window.session.tasks
+
+
+def settle(window, wait):
+    wait(lambda: is_done(window), SECONDS)
+    QTest.qWait(150)
+
+
+def pictures(window):
+    return [view.picture().astype(int) for view in window.triptych.views.values()]
+
+
+def difference(one, other):
+    height, width = np.minimum(one.shape, other.shape)[:2]
+    return float(np.abs(one[:height, :width] - other[:height, :width]).mean())
+
+
+def differing(before, after):
+    return [difference(one, other) > 0.2 for one, other in zip(before, after, strict=True)]
+
+
+def coverage(picture):
+    """Share of a picture that is not background: a gradient of nearly grey colours, row by row."""
+    return float((np.abs(picture - picture[:, :1]).max(axis=2) > 12).mean())
+
+
+def later(act):
+    """Act again and again from within modal dialogs until it says that it is done."""
+    timer = QTimer()
+    timer.timeout.connect(lambda: act() and timer.stop())
+    timer.start(60)
+    return timer
+
+
+def visible(kind):
+    return next(
+        (each for each in QApplication.topLevelWidgets() if isinstance(each, kind) and each.isVisible()), None
+    )
+
+
+def click(widget, pos=None):
+    QTest.mouseClick(widget, Qt.MouseButton.LeftButton, pos=pos or widget.rect().center())
+
+
+def activate(window):
+    """Bring the window to the front; shortcuts belong to the window that is active."""
+    window.activateWindow()
+    assert QTest.qWaitForWindowActive(window, 5000)
+
+
+def write(field, text):
+    field.setFocus()
+    field.selectAll()
+    QTest.keyClicks(field, text)
+
+
+def drag_slider(slider, share):
+    """Press the handle of a slider, pull it to a share of its length in steps, let go."""
+    from PySide6.QtWidgets import QStyle, QStyleOptionSlider
+
+    option = QStyleOptionSlider()
+    slider.initStyleOption(option)
+    handle = (
+        slider.style()
+        .subControlRect(QStyle.ComplexControl.CC_Slider, option, QStyle.SubControl.SC_SliderHandle, slider)
+        .center()
+    )
+    end = QPoint(round(share * slider.width()), handle.y())
+    QTest.mousePress(slider, Qt.MouseButton.LeftButton, pos=handle)
+    for step in range(1, 9):
+        QTest.mouseMove(slider, handle + (end - handle) * step / 8)
+        QTest.qWait(15)
+    QTest.mouseRelease(slider, Qt.MouseButton.LeftButton, pos=end)
+
+
+def answer_file_dialog(path):
+    def act():
+        dialog = visible(QFileDialog)
+        if dialog is None:
+            return False
+        write(dialog.findChild(QLineEdit, "fileNameEdit"), str(path))
+        QTest.keyClick(dialog.findChild(QLineEdit, "fileNameEdit"), Qt.Key.Key_Return)
+        return True
+
+    return later(act)
+
+
+def answer_unit_dialog():
+    def act():
+        dialog = visible(UnitDialog)
+        if dialog is None:
+            return False
+        click(dialog.findChild(QDialogButtonBox).button(QDialogButtonBox.StandardButton.Open))
+        return True
+
+    return later(act)
+
+
+def open_by_keys(window, path, wait):
+    """Ctrl+O, the path, Return; then the unit."""
+    timers = [answer_file_dialog(path), answer_unit_dialog()]
+    activate(window)
+    QTest.keyClick(window, Qt.Key.Key_O, Qt.KeyboardModifier.ControlModifier)
+    wait(lambda: [entry.id for entry in window.particles.entries()] == [path.stem], SECONDS)
+    for timer in timers:
+        timer.stop()
+
+
+def test_that_a_file_becomes_a_dataset_by_mouse_and_keys_alone(window, wait, tmp_path):
+    settle(window, wait)
+    sample = pictures(window)
+    open_by_keys(window, resource("samples", "particles", "elongated-1.stl"), wait)
+    settle(window, wait)
+    first = pictures(window)
+    assert all(coverage(picture) > 0.03 for picture in first)
+    assert all(difference(one, two) > 0.5 for one, two in zip(sample, first, strict=True))
+    assert difference(first[0], first[1]) > 0.5
+    assert difference(first[1], first[2]) > 0.5
+
+    drag_slider(window.findChild(QSlider, "l_max_slider"), 0.1)
+    wait(lambda: window.session.choices.l_max < 6)
+    settle(window, wait)
+    second = pictures(window)
+    assert differing(first, second) == [False, True, True]
+
+    drag_slider(window.findChild(QSlider, "weight_volume_slider"), 0.95)
+    wait(lambda: window.session.choices.weights["volume"] > 1.5)
+    drag_slider(window.findChild(QSlider, "n_faces_slider"), 0.1)
+    wait(lambda: window.session.choices.n_faces < 16)
+    settle(window, wait)
+    third = pictures(window)
+    assert [difference(one, two) > 0.2 for one, two in zip(second, third, strict=True)] == [
+        False,
+        False,
+        True,
+    ]
+
+    turn = window.triptych.views["fit"].widget.childAt(60, 60)
+    QTest.mousePress(turn, Qt.MouseButton.LeftButton, pos=QPoint(60, 60))
+    QTest.mouseMove(turn, QPoint(160, 90))
+    QTest.mouseRelease(turn, Qt.MouseButton.LeftButton, pos=QPoint(160, 90))
+    QTest.qWait(80)
+    assert differing(third, pictures(window)) == [True, True, True]
+
+    folder = tmp_path / "dataset"
+    activate(window)
+    QTest.keyClick(window, Qt.Key.Key_E, Qt.KeyboardModifier.ControlModifier)
+    wait(lambda: visible(ExportDialog) is not None)
+    dialog = visible(ExportDialog)
+    write(dialog.findChild(QLineEdit, "export_folder"), str(folder))
+    click(dialog.findChild(QPushButton, "export_go"))
+    wait(lambda: visible(QDialog) is None, SECONDS)
+    assert window.toast.sentence.text() == f"The dataset is in {folder}."
+    assert list(validate_dataset(folder)) == []
+    assert read_dataset(folder) is not None
+
+
+def test_that_the_picture_of_the_documentation_can_be_taken(window, wait, request):
+    window.session.select("angular-1")
+    settle(window, wait)
+    QTest.qWait(400)
+    picture = window.grab().toImage()
+    for frame in window.triptych.frames.values():
+        corner = frame.view.widget.mapTo(window, QPoint(0, 0))
+        size = frame.view.widget.size()
+        inside = picture.copy(corner.x(), corner.y(), size.width(), size.height())
+        colours = {inside.pixel(x, size.height() // 2) for x in range(0, size.width(), 4)}
+        assert len(colours) > 3, f"{frame.objectName()} is empty in the picture"
+    assert not any(isinstance(each, QDialog) and each.isVisible() for each in window.findChildren(QWidget))
+    if request.config.getoption("--update"):
+        DOCUMENTATION.parent.mkdir(parents=True, exist_ok=True)
+        assert picture.save(str(DOCUMENTATION))

@@ -1,0 +1,148 @@
+"""Both backends keep the same promise; the live one only where there is a display."""
+
+import numpy as np
+import pytest
+from PySide6.QtCore import QPoint, QPointF, Qt
+from PySide6.QtGui import QGuiApplication, QWheelEvent
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication
+
+from regolith_studio.geometry.directions import icosphere
+from regolith_studio.scene import surfaces
+from regolith_studio.scene.cameras import CameraPose, framing_pose
+from regolith_studio.scene.palette import DARK
+from regolith_studio.ui.views.camera_link import CameraLink
+from regolith_studio.ui.views.factory import best_kind, make_view
+
+BALL = icosphere(3).moved(scale=20.0)
+EGG = BALL.moved(rotation=np.diag([1.0, 0.5, 1.6]))
+
+
+@pytest.fixture(params=["image", pytest.param("live", marks=pytest.mark.window)])
+def kind(request, app):  # noqa: ARG001
+    if request.param == "live" and QGuiApplication.platformName() == "offscreen":
+        pytest.skip("a live view needs a display")
+    return request.param
+
+
+@pytest.fixture
+def make(kind, shown):
+    made = []
+
+    def view():
+        made.append(make_view(kind))
+        made[-1].widget.resize(200, 160)
+        return shown_view(made[-1])
+
+    def shown_view(each):
+        shown(each.widget)
+        return each
+
+    yield view
+    for each in made:
+        each.release()
+    made.clear()
+
+
+def drag(view, start, end, button=Qt.MouseButton.LeftButton):
+    target = view.widget.childAt(*start) or view.widget
+    QTest.mousePress(target, button, pos=QPoint(*start))
+    QTest.mouseMove(target, QPoint(*end))
+    QApplication.processEvents()
+    QTest.mouseRelease(target, button, pos=QPoint(*end))
+
+
+def differs(one, other):
+    return float(np.abs(one.astype(int) - other.astype(int)).mean())
+
+
+def alike(one, other):
+    """VTK normalises view-up when it is set: the last digit may differ."""
+    return np.allclose(np.hstack(list(vars(one).values())), np.hstack(list(vars(other).values())), rtol=1e-12)
+
+
+def test_that_a_view_shows_what_is_drawn_and_forgets_what_is_cleared(make):
+    view = make()
+    empty = view.picture()
+    view.draw(lambda plotter: surfaces.show_particle(plotter, BALL))
+    view.set_pose(framing_pose(BALL.vertices))
+    full = view.picture()
+    assert full.shape == (160, 200, 3)
+    assert differs(empty, full) > 5
+    view.draw(lambda plotter: surfaces.show_fit(plotter, EGG))
+    assert differs(full, view.picture()) > 5
+    view.draw(surfaces.clear)
+    assert differs(empty, view.picture()) < 1
+
+
+def test_that_dragging_turns_the_camera_and_tells_it(make):
+    view, heard = make(), []
+    view.draw(lambda plotter: surfaces.show_particle(plotter, EGG))
+    view.set_pose(framing_pose(EGG.vertices, "front"))
+    view.when_moved(heard.append)
+    before, picture = view.pose, view.picture()
+    drag(view, (100, 80), (150, 80))
+    assert heard
+    assert heard[-1] == view.pose != before
+    assert view.pose.parallel_scale == before.parallel_scale
+    assert differs(picture, view.picture()) > 0.5
+
+
+def test_that_the_right_button_shifts_and_the_wheel_zooms(make):
+    view = make()
+    view.set_pose(CameraPose((0.0, -100.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 40.0))
+    drag(view, (100, 80), (120, 80), button=Qt.MouseButton.RightButton)
+    assert view.pose.focal_point == pytest.approx((-10.0, 0.0, 0.0))  # 20 of 160 pixels, 80 um high
+    target = view.widget.childAt(100, 80) or view.widget
+    here = QPointF(100, 80)
+    event = QWheelEvent(
+        here,
+        target.mapToGlobal(here),
+        QPoint(),
+        QPoint(0, 120),
+        Qt.MouseButton.NoButton,
+        Qt.KeyboardModifier.NoModifier,
+        Qt.ScrollPhase.NoScrollPhase,
+        False,
+    )
+    QApplication.sendEvent(target, event)
+    assert view.pose.parallel_scale < 40.0
+
+
+def test_that_a_pose_that_is_set_tells_nobody(make):
+    view, heard = make(), []
+    view.when_moved(heard.append)
+    view.set_pose(framing_pose(BALL.vertices))
+    assert heard == []
+
+
+def test_that_the_ground_takes_the_colours_of_the_theme(make):
+    view = make()
+    light = view.picture().mean()
+    view.set_surroundings(DARK)
+    assert view.picture().mean() < light - 100
+
+
+def test_that_linked_cameras_move_together_until_they_are_let_go(make):
+    one, two = make(), make()
+    link = CameraLink([one, two])
+    link.frame(EGG.vertices)
+    drag(one, (100, 80), (130, 60))
+    assert alike(one.pose, two.pose)
+    link.set_linked(False)
+    drag(one, (100, 80), (130, 60))
+    assert not alike(one.pose, two.pose)
+    link.set_linked(True)
+    assert alike(one.pose, two.pose)
+    link.look_from("top")
+    assert alike(one.pose, two.pose)
+    assert one.pose.view_up == (0.0, 1.0, 0.0)
+
+
+@pytest.mark.usefixtures("app")
+def test_that_the_variable_chooses_the_backend(monkeypatch):
+    monkeypatch.setenv("REGOLITH_STUDIO_VIEWS", "image")
+    assert best_kind() == "image"
+    monkeypatch.delenv("REGOLITH_STUDIO_VIEWS")
+    if QGuiApplication.platformName() == "offscreen":
+        assert best_kind() == "image"

@@ -1,0 +1,219 @@
+"""The whole window, drawn into pictures: what a user does and what then is seen."""
+
+import json
+import time
+
+import numpy as np
+import pytest
+from PySide6.QtCore import QMimeData, QPointF, Qt, QTimer, QUrl
+from PySide6.QtGui import QDropEvent
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication, QLineEdit, QSlider, QWidget
+
+from regolith_studio.errors import EnvironmentProblem, InputError
+from regolith_studio.geometry.directions import icosphere
+from regolith_studio.ui.app import open_window, telling_hook
+from regolith_studio.ui.dialogs.export import ExportDialog
+from regolith_studio.ui.dialogs.unit import UnitDialog
+from regolith_studio.ui.environment import check_display
+from regolith_studio.ui.theme import DARK, LIGHT, current_theme
+
+SECONDS = 120.0
+
+
+@pytest.fixture
+def window(shown, preferences, wait):
+    """A window on the sample, with its first polyhedron."""
+    made = open_window(views="image", preferences=preferences)
+    made.resize(1100, 720)
+    shown(made)
+    wait(lambda: made.session.results.coarsened is not None, SECONDS)
+    wait(lambda: not made.session.tasks, SECONDS)
+    QTest.qWait(80)
+    return made
+
+
+def pictures(window):
+    return [view.picture().astype(int) for view in window.triptych.views.values()]
+
+
+def changed(before, after):
+    return [bool(difference(one, two) > 0.05) for one, two in zip(before, after, strict=True)]
+
+
+def difference(one, other):
+    """Mean difference over what two pictures have in common: neighbours differ by a pixel in width."""
+    height, width = np.minimum(one.shape, other.shape)[:2]
+    return np.abs(one[:height, :width] - other[:height, :width]).mean()
+
+
+def stl(path):
+    """An ASCII STL of an egg of 2 by 2 by 4 units."""
+    mesh = icosphere(2).moved(rotation=np.diag([1.0, 1.0, 2.0]))
+    facets = "".join(
+        "facet normal 0 0 0\nouter loop\n"
+        + "".join(f"vertex {x:.6f} {y:.6f} {z:.6f}\n" for x, y, z in triangle)
+        + "endloop\nendfacet\n"
+        for triangle in mesh.triangles
+    )
+    path.write_text(f"solid egg\n{facets}endsolid egg\n")
+    return path
+
+
+def answer(kind, act):
+    """Wait for a dialog of this kind and act on it."""
+
+    def look():
+        for each in QApplication.topLevelWidgets():
+            if isinstance(each, kind) and each.isVisible():
+                timer.stop()
+                act(each)
+                return
+
+    timer = QTimer()
+    timer.timeout.connect(look)
+    timer.start(20)
+    return timer
+
+
+def test_that_the_window_opens_on_the_sample_with_three_different_views(window):
+    assert len(window.particles.entries()) == 12
+    one, two, three = pictures(window)
+    assert changed([one, two], [two, three]) == [True, True]
+    assert not window.plots.error_bars.plot.is_empty()
+    assert not window.plots.loss_curve.plot.is_empty()
+    assert not window.plots.spectrum.plot.is_empty()
+
+
+def test_that_l_max_changes_the_fit_and_the_polyhedron_but_not_the_particle(window, wait):
+    before = pictures(window)
+    slider = window.findChild(QSlider, "l_max_slider")
+    for _ in range(6):
+        QTest.keyClick(slider, Qt.Key.Key_Left)
+    wait(lambda: window.session.choices.l_max == 4)
+    wait(lambda: window.session.results.coarsened is not None and not window.session.tasks, SECONDS)
+    QTest.qWait(80)
+    assert changed(before, pictures(window)) == [False, True, True]
+    assert "4" in window.triptych.frames["fit"]._title.text()
+
+
+def test_that_a_dragged_slider_is_one_step_of_undo(window, wait):
+    slider = window.findChild(QSlider, "n_faces_slider")
+    slider.setSliderDown(True)
+    for value in range(21, 31):
+        slider.setValue(value)
+        QTest.qWait(8)
+    slider.setSliderDown(False)
+    wait(lambda: window.session.choices.n_faces == 30)
+    window.activateWindow()
+    QTest.keySequence(window, "Ctrl+Z")
+    wait(lambda: window.session.choices.n_faces == 20)
+    assert window.coarsening.value()["n_faces"] == 20
+    QTest.keySequence(window, "Ctrl+Shift+Z")
+    wait(lambda: window.coarsening.value()["n_faces"] == 30)
+
+
+def test_that_another_particle_fills_all_three_views(window, wait):
+    before = pictures(window)
+    table = window.particles.table
+    QTest.mouseClick(
+        table.viewport(), Qt.MouseButton.LeftButton, pos=table.visualRect(table.model().index(6, 0)).center()
+    )
+    wait(lambda: window.session.choices.selected == window.particles.entries()[6].id)
+    wait(lambda: window.session.results.coarsened is not None and not window.session.tasks, SECONDS)
+    QTest.qWait(80)
+    assert changed(before, pictures(window)) == [True, True, True]
+
+
+def test_that_dropped_files_are_opened_in_the_unit_that_is_answered(window, wait, tmp_path):
+    path = stl(tmp_path / "egg.stl")
+    data = QMimeData()
+    data.setUrls([QUrl.fromLocalFile(str(path))])
+    timer = answer(UnitDialog, lambda dialog: (dialog.setValue("mm"), dialog.accept()))
+    copy, nothing = Qt.DropAction.CopyAction, Qt.KeyboardModifier.NoModifier
+    window.dropEvent(QDropEvent(QPointF(5, 5), copy, data, Qt.MouseButton.LeftButton, nothing))
+    wait(lambda: [entry.id for entry in window.particles.entries()] == ["egg"], SECONDS)
+    timer.stop()
+    assert np.ptp(window.session.particles[0].particle.mesh.vertices[:, 2]) == pytest.approx(4000.0)
+    assert window.preferences.unit_for(path) == "mm"
+    assert window.preferences.recent == (str(path),)
+
+
+def test_that_a_broken_file_costs_one_sentence_and_nothing_else(window, wait, tmp_path):
+    path = tmp_path / "broken.stl"
+    path.write_bytes(b"\x00" * 90)
+    window.commands.open_paths([path], "um")
+    wait(window.toast.isVisible, SECONDS)
+    assert "broken.stl" in window.toast.sentence.text()
+    assert len(window.particles.entries()) == 12
+
+
+def test_that_an_error_of_the_program_is_told_and_survived(window, capsys):
+    hook = telling_hook(window.toast.problem)
+    for error in (ValueError("shape"), InputError("The seed must not be negative.")):
+        hook(type(error), error, None)
+        assert window.toast.isVisible()
+    assert window.toast.sentence.text() == "The seed must not be negative."
+    assert "ValueError" in capsys.readouterr().err
+
+
+def test_that_the_recipe_is_what_is_chosen(window, tmp_path, monkeypatch):
+    target = tmp_path / "recipe.json"
+    monkeypatch.setattr(
+        "regolith_studio.ui.commands.QFileDialog.getSaveFileName", lambda *_: (str(target), "")
+    )
+    window.session.choose(n_faces=12, seed=5)
+    window.menus.by_name["save_recipe"].trigger()
+    recipe = json.loads(target.read_text())
+    assert (recipe["n_faces"], recipe["seed"], recipe["inputs"]) == (12, 5, ["sample:all"])
+
+
+def test_that_the_export_tells_what_it_will_write_and_refuses_a_used_folder(window, tmp_path):
+    (tmp_path / "used").mkdir()
+    (tmp_path / "used" / "thesis.txt").write_text("mine")
+    window.menus.by_name["export"].trigger()
+    dialog = window.findChild(ExportDialog)
+    text = " ".join(label.text() for label in dialog.findChildren(QWidget) if hasattr(label, "text"))
+    assert "12, as unit-volume STL files" in text
+    folder = dialog.findChild(QLineEdit, "export_folder")
+    folder.setText(str(tmp_path / "used"))
+    assert not dialog.go.isEnabled()
+    folder.setText(str(tmp_path / "new"))
+    assert dialog.go.isEnabled()
+    dialog.reject()
+
+
+def test_that_the_window_follows_dark_and_light(window):
+    light = [picture.mean() for picture in pictures(window)]
+    window.menus.by_name["theme_dark"].trigger()
+    assert current_theme() is DARK
+    assert window.plots.error_bars.plot.theme is DARK
+    assert all(picture.mean() < mean - 60 for picture, mean in zip(pictures(window), light, strict=True))
+    assert window.preferences.window["theme"] == "dark"
+    window.menus.by_name["theme_light"].trigger()
+    assert current_theme() is LIGHT
+    window.menus.by_name["theme_system"].trigger()
+
+
+def test_that_every_command_has_its_place_and_a_tip(window):
+    for name, action in window.menus.by_name.items():
+        assert action.toolTip(), name
+    shortcuts = [a.shortcut().toString() for a in window.menus.by_name.values() if not a.shortcut().isEmpty()]
+    assert len(shortcuts) == len(set(shortcuts))
+
+
+def test_that_closing_while_busy_leaves_quickly(window):
+    window.session.choose(method="annealing", settings=(("iterations", 100_000),))
+    QTest.qWait(200)
+    assert window.session.tasks
+    begin = time.monotonic()
+    window.close()
+    assert time.monotonic() - begin < 5.0
+
+
+def test_that_no_display_is_said_in_one_sentence():
+    check_display({"DISPLAY": ":0"}, "linux")
+    check_display({"QT_QPA_PLATFORM": "offscreen"}, "linux")
+    check_display({}, "darwin")
+    with pytest.raises(EnvironmentProblem, match=r"no display .* demo"):
+        check_display({}, "linux")
