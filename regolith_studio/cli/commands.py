@@ -4,7 +4,19 @@ from typing import Annotated
 
 import typer
 
-from regolith_studio.cli import check, coarsen, dataset, demo, describe, extract, fit, recipe, study, window
+from regolith_studio.cli import (
+    check,
+    coarsen,
+    dataset,
+    demo,
+    describe,
+    extract,
+    fit,
+    recipe,
+    study,
+    warm_up,
+    window,
+)
 
 app = typer.Typer(
     name="regolith-studio",
@@ -39,5 +51,6 @@ app.command("extract")(extract.extract)
 app.command("run")(recipe.run)
 app.command("demo")(demo.demo)
 app.command("check")(check.check)
+app.command("warm-up")(warm_up.warm_up)
 app.add_typer(study.app, name="study")
 app.add_typer(dataset.app, name="dataset")

@@ -1,0 +1,108 @@
+"""The jobs themselves on small bodies: load, measure, fit, coarsen, warm up."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from regolith_studio.coarsening.weights import LossWeights
+from regolith_studio.errors import DatasetError, FileError
+from regolith_studio.geometry.directions import icosphere
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.imaging.stl import stl_bytes
+from regolith_studio.jobs.building import DatasetOptions, build_dataset_folder
+from regolith_studio.jobs.coarsening import CoarseningOrder, coarsen_one, coarsen_sample
+from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
+from regolith_studio.jobs.examining import examine, examine_particles
+from regolith_studio.jobs.loading import load_particles, uniquely_named
+from regolith_studio.jobs.warming import warm_up
+
+SPHERE = icosphere(3)
+GRAIN = Mesh(SPHERE.vertices * [30.0, 20.0, 15.0], SPHERE.faces)
+FLAT = Mesh([[0, 0, 0], [9, 0, 0], [0, 9, 0], [9, 9, 0]], [[0, 1, 2], [0, 2, 1], [1, 3, 2], [1, 2, 3]])
+ORDER = CoarseningOrder(LossWeights.from_preset("all"), method="quadric", l_max=4, level=2)
+
+
+def played(steps: Steps) -> tuple[list[Step], Any]:
+    heard = []
+    while True:
+        try:
+            heard.append(next(steps))
+        except StopIteration as end:
+            return heard, end.value
+
+
+def test_that_a_story_begins_with_its_title_and_counts_to_its_end(tmp_path: Path) -> None:
+    for name in ("b", "a"):
+        (tmp_path / f"{name}.stl").write_bytes(stl_bytes(GRAIN, "test"))
+    heard, loaded = played(load_particles([tmp_path]))
+    assert heard[0] == Started("Reading particles", 2)
+    assert heard[-1] == Progress(2, 2, "b.stl")
+    assert [particle.name for particle in loaded.particles] == ["a", "b"]
+
+
+def test_that_loading_nothing_is_an_error_with_the_first_sentence(tmp_path: Path) -> None:
+    with pytest.raises(FileError, match="holds no mesh file"):
+        played(load_particles([tmp_path]))
+
+
+def test_that_an_empty_folder_does_not_hide_the_others(tmp_path: Path) -> None:
+    (tmp_path / "empty").mkdir()
+    (tmp_path / "a.stl").write_bytes(stl_bytes(GRAIN, "test"))
+    _, loaded = played(load_particles([tmp_path / "empty", tmp_path / "a.stl"]))
+    assert len(loaded.particles) == 1
+    assert len(loaded.problems) == 1
+
+
+def test_that_names_become_unique_by_group_and_then_by_number() -> None:
+    grains = [
+        Particle("a", GRAIN),
+        Particle("a", GRAIN, "left/low"),
+        Particle("a", GRAIN),
+        Particle("b", GRAIN),
+    ]
+    assert [each.name for each in uniquely_named(grains, ["b"])] == ["a", "left_low_a", "a_2", "b_2"]
+
+
+def test_that_a_flat_mesh_is_examined_and_its_trouble_named() -> None:
+    facts = examine(Particle("flat", FLAT))
+    assert facts.descriptors is None
+    assert facts.problem.endswith(".")
+    assert not facts.health.sound
+
+
+def test_that_partial_results_grow_to_the_result() -> None:
+    heard, seen = played(examine_particles([Particle("a", GRAIN), Particle("b", GRAIN)]))
+    parts = [step.value for step in heard if isinstance(step, Partial)]
+    assert [len(part) for part in parts] == [1, 2]
+    assert parts[-1] == seen
+
+
+def test_that_a_coarsening_shows_a_polyhedron_at_its_first_step() -> None:
+    heard, coarsened = played(coarsen_one(GRAIN, ORDER))
+    first = next(step.value for step in heard if isinstance(step, Partial))
+    assert first.polyhedron is not None
+    assert coarsened.n_faces == 20
+
+
+def test_that_a_sample_goes_on_after_a_particle_that_fails() -> None:
+    grains = [Particle("flat", FLAT), Particle("good", GRAIN)]
+    _, (flat, good) = played(coarsen_sample(grains, ORDER))
+    assert flat.coarsened is None
+    assert flat.problem
+    assert good.coarsened is not None
+    assert good.coefficients is not None
+    assert good.coefficients.l_max == 4
+
+
+def test_that_a_sample_without_a_single_polyhedron_is_no_dataset(tmp_path: Path) -> None:
+    with pytest.raises(DatasetError, match="No particle could be coarsened"):
+        played(build_dataset_folder([Particle("flat", FLAT)], ORDER, tmp_path / "d", DatasetOptions()))
+    assert not (tmp_path / "d").exists()
+
+
+def test_that_warming_up_covers_every_method() -> None:
+    heard, names = played(warm_up(workers=1))
+    assert {"fit", "exact", "annealing", "quadric"} <= set(names)
+    assert heard[0] == Started("Compiling", len(names))
