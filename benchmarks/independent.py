@@ -2,7 +2,8 @@
 
 The box is searched over all edges of the hull (O'Rourke 1985): the normal of one side runs over the arc
 between the normals of the two facets of an edge, in steps of `step` degrees, and the directions of all
-edges are tried in the plane; the best few are refined by scipy's bounded scalar minimisation.
+edges are tried in the plane; every minimum within 3 % of the least is refined by scipy's bounded scalar
+minimisation.
 """
 
 import numpy as np
@@ -67,11 +68,13 @@ def least_box(hull: ConvexHull, step: float) -> Array:
         angle = float(np.arccos(np.clip(arc[0] @ arc[1], -1, 1)))
         grid = np.linspace(0.0, angle, max(3, int(np.ceil(np.degrees(angle) / step)) + 1))
         volumes = [float(np.prod(extents(turned(arc, t)))) for t in grid]
-        k = int(np.argmin(volumes))
-        found.append((volumes[k], arc, grid[max(k - 1, 0)], grid[min(k + 1, len(grid) - 1)], grid[k]))
+        for k, volume in enumerate(volumes):
+            before, after = max(k - 1, 0), min(k + 1, len(grid) - 1)
+            if volume <= min(volumes[before], volumes[after]):
+                found.append((volume, arc, grid[before], grid[after], grid[k]))
     found.sort(key=lambda item: item[0])
     best, answer = np.inf, np.zeros(3)
-    for volume, arc, low, high, at in found[:12]:
+    for volume, arc, low, high, at in found:
         if volume > 1.03 * found[0][0]:
             break
         refined = minimize_scalar(

@@ -26,7 +26,7 @@ SAMPLE_ANGLE = float(np.radians(13.0))
 """Step along the arcs that misses few boxes, in radians."""
 FINE_ANGLE = float(np.radians(8.0))
 """Step that missed none of 383 boxes of random spiky polyhedra with 12 facets (13 degrees missed 3)."""
-DENSE_ANGLE = float(np.radians(4.0))
+DENSE_ANGLE = float(np.radians(2.0))
 """Step that is fine enough for a verdict, in radians."""
 PROMISING = 1.12
 """Normals whose box is larger than this many times the least are not looked into."""

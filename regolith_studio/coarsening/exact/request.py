@@ -13,6 +13,10 @@ CONDITION_KEYS = ("volume", "sphericity", "min_diameter", "max_diameter", "aspec
 """Descriptors in the order of :mod:`regolith_studio.coarsening.exact.problem`."""
 
 
+EXACT = 1e-6
+"""Relative errors up to this count as none."""
+
+
 @dataclass(frozen=True)
 class Request:
     """What is kept exactly.
@@ -73,7 +77,7 @@ def reason_for(target: Target, request: Request, n_faces: int, errors: dict[str,
     """One sentence about the condition that is missed by most; ``None`` where all are met to 1e-6."""
     missed = {key: errors[_reported(key, request)] for key in request.keys}
     worst = max(missed, key=lambda key: missed[key], default=None)
-    if worst is None or missed[worst] <= 1e-6:
+    if worst is None or missed[worst] <= EXACT:
         return None
     if "sphericity" in missed:
         bound = sphericity_reason(target.descriptors["sphericity"], n_faces)

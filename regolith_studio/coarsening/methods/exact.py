@@ -1,18 +1,20 @@
 """Descriptors as conditions: met to 1e-6, or a reason given; the rest of the freedom goes into overlap."""
 
 from collections.abc import Generator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from regolith_studio.coarsening.core.box_search import DENSE_ANGLE, SAMPLE_ANGLE
 from regolith_studio.coarsening.evaluation import Evaluation, LossFunction
 from regolith_studio.coarsening.exact.course import Attempt, course, densely_checked, start_planes
-from regolith_studio.coarsening.exact.request import Request, reason_for
+from regolith_studio.coarsening.exact.request import CONDITION_KEYS, EXACT, Request, reason_for
+from regolith_studio.coarsening.polyhedra import polyhedron_of
 from regolith_studio.coarsening.progress import MethodStep
 from regolith_studio.coarsening.result import MethodResult
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import LossWeights
+from regolith_studio.descriptors.describe import describe
 from regolith_studio.errors import GeometryError, InputError
 from regolith_studio.geometry.half_spaces import HalfSpaces
 
@@ -99,7 +101,7 @@ class ExactMethod:
                 history.append(_loss(judge(best.normals, best.offsets)))
                 yield MethodStep(tried, total, history[-1], HalfSpaces(best.normals, best.offsets))
             if tried >= level.starts and best is not None and best.exact:
-                best = densely_checked(dense, best)
+                best = confirmed(request, densely_checked(dense, best))
                 if best.exact and best.n_facets == n_faces:
                     break
         if best is None:
@@ -108,6 +110,15 @@ class ExactMethod:
         reason = None if verdict is None else reason_for(target, request, n_faces, verdict.errors)
         counts = {"starts": float(tried), "exact": float(best.exact)}
         return MethodResult(HalfSpaces(best.normals, best.offsets), tuple(history), reason, counts)
+
+
+def confirmed(request: Request, found: Attempt) -> Attempt:
+    """The attempt, judged by the public descriptors: inexact where they miss a condition."""
+    polyhedron = polyhedron_of(HalfSpaces(found.normals, found.offsets))
+    values = describe(polyhedron, CONDITION_KEYS)
+    wanted = dict(zip(CONDITION_KEYS, request.values, strict=True))
+    worst = max((abs(values[key] / wanted[key] - 1.0) for key in request.keys), default=0.0)
+    return found if worst <= EXACT else replace(found, worst=worst)
 
 
 def _loss(evaluation: Evaluation | None) -> float:
