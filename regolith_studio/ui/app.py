@@ -12,8 +12,9 @@ from PySide6.QtGui import QIcon, QSurfaceFormat
 from PySide6.QtWidgets import QApplication
 
 from regolith_studio.errors import RegolithError
-from regolith_studio.jobs.events import Job, Started, Steps
+from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.runners.thread import ThreadRunner
+from regolith_studio.jobs.warming import warm_up
 from regolith_studio.resources import resource
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.session.session import Session
@@ -71,21 +72,13 @@ def open_window(
     session = Session(runner)
     window = MainWindow(session, preferences or Preferences.load(), views or best_kind())
     poster.setParent(window)
-    runner.submit(Job(warm_up), lambda _event: None, "warm-up")
+    runner.submit(Job(warm_up, (1,)), lambda _event: None, "warm-up")
     found = [Path(path) for path in paths]
     if found:
         QTimer.singleShot(0, window, lambda: window.commands.open_paths(found, unit))
     else:
         session.open_sample()
     return window
-
-
-def warm_up() -> Steps:
-    """Load and compile what the first coarsening needs, while the user looks around."""
-    yield Started("Warming up")
-    from regolith_studio.coarsening.warm_up import warm_up as warm_up_kernels
-
-    warm_up_kernels()
 
 
 Hook = Callable[[type[BaseException], BaseException, TracebackType | None], Any]

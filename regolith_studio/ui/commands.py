@@ -1,5 +1,6 @@
 """What menus, tool bar, shortcuts and dropped files do."""
 
+import dataclasses
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
@@ -7,15 +8,16 @@ from PySide6.QtCore import QObject
 from PySide6.QtWidgets import QDialog, QFileDialog, QWidget
 
 from regolith_studio.errors import RegolithError
+from regolith_studio.session.choices import Choices
 from regolith_studio.session.plan import Kind
 from regolith_studio.session.preferences import Preferences
-from regolith_studio.session.recipe import SAMPLE, Recipe
+from regolith_studio.session.recipe import SAMPLE, Recipe, read_recipe
 from regolith_studio.session.session import Session
 from regolith_studio.ui.dialogs.export import ExportDialog, ExportOrder
 from regolith_studio.ui.dialogs.unit import UnitDialog
 from regolith_studio.ui.widgets.toast import Toast
 
-MESH_FILTER = "Meshes (*.stl *.ply *.obj *.off *.glb *.gltf *.3mf);;All files (*)"
+MESH_FILTER = "Meshes (*.stl *.ply *.obj *.off *.glb *.gltf *.3mf);;Recipes (*.json);;All files (*)"
 
 
 class Commands(QObject):
@@ -54,8 +56,11 @@ class Commands(QObject):
         self._session.open_sample()
 
     def open_paths(self, paths: Sequence[Path], unit: str | None = None) -> None:
-        """Open files and folders; asks for their unit unless it is given."""
+        """Open files and folders, or one recipe; asks for the unit of meshes unless it is given."""
         if not paths:
+            return
+        if len(paths) == 1 and paths[0].suffix.lower() == ".json":
+            self._try(lambda: self._open_recipe(paths[0]))
             return
         unit = unit or self._ask_unit(list(paths))
         if unit is None:
@@ -125,6 +130,13 @@ class Commands(QObject):
     def tell_exported(self, folder: Path) -> None:
         """Say where the dataset is."""
         self._toast.note(f"The dataset is in {folder}.")
+
+    def _open_recipe(self, path: Path) -> int:
+        recipe = read_recipe(path)
+        names = {each.name for each in dataclasses.fields(Choices)} - {"selected"}
+        self._session.choose(**{name: getattr(recipe.choices(), name) for name in names})
+        inputs = [path.parent / name for name in recipe.inputs if name != SAMPLE]
+        return self._session.open(inputs, recipe.unit) if inputs else self._session.open_sample()
 
     def _start_export(self, order: ExportOrder) -> None:
         task = self._try(lambda: self._session.export_dataset(order.folder, order.options))

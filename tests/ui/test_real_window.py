@@ -72,11 +72,23 @@ def coverage(picture):
     return float((np.abs(picture - picture[:, :1]).max(axis=2) > 12).mean())
 
 
-def later(act):
-    """Act again and again from within modal dialogs until it says that it is done."""
+def until_gone(kind, act):
+    """While a modal dialog of this kind is open, act on it again and again; give it up after a while."""
+    seen = []
+
+    def look():
+        dialog = visible(kind)
+        if dialog is None:
+            return
+        seen.append(dialog.objectName())
+        if len(seen) > 80:
+            dialog.reject()
+        else:
+            act(dialog)
+
     timer = QTimer()
-    timer.timeout.connect(lambda: act() and timer.stop())
-    timer.start(60)
+    timer.timeout.connect(look)
+    timer.start(80)
     return timer
 
 
@@ -122,30 +134,25 @@ def drag_slider(slider, share):
 
 
 def answer_file_dialog(path):
-    def act():
-        dialog = visible(QFileDialog)
-        if dialog is None:
-            return False
-        write(dialog.findChild(QLineEdit, "fileNameEdit"), str(path))
-        QTest.keyClick(dialog.findChild(QLineEdit, "fileNameEdit"), Qt.Key.Key_Return)
-        return True
+    def act(dialog):
+        field = dialog.findChild(QLineEdit, "fileNameEdit")
+        if field.text() != str(path):
+            write(field, str(path))
+        else:
+            click(dialog.findChild(QDialogButtonBox).button(QDialogButtonBox.StandardButton.Open))
 
-    return later(act)
+    return until_gone(QFileDialog, act)
 
 
 def answer_unit_dialog():
-    def act():
-        dialog = visible(UnitDialog)
-        if dialog is None:
-            return False
+    def act(dialog):
         click(dialog.findChild(QDialogButtonBox).button(QDialogButtonBox.StandardButton.Open))
-        return True
 
-    return later(act)
+    return until_gone(UnitDialog, act)
 
 
 def open_by_keys(window, path, wait):
-    """Ctrl+O, the path, Return; then the unit."""
+    """Ctrl+O, the path, Open; then the unit."""
     timers = [answer_file_dialog(path), answer_unit_dialog()]
     activate(window)
     QTest.keyClick(window, Qt.Key.Key_O, Qt.KeyboardModifier.ControlModifier)

@@ -106,6 +106,7 @@ def test_that_a_dragged_slider_is_one_step_of_undo(window, wait):
     slider.setSliderDown(False)
     wait(lambda: window.session.choices.n_faces == 30)
     window.activateWindow()
+    assert QTest.qWaitForWindowActive(window, 5000)
     QTest.keySequence(window, "Ctrl+Z")
     wait(lambda: window.session.choices.n_faces == 20)
     assert window.coarsening.value()["n_faces"] == 20
@@ -166,6 +167,9 @@ def test_that_the_recipe_is_what_is_chosen(window, tmp_path, monkeypatch):
     window.menus.by_name["save_recipe"].trigger()
     recipe = json.loads(target.read_text())
     assert (recipe["n_faces"], recipe["seed"], recipe["inputs"]) == (12, 5, ["sample:all"])
+    window.session.choose(n_faces=30)
+    window.commands.open_paths([target])
+    assert (window.session.choices.n_faces, window.session.choices.seed) == (12, 5)
 
 
 def test_that_the_export_tells_what_it_will_write_and_refuses_a_used_folder(window, tmp_path):

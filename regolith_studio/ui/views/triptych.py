@@ -130,7 +130,7 @@ class Triptych(QSplitter):
     def _empty_titles(self) -> None:
         self.frames["particle"].set_texts("CT particle")
         self.frames["fit"].set_texts("Spherical-harmonics fit", "waiting for the coefficients …")
-        self.frames["polyhedron"].set_texts("Polyhedron", "waiting for the first one …")
+        self.frames["polyhedron"].set_texts("Polyhedron", "on its way; the very first one takes longer …")
 
 
 def _lengths(bounds: FloatArray) -> str:
