@@ -9,8 +9,8 @@ python3 bootstrap.py setup           sets up everything that work on the program
 
 --no-system   leaves the packages of the operating system alone
 
-The first call makes the folder .venv with the versions of constraints.txt, and on Debian and Ubuntu installs
-the system libraries that are missing. pip's own configuration is respected.
+The first call installs missing system libraries (on Debian and Ubuntu), makes the folder .venv with the versions
+of constraints.txt, and compiles the numerics. pip's own configuration is respected.
 """
 
 import contextlib
@@ -120,8 +120,7 @@ def display_answers() -> bool:
     local = re.match(r"^(?:unix)?:(\d+)(?:\.\d+)?$", display)
     if not local:
         return bool(display)
-    path = "/tmp/.X11-unix/X" + local.group(1)
-    return any(_accepts(address) for address in (path, "\0" + path))
+    return any(_accepts(start + "/tmp/.X11-unix/X" + local.group(1)) for start in ("", "\0"))
 
 
 def _accepts(address: str) -> bool:
@@ -268,8 +267,8 @@ def make_venv() -> None:
         raise SetupStopped("Python could not make a virtual environment; on Debian it needs python3-venv.")
 
 
-def set_up(extra: str) -> None:
-    """Bring .venv to the state that pyproject.toml and constraints.txt describe.
+def set_up(extra: str, compiling: bool) -> None:
+    """Bring .venv to the state that pyproject.toml and constraints.txt describe, and compile if wanted.
 
     Raises
     ------
@@ -294,6 +293,9 @@ def set_up(extra: str) -> None:
     if failed:
         raise SetupStopped("pip could not install the packages; run this again when it can reach them.")
     STAMP.write_text(fingerprint() + " " + extra + "\n", encoding="utf-8")
+    if compiling:
+        say("compiling the numerics, once (a minute or two)")
+        subprocess.call([str(venv_python()), "-m", "regolith_studio", "warm-up"], stdout=subprocess.DEVNULL)
     say("set up in %.0f s" % (time.monotonic() - started))
 
 
@@ -336,8 +338,7 @@ def run_program(command: "list[str]", environment: "dict[str, str]", folder: str
     for name in ("SIGTERM", "SIGHUP"):
         if hasattr(signal, name):
             signal.signal(getattr(signal, name), lambda number, _frame: child.send_signal(number))
-    code = child.wait()
-    return code if code >= 0 else 128 - code
+    return child.wait() if child.wait() >= 0 else 128 - child.wait()
 
 
 def start(words: "list[str]") -> int:
@@ -355,8 +356,7 @@ def start(words: "list[str]") -> int:
     if os.name == "nt":
         return run_program(command, environment, folder)
     os.chdir(folder)
-    os.execve(command[0], command, environment)
-    return 0  # never reached
+    return os.execve(command[0], command, environment)  # never returns
 
 
 def draws_in_memory(words: "list[str]") -> bool:
@@ -373,7 +373,7 @@ def run(words: "list[str]", leave_system: bool) -> int:
             "`python3 bootstrap.py demo -o out` shows the whole chain without a screen."
         )
     provide_system_packages(draws_in_memory(words) or words == ["setup"], leave_system)
-    set_up("test" if words[:1] in (["test"], ["setup"]) else "")
+    set_up("test" if words[:1] in (["test"], ["setup"]) else "", compiling=words[:1] != ["test"])
     return 0 if words == ["setup"] else start(words)
 
 
