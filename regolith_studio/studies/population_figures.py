@@ -1,0 +1,158 @@
+"""Figs. 4, 5 and 6: densities of descriptors, measured and virtual."""
+
+from math import ceil
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from scipy.stats import gaussian_kde
+
+from regolith_studio.descriptors.catalogue import CATALOGUE
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.model.models import MODELS
+from regolith_studio.studies.figure_files import write_figure
+from regolith_studio.studies.population import WEIGHTINGS, PopulationStudy
+from regolith_studio.studies.population_tables import distance_table, pair_table, ranking_table
+from regolith_studio.studies.tables import write_table
+
+COLOURS = ("#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
+"""Okabe and Ito's palette; the measured sample is black and grey."""
+MEASURED = "#bbbbbb"
+GREYS = ("#e4e4e4", "#c8c8c8", "#a8a8a8", "#888888")
+N_BINS = 40
+N_COLUMNS = 3
+GRID = 60
+CONTAINED = (0.95, 0.75, 0.5, 0.25)
+"""Shares of the particles inside the contours of Fig. 6."""
+MOST_FOR_DENSITY = 1500
+
+
+def density_figure(study: PopulationStudy, weighting: str = "number") -> Figure:
+    """Fig. 4 (by number) or Fig. 5 (by volume): histograms with bins shared by all, outer 0.2 % cut off."""
+    figure, axes = _panels(len(study.keys))
+    for axis, column in zip(axes, range(len(study.keys)), strict=False):
+        tables = [study.measured, *(model.table for model in study.models)]
+        low, high = np.percentile(np.concatenate([table[:, column] for table in tables]), [0.1, 99.9])
+        bins = np.linspace(low, max(high, low + 1e-12), N_BINS + 1).tolist()
+        weights = [_weights(study, table, weighting) for table in tables]
+        measured = study.measured[:, column]
+        axis.hist(measured, bins, weights=weights[0], density=True, color=MEASURED, label="measured")
+        for table, weight, model, colour in zip(tables[1:], weights[1:], study.models, COLOURS, strict=False):
+            axis.hist(
+                table[:, column],
+                bins,
+                weights=weight,
+                density=True,
+                histtype="step",
+                color=colour,
+                label=MODELS[model.key].label,
+            )
+        axis.set_xlabel(_label(study, column))
+    for axis in axes[::N_COLUMNS]:
+        axis.set_ylabel(f"density by {weighting}")
+    handles, labels = axes[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside upper center", ncols=3, frameon=False)
+    return figure
+
+
+def quantile_figure(study: PopulationStudy) -> Figure:
+    """Quantiles (0.5 to 99.5 %) of each model against those of the sample: equal ones lie on the line."""
+    figure, axes = _panels(len(study.keys))
+    shares = np.linspace(0.5, 99.5, 100)
+    for column, axis in enumerate(axes):
+        measured = np.percentile(study.measured[:, column], shares)
+        axis.plot(measured[[0, -1]], measured[[0, -1]], color="black", linewidth=0.8)
+        for model, colour in zip(study.models, COLOURS, strict=False):
+            found = np.percentile(model.table[:, column], shares)
+            axis.plot(measured, found, ".", color=colour, markersize=3, label=MODELS[model.key].label)
+        axis.set_xlabel(f"measured {_label(study, column)}")
+    for axis in axes[::N_COLUMNS]:
+        axis.set_ylabel("drawn")
+    handles, labels = axes[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside upper center", ncols=3, frameon=False)
+    return figure
+
+
+def pair_figure(study: PopulationStudy, keys: tuple[str, ...] | None = None) -> Figure:
+    """Fig. 6: contours that hold 25, 50, 75 and 95 % of the particles, a row a model.
+
+    Kernel densities with Scott's bandwidth n^(-1/6) times the covariance; the measured sample is filled.
+    """
+    wanted = [key for key in keys or study.keys[:3] if key in study.keys]
+    pairs = [
+        (study.keys.index(a), study.keys.index(b)) for i, a in enumerate(wanted) for b in wanted[i + 1 :]
+    ]
+    rows = max(1, len(study.models))
+    figure = Figure(figsize=(1 + 3.2 * len(pairs), 0.8 + 2.7 * rows), layout="constrained")
+    axes = figure.subplots(rows, len(pairs), squeeze=False)
+    for row, model in enumerate(study.models):
+        for axis, (i, j) in zip(axes[row], pairs, strict=True):
+            _contours(axis, study.measured[:, [i, j]], model.table[:, [i, j]], COLOURS[row % len(COLOURS)])
+            axis.set_xlabel(_label(study, i))
+            axis.set_ylabel(_label(study, j))
+    handles = [Line2D([], [], color=MEASURED, linewidth=6, label="measured")]
+    handles += [
+        Line2D([], [], color=colour, label=MODELS[model.key].label)
+        for model, colour in zip(study.models, COLOURS, strict=False)
+    ]
+    figure.legend(handles=handles, loc="outside upper center", ncols=3, frameon=False)
+    return figure
+
+
+def write_population_study(
+    study: PopulationStudy, folder: Path, stem: str = "population"
+) -> tuple[Path, ...]:
+    """Tables (CSV, JSON) of distances, pairs and ranking, and the figures (PNG, SVG)."""
+    files = [
+        *write_table(ranking_table(study), folder, f"{stem}_ranking"),
+        *write_table(distance_table(study), folder, f"{stem}_distances"),
+        *write_table(pair_table(study), folder, f"{stem}_pairs"),
+    ]
+    for weighting in WEIGHTINGS:
+        files += write_figure(density_figure(study, weighting), folder, f"{stem}_{weighting}")
+    files += write_figure(pair_figure(study), folder, f"{stem}_pairs")
+    files += write_figure(quantile_figure(study), folder, f"{stem}_quantiles")
+    return tuple(files)
+
+
+def _panels(n: int) -> tuple[Figure, list[Axes]]:
+    columns = min(N_COLUMNS, n)
+    rows = ceil(n / columns)
+    figure = Figure(figsize=(1 + 3.2 * columns, 0.8 + 2.6 * rows), layout="constrained")
+    axes = list(figure.subplots(rows, columns, squeeze=False).flat)
+    for axis in axes[n:]:
+        axis.remove()
+    return figure, axes[:n]
+
+
+def _label(study: PopulationStudy, column: int) -> str:
+    row = CATALOGUE[study.keys[column]]
+    unit = "µm" if study.unit == "um" else study.unit
+    power = {1: "", 2: "²", 3: "³", 5: "⁵"}
+    suffix = f" ({unit}{power[row.dimension]})" if row.dimension else ""
+    return f"{row.label.lower()}{suffix}"
+
+
+def _weights(study: PopulationStudy, table: FloatArray, weighting: str) -> FloatArray:
+    if weighting == "number" or "equivalent_radius" not in study.keys:
+        return np.ones(len(table))
+    return np.asarray(table[:, study.keys.index("equivalent_radius")] ** 3)
+
+
+def _contours(axis: Axes, measured: FloatArray, drawn: FloatArray, colour: str) -> None:
+    low, high = np.percentile(np.concatenate([measured, drawn]), [0.5, 99.5], axis=0)
+    margin = 0.15 * (high - low)
+    x, y = (np.linspace(low[i] - margin[i], high[i] + margin[i], GRID) for i in range(2))
+    places = np.stack(np.meshgrid(x, y)).reshape(2, -1)
+    for table, filled in ((measured, True), (drawn, False)):
+        density = gaussian_kde(table[:: max(1, len(table) // MOST_FOR_DENSITY)].T)
+        values = density(places).reshape(GRID, GRID)
+        own = density(table[:: max(1, len(table) // MOST_FOR_DENSITY)].T)
+        levels = np.unique(np.quantile(own, [1 - share for share in CONTAINED]))
+        if filled:
+            ends = [*levels, max(values.max(), levels[-1]) * 1.01]
+            axis.contourf(x, y, values, levels=ends, colors=GREYS[: len(levels)])
+        else:
+            axis.contour(x, y, values, levels=levels, colors=colour, linewidths=1)
