@@ -88,7 +88,7 @@ def _notes(study: PopulationStudy) -> tuple[str, ...]:
     rounds = len(study.models[0].novelty) if study.models else 0
     return (
         f"{len(study.measured)} measured particles at l_max = {study.l_max}, {study.left_out} left out; "
-        f"fitted to one half, judged on the other; {rounds} splits, {study.n_draws} draws, seed {study.seed}.",
+        f"fitted to one half, judged on the other; {rounds} splits of {study.n_draws}, seed {study.seed}.",
         "Wasserstein distances are shares of the measured mean; the floor is the distance between random "
         f"halves, {N_FLOOR_SPLITS} of them; by volume means weighted with the cube of the equivalent radius.",
         "Energy distances are unbiased, of standardised columns; a classifier at 0.5 cannot tell measured "
