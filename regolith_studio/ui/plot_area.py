@@ -33,8 +33,8 @@ class PlotArea(QSplitter):
             [
                 (self.loss_curve, "Loss"),
                 (self.spectrum, "Spectrum"),
-                (self.lmax_study, "RMSRE over l_max"),
-                (self.coarsening_study, "RMSRE by loss"),
+                (self.lmax_study, "Study: l_max"),
+                (self.coarsening_study, "Study: losses"),
             ],
         )
         for number, group in enumerate((self.left, self.right)):
@@ -58,10 +58,10 @@ class PlotArea(QSplitter):
             self.spectrum.show_results(session.results, session.choices)
             self.lmax_study.show_l_max(session.choices.l_max)
 
-        wiring.refresh("descriptors coarsening choices", errors)
-        wiring.refresh("descriptors coarsening", lambda: self.table.show_results(session.results))
-        wiring.refresh("coarsening", lambda: self.loss_curve.show_results(session.results))
-        wiring.refresh("fit choices", spectrum)
+        wiring.refresh("descriptors coarsening choices", errors, slow=True)
+        wiring.refresh("descriptors coarsening", lambda: self.table.show_results(session.results), slow=True)
+        wiring.refresh("coarsening", lambda: self.loss_curve.show_results(session.results), slow=True)
+        wiring.refresh("fit choices", spectrum, slow=True)
         self._wire_study(session, wiring, commands, Kind.LMAX_STUDY, self.lmax_study)
         self._wire_study(session, wiring, commands, Kind.COARSENING_STUDY, self.coarsening_study)
 
@@ -81,6 +81,6 @@ class PlotArea(QSplitter):
 
         panel.frame.startRequested.connect(lambda: commands.start_study(kind))
         panel.frame.cancelRequested.connect(commands.stop)
-        wiring.refresh(kind.value, show)
-        wiring.refresh("tasks", tasks)
+        wiring.refresh(kind.value, show, slow=True)
+        wiring.refresh("tasks", tasks, slow=True)
         wiring.refresh("particles", lambda: panel.frame.set_count(len(session.particles)))

@@ -168,4 +168,5 @@ QTabBar::tab:selected {{ color: {theme.text}; background: {theme.base}; border-c
 QTabBar::tab:hover {{ color: {theme.text}; }}
 QTabBar::tab:focus {{ color: {theme.accent}; }}
 QScrollArea {{ border: none; }}
+QDialogButtonBox {{ dialogbuttonbox-buttons-have-icons: 0; }}
 """

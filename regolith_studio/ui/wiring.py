@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any, Protocol
 
 from PySide6.QtCore import QObject, QTimer
@@ -9,8 +10,12 @@ from PySide6.QtCore import QObject, QTimer
 from regolith_studio.errors import RegolithError
 from regolith_studio.session.session import Session
 
-PAUSE = 0.03
-"""Seconds between two refreshments of the same thing, however fast the news come."""
+FAST, SLOW = 0.03, 0.15
+"""Seconds between two refreshments of the same thing: of the views, and of plots and tables.
+
+Fast ones come at once when nothing has come for a while; slow ones always wait, so that the picture of a
+view is not kept back by the painting of a plot.
+"""
 
 
 class ChoicePanel(Protocol):
@@ -27,7 +32,7 @@ class ChoicePanel(Protocol):
 
 
 class Wiring(QObject):
-    """Refreshes what has changed, at most every 30 ms, and hands choices to the session.
+    """Refreshes what has changed, not more often than can be seen, and hands choices to the session.
 
     Parameters
     ----------
@@ -40,12 +45,8 @@ class Wiring(QObject):
     def __init__(self, session: Session, problem: Callable[[str], None], parent: QObject) -> None:
         super().__init__(parent)
         self._session, self._problem = session, problem
-        self._refreshers: dict[str, list[Callable[[], None]]] = {}
-        self._due: dict[str, None] = {}
         self._cuts: list[Callable[[], None]] = []
-        self._last = 0.0
-        self._timer = QTimer(self, singleShot=True)
-        self._timer.timeout.connect(self._refresh)
+        self._fast, self._slow = _Beat(FAST, self, at_once=True), _Beat(SLOW, self, at_once=False)
 
     def edit(self, panel: ChoicePanel) -> None:
         """Let a panel edit the choices it names, and show them whenever they change."""
@@ -66,14 +67,12 @@ class Wiring(QObject):
         self._cuts.append(self._session.topics.choices.connect(show))
         show()
 
-    def refresh(self, topics: str, action: Callable[[], None]) -> None:
+    def refresh(self, topics: str, action: Callable[[], None], *, slow: bool = False) -> None:
         """Call `action` soon after any of the topics (words in one text) has said something, and now."""
+        beat = self._slow if slow else self._fast
         for topic in topics.split():
-            if topic not in self._refreshers:
-                self._refreshers[topic] = []
-                signal = getattr(self._session.topics, topic)
-                self._cuts.append(signal.connect(lambda topic=topic: self._mark(topic)))
-            self._refreshers[topic].append(action)
+            signal = getattr(self._session.topics, topic)
+            self._cuts.append(signal.connect(partial(beat.add, action)))
         action()
 
     def hear(self, topic: str, action: Callable[..., None]) -> None:
@@ -82,21 +81,45 @@ class Wiring(QObject):
 
     def cut(self) -> None:
         """Disconnect everything."""
-        self._timer.stop()
+        self._fast.stop()
+        self._slow.stop()
         for cut in self._cuts:
             cut()
         self._cuts.clear()
-        self._refreshers.clear()
 
-    def _mark(self, topic: str) -> None:
-        self._due[topic] = None
-        if not self._timer.isActive():
-            wait = max(0.0, self._last + PAUSE - time.monotonic())
-            self._timer.start(round(1000 * wait))
 
-    def _refresh(self) -> None:
-        due, self._due = self._due, {}
-        actions = dict.fromkeys(action for topic in due for action in self._refreshers.get(topic, ()))
-        for action in actions:
+class _Beat(QObject):
+    """Calls what has been added, each at most every `seconds`."""
+
+    def __init__(self, seconds: float, parent: QObject, *, at_once: bool) -> None:
+        super().__init__(parent)
+        self._seconds, self._at_once = seconds, at_once
+        self._due: dict[Callable[[], None], float] = {}
+        self._last: dict[Callable[[], None], float] = {}
+        self._timer = QTimer(self, singleShot=True)
+        self._timer.timeout.connect(self._run)
+
+    def add(self, action: Callable[[], None]) -> None:
+        """Call `action` at its next beat."""
+        if action not in self._due:
+            begin = self._last.get(action, 0.0) if self._at_once else time.monotonic()
+            self._due[action] = begin + self._seconds
+            self._wait()
+
+    def stop(self) -> None:
+        """Call nothing any more."""
+        self._timer.stop()
+        self._due.clear()
+        self._last.clear()
+
+    def _wait(self) -> None:
+        if self._due:
+            self._timer.start(max(0, round(1000 * (min(self._due.values()) - time.monotonic()))))
+
+    def _run(self) -> None:
+        now = time.monotonic() + 0.001
+        for action in [each for each, moment in self._due.items() if moment <= now]:
+            del self._due[action]
             action()
-        self._last = time.monotonic()
+            self._last[action] = time.monotonic()
+        self._wait()

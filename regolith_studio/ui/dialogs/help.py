@@ -15,6 +15,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from regolith_studio import __version__
 from regolith_studio.ui.icons import pixmap
 from regolith_studio.ui.widgets.labels import heading, remark
 
@@ -34,7 +35,7 @@ def about_dialog(parent: QWidget, renderer: str) -> QDialog:
     mark.setPixmap(pixmap("app", "#000000", 72))
     mark.setAlignment(Qt.AlignmentFlag.AlignTop)
     text = QVBoxLayout()
-    text.addWidget(heading(f"Regolith Studio {_version('regolith-studio')}"))
+    text.addWidget(heading(f"Regolith Studio {__version__}"))
     text.addWidget(QLabel("From X-ray micro-CT to DEM-ready regolith particles whose geometry is right."))
     names = ("PySide6-Essentials", "vtk", "pyvista", "pyqtgraph", "numpy", "numba")
     text.addWidget(remark(", ".join(f"{name} {_version(name)}" for name in names)))

@@ -39,13 +39,11 @@ class ErrorBarsPanel(QWidget):
             self._polyhedron = {**done.errors, JACCARD: done.jaccard_distance}
         theme, target = self.plot.theme, "fit" if choices.target == "fit" else "particle"
         series = [
-            BarSeries("Fit against particle", theme.fit, _percent(results.fit_errors)),
-            BarSeries(
-                f"Polyhedron against {target}", theme.polyhedron, _percent(self._polyhedron), done is None
-            ),
+            BarSeries("Fit vs. particle", theme.fit, _percent(results.fit_errors)),
+            BarSeries(f"Polyhedron vs. {target}", theme.polyhedron, _percent(self._polyhedron), done is None),
         ]
         self.plot.set_bars([*(plain_symbol(CATALOGUE[key].symbol) for key in LOSS_KEYS), "Jaccard"], series)
-        self.plot.remark.setText("" if done is None else f"loss (Eq. 9): {done.loss:.4g}")
+        self.plot.set_remark("" if done is None else f"loss (Eq. 9): {done.loss:.4g}")
 
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""

@@ -37,7 +37,7 @@ class LossCurvePanel(QWidget):
         self.plot.set_curves(curves)
         progress = results.coarsening_progress
         running = results.coarsened is None and progress is not None
-        self.plot.remark.setText(
+        self.plot.set_remark(
             f"step {progress.step} of {progress.steps}"
             if running and progress
             else f"lowest {min(losses):.4g}"

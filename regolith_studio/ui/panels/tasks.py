@@ -1,5 +1,6 @@
 """What is running, in the status bar: title, progress, a button that stops it."""
 
+import time
 from collections.abc import Sequence
 
 from PySide6.QtCore import QTimer, Signal
@@ -24,6 +25,7 @@ class TasksPanel(QWidget):
         super().__init__(parent)
         self.setObjectName("tasks")
         self._tasks: tuple[Task, ...] = ()
+        self._since: dict[int, float] = {}
         self.text = ElidedLabel(IDLE)
         self.text.setObjectName("tasks_text")
         self.bar = QProgressBar()
@@ -54,27 +56,26 @@ class TasksPanel(QWidget):
 
     def setValue(self, tasks: Sequence[Task]) -> None:
         """Show these; short ones never appear."""
+        now = time.monotonic()
         self._tasks = tuple(tasks)
-        if not self._tasks:
-            self._timer.stop()
-            self._show()
-        elif self.bar.isVisible():
-            self._show()
-        elif not self._timer.isActive():
-            self._timer.start()
+        self._since = {task.id: self._since.get(task.id, now) for task in self._tasks}
+        self._show()
 
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
         self.stop.setIcon(icon("stop", theme.bad, theme.muted))
 
     def _show(self) -> None:
-        busy = bool(self._tasks)
-        self.bar.setVisible(busy)
-        self.stop.setVisible(busy)
-        if not busy:
+        patience = time.monotonic() - PATIENCE / 1000
+        seen = [task for task in self._tasks if self._since[task.id] <= patience]
+        if len(seen) < len(self._tasks) and not self._timer.isActive():
+            self._timer.start()
+        self.bar.setVisible(bool(seen))
+        self.stop.setVisible(bool(seen))
+        if not seen:
             self.text.setText(IDLE)
             return
-        first, others = self._tasks[0], len(self._tasks) - 1
+        first, others = seen[0], len(seen) - 1
         self.bar.setRange(0, first.total)
         self.bar.setValue(first.done)
         count = f" ({first.done} of {first.total})" if first.total else ""

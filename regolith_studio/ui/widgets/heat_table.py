@@ -17,7 +17,7 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.ui.theme import Theme, current_theme
 
-_ROWS_SHARE = 0.42
+_ROWS_SHARE = 0.33
 """Of the width, that the names of the rows take at most."""
 
 
@@ -26,8 +26,8 @@ def percentage(share: float) -> str:
     percent = 100.0 * share
     if not math.isfinite(percent):
         return "–"
-    if 0.0 < percent < 0.01:
-        return "<0.01"
+    if percent < 0.005:
+        return "0"
     return f"{percent:.2f}" if percent < 1.0 else f"{percent:.1f}"
 
 
@@ -46,7 +46,8 @@ class HeatTable(QWidget):
         self.table.setShowGrid(False)
         self.table.setFrameShape(self.table.Shape.NoFrame)
         self.table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
-        self.table.horizontalHeader().setMinimumSectionSize(34)
+        self.table.horizontalHeader().setMinimumSectionSize(24)
+        self.table.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self.table.verticalHeader().setTextElideMode(Qt.TextElideMode.ElideRight)
         self.table.verticalHeader().setDefaultSectionSize(self.table.fontMetrics().height() + 7)
         empty = QLabel(placeholder)

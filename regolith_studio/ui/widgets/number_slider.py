@@ -6,7 +6,7 @@ from PySide6.QtCore import QSignalBlocker, Qt, QTimer, Signal
 from PySide6.QtWidgets import QDoubleSpinBox, QGridLayout, QLabel, QSlider, QSpinBox, QWidget
 
 THROTTLE = 30
-"""Milliseconds between two announcements while a slider is dragged; the last value always follows."""
+"""Milliseconds between two announcements while a slider is dragged: the first at once, the last always."""
 
 
 @dataclass(frozen=True)
@@ -136,15 +136,17 @@ class NumberSlider(QWidget):
 
     def _wait(self) -> None:
         if not self._timer.isActive():
-            self._timer.start()
+            self._announce()
 
     def _announce(self) -> None:
+        """Tell the value, if it is new, and nothing more for a while."""
         value = self.value()
         if value != self._announced:
             self._announced = value
+            self._timer.start()
             self.valueChanged.emit(value)
 
     def _finish(self) -> None:
-        self._timer.stop()
         self._announce()
+        self._timer.stop()
         self.editingFinished.emit()

@@ -2,7 +2,7 @@
 
 import pyqtgraph as pg
 from PySide6.QtCore import Qt
-from PySide6.QtGui import QColor, QFont
+from PySide6.QtGui import QColor, QFont, QResizeEvent
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QStackedLayout, QVBoxLayout, QWidget
 
 from regolith_studio.ui.theme import Theme, current_theme
@@ -65,6 +65,19 @@ class Plot(QWidget):
             self._placeholder.setText(sentence)
         self._stack.setCurrentIndex(0 if empty else 1)
 
+    def set_remark(self, text: str) -> None:
+        """A few words at the right of the legend; left out where there is no room for them."""
+        self.remark.setText(text)
+        self._make_room()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._make_room()
+
+    def _make_room(self) -> None:
+        needed = self.legend.sizeHint().width() + self.remark.sizeHint().width() + 40
+        self.remark.setVisible(needed <= self.width())
+
     def is_empty(self) -> bool:
         """Whether the placeholder is shown."""
         return self._stack.currentIndex() == 0
@@ -77,6 +90,7 @@ class Plot(QWidget):
                 f'<span style="color:{colour}">&#9632;</span>&nbsp;{text}' for colour, text in entries
             )
         )
+        self._make_room()
 
     def set_labels(self, x: str, y: str) -> None:
         """Name the axes anew."""
