@@ -92,7 +92,7 @@ def coarsening_steps(
             return _measured(target, end.value, method, n_faces, weights)
         polyhedron = None
         if step.half_spaces is not None:
-            polyhedron = polyhedron_of(target.in_particle_unit(step.half_spaces))
+            polyhedron = polyhedron_of(target.in_particle_frame(step.half_spaces))
         yield CoarseningProgress(step.step, step.steps, step.loss, polyhedron, target.centre)
 
 
@@ -138,7 +138,7 @@ def _measured(
 ) -> Coarsened:
     """Measure the result by the public descriptors, independently of the method."""
     unit = ConvexPolyhedron.from_half_spaces(result.half_spaces)
-    polyhedron = unit.moved(scale=target.scale)
+    polyhedron = unit.moved(rotation=target.axes.T, scale=target.scale)
     achieved = describe(unit)
     errors = relative_errors(target.descriptors, achieved)
     overlap = target.jaccard_distance(unit.half_spaces)

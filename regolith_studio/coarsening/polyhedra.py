@@ -3,6 +3,9 @@
 import numpy as np
 
 from regolith_studio.coarsening.core.intersection import FINE, edges_of, intersect
+from regolith_studio.coarsening.core.measures import facets_of
+from regolith_studio.errors import GeometryError
+from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 
@@ -37,3 +40,18 @@ def _loop(following: dict[int, int]) -> tuple[int, ...]:
     while (at := following[at]) != first:
         loop.append(at)
     return tuple(loop)
+
+
+def facet_areas(half_spaces: HalfSpaces) -> FloatArray:
+    """Area of the facet of each half-space, 0 where it has none, shape (n,).
+
+    Raises
+    ------
+    GeometryError
+        If the intersection is unbounded.
+    """
+    status, vertices, triples = intersect(half_spaces.normals, half_spaces.offsets)
+    if status != FINE:
+        raise GeometryError("The half-spaces bound no volume: their intersection is unbounded.")
+    edges = edges_of(triples, len(half_spaces))
+    return facets_of(half_spaces.normals, half_spaces.offsets, vertices, edges)[0]

@@ -1,4 +1,4 @@
-"""The particle as the methods see it: unit volume, centroid at the origin, everything measured once."""
+"""The particle as the methods see it: unit volume, in its principal axes, everything measured once."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -16,6 +16,8 @@ from regolith_studio.geometry.mesh import Mesh
 
 SMALLEST_SPAN = 1e-150
 """Below this size the volume of a mesh cannot be told from 0."""
+GRAIN = 2.0**-30
+"""Coordinates of the normalised particle are multiples of this."""
 MOST_TANGLED = 0.05
 """Share of wrong crossings above which a mesh counts as intersecting itself."""
 
@@ -52,9 +54,12 @@ class Target:
     Parameters
     ----------
     mesh
-        Closed, outward-oriented, unit volume, centroid at the origin.
+        Closed, outward-oriented, unit volume, centroid at the origin, principal axes of inertia along x, y, z.
+        Coordinates are rounded to 2^-30, so that unit, place and orientation of the particle do not matter.
     centre
         Centroid in the particle's own frame, shape (3,).
+    axes
+        Principal axes in the particle's own frame, one a row, shape (3, 3).
     scale
         Length in the particle's unit that one unit of `mesh` stands for.
     descriptors
@@ -63,6 +68,7 @@ class Target:
 
     mesh: Mesh
     centre: FloatArray
+    axes: FloatArray
     scale: float
     descriptors: Descriptors
 
@@ -76,7 +82,9 @@ class Target:
             If the mesh is not closed, encloses no volume or largely intersects itself.
         """
         unit, centre, scale = _normalised(mesh)
-        target = cls(unit, centre, scale, describe(unit))
+        axes = principal_axes(unit)
+        aligned = Mesh(np.round(unit.vertices @ axes.T / GRAIN) * GRAIN, unit.faces)
+        target = cls(aligned, centre, axes, scale, describe(aligned))
         _check_simple(target.rays)
         return target
 
@@ -110,9 +118,23 @@ class Target:
     def _dense_rays(self) -> RayTable:
         return self.ray_table(16_000)
 
-    def in_particle_unit(self, half_spaces: HalfSpaces) -> HalfSpaces:
-        """Half-spaces about the particle's centroid, in the particle's unit."""
-        return half_spaces.scaled(self.scale)
+    def in_particle_frame(self, half_spaces: HalfSpaces) -> HalfSpaces:
+        """Half-spaces about the particle's centroid, in the particle's unit and orientation."""
+        return HalfSpaces(half_spaces.normals @ self.axes, half_spaces.offsets * self.scale)
+
+    def in_unit_frame(self, half_spaces: HalfSpaces) -> HalfSpaces:
+        """The inverse of :meth:`in_particle_frame`."""
+        return HalfSpaces(half_spaces.normals @ self.axes.T, half_spaces.offsets / self.scale)
+
+
+def principal_axes(mesh: Mesh) -> FloatArray:
+    """Right-handed principal axes of inertia as rows, each towards the longer tail of the particle."""
+    _, vectors = np.linalg.eigh(mesh.inertia)
+    axes = vectors.T
+    along = mesh.triangles.mean(axis=1) @ axes.T
+    axes = axes * np.where(mesh.face_areas @ along**3 < 0.0, -1.0, 1.0)[:, None]
+    axes[2] = np.cross(axes[0], axes[1])
+    return np.asarray(axes, dtype=np.float64)
 
 
 def _normalised(mesh: Mesh) -> tuple[Mesh, FloatArray, float]:

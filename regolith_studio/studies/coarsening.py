@@ -124,7 +124,8 @@ class CoarseningStudy:
     @property
     def rmsre(self) -> FloatArray:
         """RMSRE of Eq. 10 by row and column; the last column is the mean Jaccard distance."""
-        return _pooled(self.errors, np.ones((1, len(self.names))))[0]
+        pooled: FloatArray = _pooled(self.errors, np.ones((1, len(self.names))))[0]
+        return pooled
 
     @property
     def bands(self) -> FloatArray:

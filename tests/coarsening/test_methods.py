@@ -66,6 +66,13 @@ def test_that_the_unit_of_length_does_not_matter(exact: Coarsened, particle: Mes
     assert other.half_spaces.offsets == pytest.approx(exact.half_spaces.offsets * scale, rel=1e-5)
 
 
+def test_that_the_orientation_does_not_matter(exact: Coarsened, particle: Mesh) -> None:
+    turn = np.array([[0.36, 0.48, -0.8], [-0.8, 0.6, 0.0], [0.48, 0.64, 0.6]])
+    other = coarsen(particle.moved(rotation=turn), 20, "exact", seed=1)
+    assert other.jaccard_distance == pytest.approx(exact.jaccard_distance, abs=1e-6)
+    assert other.half_spaces.points == pytest.approx(exact.half_spaces.points @ turn.T, abs=1e-4)
+
+
 def test_that_the_same_seed_gives_the_same_polyhedron(exact: Coarsened, particle: Mesh) -> None:
     again = coarsen(particle, 20, "exact", seed=1)
     assert (again.half_spaces.points == exact.half_spaces.points).all()
@@ -112,7 +119,7 @@ def test_that_an_impossible_request_is_explained() -> None:
 def test_that_quadric_reports_its_three_readings(particle: Mesh) -> None:
     found = coarsen(particle, 20, "quadric", LossWeights.from_preset("quadric"))
     assert set(found.variants) == {"mesh", "half_spaces", "volume_restored"}
-    assert found.variants["volume_restored"]["volume"] < 1e-12
+    assert found.variants["volume_restored"]["volume"] < 1e-8
     assert found.errors["volume"] == pytest.approx(found.variants["half_spaces"]["volume"], rel=1e-9)
     restored = coarsen(particle, 20, "quadric", settings={"restore_volume": True})
     assert restored.errors["volume"] < 1e-9

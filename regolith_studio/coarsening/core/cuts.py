@@ -2,19 +2,22 @@
 
 import numpy as np
 
-from regolith_studio.coarsening.core.intersection import FINE, intersect
+from regolith_studio.coarsening.core.intersection import FINE, edges_of, intersect
+from regolith_studio.coarsening.core.measures import facets_of
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.compiled import kernel
 
+LEAST_CUT = 3e-3
+"""Least depth of a cut that is worth it, at unit volume."""
+SMALLEST_FACET = 1e-6
+"""Facets of less area, at unit volume, count as lost."""
+
 
 @kernel
-def redundant(triples: IntArray, n_planes: int) -> IntArray:
-    """Planes that bound no facet, by index."""
-    real = np.zeros(n_planes, np.bool_)
-    for v in range(len(triples)):
-        for k in range(3):
-            real[triples[v, k]] = True
-    return np.nonzero(~real)[0]
+def redundant(normals: FloatArray, offsets: FloatArray, vertices: FloatArray, triples: IntArray) -> IntArray:
+    """Planes that bound no facet worth the name, by index."""
+    area, _ = facets_of(normals, offsets, vertices, edges_of(triples, len(offsets)))
+    return np.nonzero(area < SMALLEST_FACET)[0]
 
 
 @kernel
@@ -58,25 +61,55 @@ def with_all_facets(
         status, vertices, triples = intersect(normals, offsets)
         if status != FINE:
             return -1, normals, offsets
-        idle = redundant(triples, len(offsets))
+        idle = redundant(normals, offsets, vertices, triples)
         if len(idle) == 0:
             break
-        most, at = -np.inf, 0
-        for v in range(len(vertices)):
-            here = overhang(vertices[v], directions, first, distance)
-            if here > most:
-                most, at = here, v
-        normal = normals[triples[at, 0]] + normals[triples[at, 1]] + normals[triples[at, 2]]
-        normal /= np.sqrt(np.sum(normal * normal))
-        top = np.sum(normal * vertices[at])
-        room = np.inf
-        for v in range(len(vertices)):
-            if neighbours(triples[v], triples[at]):
-                room = min(room, top - np.sum(normal * vertices[v]))
+        at, normal, room = best_corner(normals, vertices, triples, directions, first, distance, depth)
+        top = normal[0] * vertices[at, 0] + normal[1] * vertices[at, 1] + normal[2] * vertices[at, 2]
         normals[idle[0]] = normal
         offsets[idle[0]] = top - depth * room
         n_cuts += 1
     return n_cuts, normals, offsets
+
+
+@kernel
+def best_corner(
+    normals: FloatArray,
+    vertices: FloatArray,
+    triples: IntArray,
+    directions: FloatArray,
+    first: IntArray,
+    distance: FloatArray,
+    depth: float,
+) -> tuple[int, FloatArray, float]:
+    """The corner that hangs out farthest of those with room for a cut, else the one with the most room.
+
+    Returns its index, the normal of the cut and the way along it to the nearest neighbouring corner.
+    """
+    at, most, roomiest, best_room = -1, -np.inf, 0, -np.inf
+    rooms = np.empty(len(vertices))
+    for v in range(len(vertices)):
+        normal = corner_normal(normals, triples[v])
+        rooms[v] = np.inf
+        for u in range(len(vertices)):
+            if neighbours(triples[u], triples[v]):
+                rooms[v] = min(rooms[v], np.sum(normal * (vertices[v] - vertices[u])))
+        if rooms[v] > best_room:
+            roomiest, best_room = v, rooms[v]
+        if depth * rooms[v] > LEAST_CUT:
+            here = overhang(vertices[v], directions, first, distance)
+            if here > most:
+                at, most = v, here
+    if at < 0:
+        at = roomiest
+    return at, corner_normal(normals, triples[at]), rooms[at]
+
+
+@kernel
+def corner_normal(normals: FloatArray, triple: IntArray) -> FloatArray:
+    """Mean direction of the three planes of a corner."""
+    normal = normals[triple[0]] + normals[triple[1]] + normals[triple[2]]
+    return np.asarray(normal / np.sqrt(np.sum(normal * normal)))
 
 
 @kernel

@@ -5,17 +5,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from regolith_studio.coarsening.core.cuts import with_all_facets
+from regolith_studio.coarsening.core.cuts import SMALLEST_FACET, with_all_facets
 from regolith_studio.coarsening.core.planes import tangents_of
 from regolith_studio.coarsening.exact.descent import (
-    CAP,
     OVERLAP,
+    REACH,
     TOLERANCE,
     State,
     descended,
     first_metric,
     objective_at,
     started,
+    steady_metric,
 )
 from regolith_studio.coarsening.exact.polish import Polished, measured, polished, verified
 from regolith_studio.coarsening.exact.problem import Problem
@@ -24,11 +25,11 @@ from regolith_studio.coarsening.target import Target
 from regolith_studio.geometry.arrays import FloatArray
 
 NOWHERE: FloatArray = np.empty((0, 3, 3))
-CUT_DEPTHS = (0.3, 0.1, 0.03)
+CUT_DEPTHS = (0.3, 0.3, 0.1, 0.03, 0.01)
 CHUNK = 8
+FREE_ROUNDS = 3
 POLISH_STEPS, LONG_POLISH = 6, 30
 TIE_BREAK = 1e-7
-FREE_RADIUS, BOUND_RADIUS = 0.1, 0.05
 
 
 @dataclass(frozen=True)
@@ -109,15 +110,23 @@ def course(
     point = measured(free, planes[0], planes[1], tangents_of(planes[0]), NOWHERE)
     if not np.isfinite(point.worst):
         return
-    point = polished(free, point, first_metric(point.shape), LONG_POLISH, TOLERANCE, CAP)
-    state = descended(free, started(free, point, OVERLAP, FREE_RADIUS), OVERLAP, free_steps, POLISH_STEPS)
-    shape = state.point.shape
+    point = polished(free, point, first_metric(point.shape), LONG_POLISH, TOLERANCE, reach(point))
+    for _ in range(FREE_ROUNDS):
+        state = descended(
+            free, started(free, point, OVERLAP, reach(point)), OVERLAP, free_steps, POLISH_STEPS
+        )
+        shape = state.point.shape
+        cuts, normals, offsets = _with_cuts(target, shape.normals, shape.offsets, CUT_DEPTHS[0])
+        if cuts <= 0:
+            break
+        point = measured(free, normals, offsets, tangents_of(normals), NOWHERE)
+        point = polished(free, point, first_metric(point.shape), LONG_POLISH, TOLERANCE, reach(point))
     point = measured(full, shape.normals, shape.offsets, state.point.frames, NOWHERE)
-    point = verified(full, point, state.metric, LONG_POLISH, TOLERANCE, CAP)
+    point = verified(full, point, state.metric, LONG_POLISH, TOLERANCE, reach(point))
     yield attempt(full, point)
     if point.worst > TOLERANCE:
         return
-    state = started(full, point, OVERLAP, BOUND_RADIUS)
+    state = started(full, point, OVERLAP, reach(point) / 2)
     for later in steps_down(full, state, bound_steps):
         state = later
         yield attempt(full, state.point)
@@ -134,40 +143,51 @@ def steps_down(problem: Problem, state: State, steps: int) -> Iterator[State]:
 
 
 def mended(target: Target, problem: Problem, state: State, steps: int) -> Iterator[Attempt]:
-    """Redundant half-spaces are put back as cuts, polished and taken along by a short descent."""
-    shape = state.point.shape
+    """Redundant half-spaces are put back as cuts, polished and taken along by a short descent.
+
+    What a cut loses again in the polish comes back as a smaller one: its volume goes with the cube of its
+    depth, so the smallest survive.
+    """
+    point = state.point
     for depth in CUT_DEPTHS:
+        shape = point.shape
         cuts, normals, offsets = _with_cuts(target, shape.normals, shape.offsets, depth)
         if cuts <= 0:
-            return
-        point = measured(problem, normals, offsets, tangents_of(normals), state.point.conditions.watched)
-        point = verified(problem, point, first_metric(point.shape), LONG_POLISH, TOLERANCE, CAP)
-        if point.worst > TOLERANCE:
-            continue
-        whole = attempt(problem, point)
-        yield whole
-        if whole.n_facets < len(offsets):
-            continue
-        for later in steps_down(problem, started(problem, point, OVERLAP, 0.01), steps):
-            yield attempt(problem, later.point)
+            break
+        tried = measured(problem, normals, offsets, tangents_of(normals), point.conditions.watched)
+        tried = verified(problem, tried, steady_metric(tried.shape), LONG_POLISH, TOLERANCE, reach(tried))
+        if tried.worst <= TOLERANCE and n_facets(tried) >= n_facets(point):
+            point = tried
+            yield attempt(problem, point)
+    if point is state.point:
         return
+    for later in steps_down(problem, started(problem, point, OVERLAP, reach(point) / 10), steps):
+        yield attempt(problem, later.point)
+
+
+def n_facets(point: Polished) -> int:
+    """Real facets."""
+    return int(np.count_nonzero(point.shape.area >= SMALLEST_FACET))
 
 
 def densely_checked(dense: Problem, found: Attempt) -> Attempt:
     """The polyhedron measured with a fine search for boxes; polished again where that found a smaller box."""
     point = measured(dense, found.normals, found.offsets, tangents_of(found.normals), NOWHERE)
     if point.worst > TOLERANCE:
-        point = verified(dense, point, first_metric(point.shape), LONG_POLISH, TOLERANCE, CAP)
+        point = verified(dense, point, first_metric(point.shape), LONG_POLISH, TOLERANCE, reach(point))
     return attempt(dense, point)
+
+
+def reach(point: Polished) -> float:
+    """Longest step."""
+    return float(REACH / np.sqrt(len(point.shape.offsets)))
 
 
 def attempt(problem: Problem, point: Polished) -> Attempt:
     """What is reported of a point."""
     shape = point.shape
     jaccard = objective_at(problem, shape, OVERLAP) if np.isfinite(point.worst) else 1.0
-    return Attempt(
-        shape.normals, shape.offsets, jaccard, point.worst, int(np.count_nonzero(shape.area > 0.0))
-    )
+    return Attempt(shape.normals, shape.offsets, jaccard, point.worst, n_facets(point))
 
 
 def _with_cuts(

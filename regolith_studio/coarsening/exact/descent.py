@@ -26,7 +26,8 @@ TOLERANCE = 3e-8
 """Largest residual of a polyhedron that counts as exact."""
 SHORTEST_STEP = 2e-4
 CURVATURE = 0.1
-CAP = 0.1
+REACH = 0.4
+"""Longest step of a polish times the square root of the number of planes: facets shrink as n grows."""
 
 
 class State(NamedTuple):
@@ -106,10 +107,22 @@ def first_metric(shape: Shape) -> FloatArray:
     metric = np.zeros((3 * n, 3 * n))
     mean = shape.surface / n
     for i in range(n):
-        area = max(shape.area[i], 0.1 * mean)
+        area = max(shape.area[i], 0.3 * mean)
         metric[3 * i, 3 * i] = CURVATURE / area
         metric[3 * i + 1, 3 * i + 1] = 3.0 * CURVATURE / area
         metric[3 * i + 2, 3 * i + 2] = 3.0 * CURVATURE / area
+    return metric
+
+
+@kernel
+def steady_metric(shape: Shape) -> FloatArray:
+    """A diagonal metric in which small facets hold still."""
+    n = len(shape.offsets)
+    metric = np.zeros((3 * n, 3 * n))
+    mean = shape.surface / n
+    for i in range(n):
+        for k in range(3):
+            metric[3 * i + k, 3 * i + k] = max(shape.area[i] / mean, 1e-3)
     return metric
 
 
@@ -184,6 +197,7 @@ def descended(problem: Problem, state: State, goal: int, iterations: int, polish
         state.radius,
     )
     done, spent, failures = state.done, state.iterations, 0
+    cap = REACH / np.sqrt(len(point.shape.offsets))
     for _ in range(iterations):
         if done:
             break
@@ -206,9 +220,9 @@ def descended(problem: Problem, state: State, goal: int, iterations: int, polish
         better, then, reached = False, point, value
         if shifted.min() > 0.0:
             then = measured(problem, turned, shifted, carried(point.frames, turned), point.conditions.watched)
-            then = polished(problem, then, metric, polish_steps, TOLERANCE, CAP)
+            then = polished(problem, then, metric, polish_steps, TOLERANCE, cap)
             if then.worst < TOLERANCE and objective_at(problem, then.shape, goal) < value:
-                then = verified(problem, then, metric, polish_steps, TOLERANCE, CAP)
+                then = verified(problem, then, metric, polish_steps, TOLERANCE, cap)
                 if then.worst < TOLERANCE:
                     reached = objective_at(problem, then.shape, goal)
                     better = reached < value

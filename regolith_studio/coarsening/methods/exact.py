@@ -6,10 +6,11 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from regolith_studio.coarsening.core.box_search import DENSE_ANGLE, SAMPLE_ANGLE
+from regolith_studio.coarsening.core.cuts import SMALLEST_FACET
 from regolith_studio.coarsening.evaluation import Evaluation, LossFunction
 from regolith_studio.coarsening.exact.course import Attempt, course, densely_checked, start_planes
 from regolith_studio.coarsening.exact.request import CONDITION_KEYS, EXACT, Request, reason_for
-from regolith_studio.coarsening.polyhedra import polyhedron_of
+from regolith_studio.coarsening.polyhedra import facet_areas, polyhedron_of
 from regolith_studio.coarsening.progress import MethodStep
 from regolith_studio.coarsening.result import MethodResult
 from regolith_studio.coarsening.target import Target
@@ -102,23 +103,31 @@ class ExactMethod:
                 yield MethodStep(tried, total, history[-1], HalfSpaces(best.normals, best.offsets))
             if tried >= level.starts and best is not None and best.exact:
                 best = confirmed(request, densely_checked(dense, best))
-                if best.exact and best.n_facets == n_faces:
+                if best.exact and (best.n_facets == n_faces or tried > level.starts):
                     break
         if best is None:
             raise GeometryError("No start of the exact method bounds a polyhedron.")
         verdict = judge(best.normals, best.offsets, DENSE_ANGLE)
         reason = None if verdict is None else reason_for(target, request, n_faces, verdict.errors)
         counts = {"starts": float(tried), "exact": float(best.exact)}
-        return MethodResult(HalfSpaces(best.normals, best.offsets), tuple(history), reason, counts)
+        return MethodResult(real_planes(best), tuple(history), reason, counts)
 
 
 def confirmed(request: Request, found: Attempt) -> Attempt:
     """The attempt, judged by the public descriptors: inexact where they miss a condition."""
-    polyhedron = polyhedron_of(HalfSpaces(found.normals, found.offsets))
+    polyhedron = polyhedron_of(real_planes(found))
     values = describe(polyhedron, CONDITION_KEYS)
     wanted = dict(zip(CONDITION_KEYS, request.values, strict=True))
     worst = max((abs(values[key] / wanted[key] - 1.0) for key in request.keys), default=0.0)
     return found if worst <= EXACT else replace(found, worst=worst)
+
+
+def real_planes(found: Attempt) -> HalfSpaces:
+    """Half-spaces whose facets are more than rounding."""
+    planes = HalfSpaces(found.normals, found.offsets)
+    areas = facet_areas(planes)
+    kept = areas >= SMALLEST_FACET
+    return planes if kept.all() else HalfSpaces(found.normals[kept], found.offsets[kept])
 
 
 def _loss(evaluation: Evaluation | None) -> float:
