@@ -23,10 +23,6 @@ from regolith_studio.session.preferences import Preferences
 from regolith_studio.ui.app import make_application
 
 
-def pytest_addoption(parser):
-    parser.addoption("--update", action="store_true", help="write the pictures of the documentation anew")
-
-
 @pytest.fixture(scope="session")
 def app(tmp_path_factory):
     """The one application object; never the user's preferences."""
