@@ -9,8 +9,8 @@ python3 bootstrap.py setup           sets up everything that work on the program
 
 --no-system   leaves the packages of the operating system alone
 
-The first call installs missing system libraries (on Debian and Ubuntu), makes the folder .venv with the versions
-of constraints.txt, and compiles the numerics. pip's own configuration is respected.
+The first call installs missing system libraries (on Debian and Ubuntu), makes the folder .venv with the
+versions of constraints.txt, and compiles the numerics. pip's own configuration is respected.
 """
 
 import contextlib
@@ -207,9 +207,8 @@ def provide_system_packages(needs_xvfb: bool, leave_alone: bool) -> None:
             "Ask an administrator to run `apt-get install " + " ".join(packages) + "`, "
             "or go on without it: python3 bootstrap.py " + NO_SYSTEM + "."
         )
-    still = missing_from_system(needs_xvfb)
-    if still:
-        say("still missing, going on without: " + ", ".join(what for _, what in still))
+    for _, what in missing_from_system(needs_xvfb):
+        say("still missing, going on without: " + what)
 
 
 # the virtual environment
@@ -338,7 +337,8 @@ def run_program(command: "list[str]", environment: "dict[str, str]", folder: str
     for name in ("SIGTERM", "SIGHUP"):
         if hasattr(signal, name):
             signal.signal(getattr(signal, name), lambda number, _frame: child.send_signal(number))
-    return child.wait() if child.wait() >= 0 else 128 - child.wait()
+    code = child.wait()
+    return code if code >= 0 else 128 - code
 
 
 def start(words: "list[str]") -> int:
