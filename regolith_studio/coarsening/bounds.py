@@ -56,7 +56,7 @@ def attainable_errors(
     solidity s = V/CH: 1 - s or 1/s - 1. The Jaccard distance is at least that of the volumes alone.
     Sphericity follows Goldberg's bound; box and aspect ratio have the bound 0.
     """
-    solidity = descriptors["volume"] / descriptors["convex_hull_volume"]
+    solidity = min(1.0, descriptors["volume"] / descriptors["convex_hull_volume"])
     keep_volume = hull_gives_way(weights, descriptors)
     free = not (weights["volume"] or weights["convex_hull_volume"])
     return {

@@ -54,8 +54,8 @@ class Target:
     Parameters
     ----------
     mesh
-        Closed, outward-oriented, unit volume, centroid at the origin, principal axes of inertia along x, y, z.
-        Coordinates are rounded to 2^-30, so that unit, place and orientation of the particle do not matter.
+        Closed, outward-oriented, unit volume, centroid at the origin, principal axes along x, y, z.
+        Coordinates are rounded to 2^-30, so that unit, place and orientation do not matter.
     centre
         Centroid in the particle's own frame, shape (3,).
     axes

@@ -56,11 +56,14 @@ class Request:
         """Descriptors that are conditions."""
         return tuple(key for key, asked in zip(CONDITION_KEYS, self.asked, strict=True) if asked)
 
-    def problem(self, rays: RayTable, sample_angle: float, only_volume: bool = False) -> Problem:
-        """In compiled form; with `only_volume` all other conditions are left out."""
+    def problem(
+        self, rays: RayTable, sample_angle: float, only_volume: bool = False, sphericity: bool = True
+    ) -> Problem:
+        """In compiled form; with `only_volume` all other conditions are left out, else `sphericity` can be."""
         asked = np.array(self.asked)
         if only_volume:
             asked[1:] = False
+        asked[1] &= sphericity
         return Problem(
             rays.directions,
             rays.first,

@@ -5,10 +5,11 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from regolith_studio.coarsening.bounds import sphericity_reason
 from regolith_studio.coarsening.core.box_search import DENSE_ANGLE, SAMPLE_ANGLE
 from regolith_studio.coarsening.core.cuts import SMALLEST_FACET
 from regolith_studio.coarsening.evaluation import Evaluation, LossFunction
-from regolith_studio.coarsening.exact.course import Attempt, course, densely_checked, start_planes
+from regolith_studio.coarsening.exact.course import Attempt, compromise, course, densely_checked, start_planes
 from regolith_studio.coarsening.exact.request import CONDITION_KEYS, EXACT, Request, reason_for
 from regolith_studio.coarsening.polyhedra import facet_areas, polyhedron_of
 from regolith_studio.coarsening.progress import MethodStep
@@ -29,6 +30,7 @@ class Level:
     bound_steps: int
 
 
+COMPROMISE_STEPS = 64
 LEVELS = {"fast": Level(1, 12, 16), "best": Level(3, 20, 40)}
 
 
@@ -87,7 +89,10 @@ class ExactMethod:
         full = request.problem(target.rays, SAMPLE_ANGLE)
         dense = request.problem(target.rays, DENSE_ANGLE)
         judge = LossFunction(target, weights, everything=True)
-        total = level.starts + settings.retries
+        hopeless = (
+            request.asked[1] and sphericity_reason(target.descriptors["sphericity"], n_faces) is not None
+        )
+        total = 2 if hopeless else level.starts + settings.retries
         best: Attempt | None = None
         history: list[float] = []
         tried = 0
@@ -107,6 +112,15 @@ class ExactMethod:
                     break
         if best is None:
             raise GeometryError("No start of the exact method bounds a polyhedron.")
+        if not best.exact and request.asked[1]:
+            rest = request.problem(target.rays, SAMPLE_ANGLE, sphericity=False)
+            for begun in (planes, (best.normals, best.offsets)):
+                for found in compromise(full, rest, begun, COMPROMISE_STEPS):
+                    value = _loss(judge(found.normals, found.offsets))
+                    if value < min(history[-1:], default=np.inf):
+                        best = found
+                        history.append(value)
+                        yield MethodStep(total, total, value, HalfSpaces(best.normals, best.offsets))
         verdict = judge(best.normals, best.offsets, DENSE_ANGLE)
         reason = None if verdict is None else reason_for(target, request, n_faces, verdict.errors)
         counts = {"starts": float(tried), "exact": float(best.exact)}
