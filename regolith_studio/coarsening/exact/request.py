@@ -59,7 +59,7 @@ class Request:
     def problem(
         self, rays: RayTable, sample_angle: float, only_volume: bool = False, sphericity: bool = True
     ) -> Problem:
-        """In compiled form; with `only_volume` all other conditions are left out, else `sphericity` can be."""
+        """In compiled form; `only_volume` leaves out all other conditions, not `sphericity` that one."""
         asked = np.array(self.asked)
         if only_volume:
             asked[1:] = False

@@ -6,10 +6,11 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from regolith_studio.coarsening.bounds import sphericity_reason
-from regolith_studio.coarsening.core.box_search import DENSE_ANGLE, SAMPLE_ANGLE
+from regolith_studio.coarsening.core.box_search import DENSE_ANGLE, FINE_ANGLE, SAMPLE_ANGLE
 from regolith_studio.coarsening.core.cuts import SMALLEST_FACET
 from regolith_studio.coarsening.evaluation import Evaluation, LossFunction
 from regolith_studio.coarsening.exact.course import Attempt, compromise, course, densely_checked, start_planes
+from regolith_studio.coarsening.exact.problem import Problem
 from regolith_studio.coarsening.exact.request import CONDITION_KEYS, EXACT, Request, reason_for
 from regolith_studio.coarsening.polyhedra import facet_areas, polyhedron_of
 from regolith_studio.coarsening.progress import MethodStep
@@ -87,6 +88,7 @@ class ExactMethod:
         request, level = Request.of(target, weights), LEVELS[settings.level]
         free = request.problem(target.rays, SAMPLE_ANGLE, only_volume=True)
         full = request.problem(target.rays, SAMPLE_ANGLE)
+        fine = request.problem(target.rays, FINE_ANGLE)
         dense = request.problem(target.rays, DENSE_ANGLE)
         judge = LossFunction(target, weights, everything=True)
         hopeless = (
@@ -99,15 +101,15 @@ class ExactMethod:
         for tried in range(1, total + 1):
             planes = start_planes(target, n_faces, rng)
             if tried == 1:
-                yield MethodStep(0, total, _loss(judge(*planes)), HalfSpaces(*planes))
+                yield MethodStep(0, total, _loss(judge(*planes, SAMPLE_ANGLE)), HalfSpaces(*planes))
             for found in course(target, free, full, planes, level.free_steps, level.bound_steps):
                 if not found.better_than(best):
                     continue
                 best = found
-                history.append(_loss(judge(best.normals, best.offsets)))
+                history.append(_loss(judge(best.normals, best.offsets, SAMPLE_ANGLE)))
                 yield MethodStep(tried, total, history[-1], HalfSpaces(best.normals, best.offsets))
             if tried >= level.starts and best is not None and best.exact:
-                best = confirmed(request, densely_checked(dense, best))
+                best = confirmed(request, (fine, dense), best)
                 if best.exact and (best.n_facets == n_faces or tried > level.starts):
                     break
         if best is None:
@@ -127,13 +129,21 @@ class ExactMethod:
         return MethodResult(real_planes(best), tuple(history), reason, counts)
 
 
-def confirmed(request: Request, found: Attempt) -> Attempt:
-    """The attempt, judged by the public descriptors: inexact where they miss a condition."""
-    polyhedron = polyhedron_of(real_planes(found))
-    values = describe(polyhedron, CONDITION_KEYS)
+def confirmed(request: Request, problems: tuple[Problem, ...], found: Attempt) -> Attempt:
+    """The attempt, polished with ever finer searches for boxes until the public descriptors agree.
+
+    Its residual is the largest error of the public descriptors where they never do.
+    """
     wanted = dict(zip(CONDITION_KEYS, request.values, strict=True))
-    worst = max((abs(values[key] / wanted[key] - 1.0) for key in request.keys), default=0.0)
-    return found if worst <= EXACT else replace(found, worst=worst)
+    for problem in problems:
+        found = densely_checked(problem, found)
+        if not found.exact:
+            return found
+        values = describe(polyhedron_of(real_planes(found)), CONDITION_KEYS)
+        worst = max((abs(values[key] / wanted[key] - 1.0) for key in request.keys), default=0.0)
+        if worst <= EXACT:
+            return found
+    return replace(found, worst=worst)
 
 
 def real_planes(found: Attempt) -> HalfSpaces:
