@@ -3,10 +3,10 @@
 from functools import cache
 
 import numpy as np
-import pyshtools.rotate as pyshtools_rotate
 from numpy.typing import ArrayLike
 
 from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.harmonics import shtools
 from regolith_studio.harmonics.coefficients import ShCoefficients, from_pyshtools, to_pyshtools
 
 
@@ -26,8 +26,8 @@ def rotated(coefficients: ShCoefficients, rotation: ArrayLike) -> ShCoefficients
     if coefficients.l_max == 0:
         return coefficients
     angles = -np.array(_euler_angles(matrix)[::-1])
-    turned = pyshtools_rotate.SHRotateRealCoef(
-        to_pyshtools(coefficients), angles, _quarter_turn(coefficients.l_max)
+    turned = shtools.call(
+        "rotate.SHRotateRealCoef", to_pyshtools(coefficients), angles, _quarter_turn(coefficients.l_max)
     )
     return from_pyshtools(turned)
 
@@ -47,4 +47,4 @@ def _quarter_turn(l_max: int) -> FloatArray:
 
     ``djpi2(0)`` of pyshtools 4.14 writes behind its array and kills the process later.
     """
-    return np.asarray(pyshtools_rotate.djpi2(max(l_max, 2)), dtype=np.float64)
+    return np.asarray(shtools.call("rotate.djpi2", max(l_max, 2)), dtype=np.float64)

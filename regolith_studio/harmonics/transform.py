@@ -10,14 +10,13 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-import pyshtools.expand as pyshtools_expand
-import pyshtools.utils as pyshtools_utils
 from numpy.typing import ArrayLike
 from scipy.linalg import lstsq
 from scipy.spatial.transform import Rotation
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, locked_floats
+from regolith_studio.harmonics import shtools
 from regolith_studio.harmonics.coefficients import (
     ShCoefficients,
     checked_degree,
@@ -99,27 +98,29 @@ def _glq_layout(degree: int) -> tuple[FloatArray, FloatArray, int]:
 def _glq_forward(samples: FloatArray, degree: int, l_max: int) -> FloatArray:
     zeros, weights = _glq(degree)
     return np.asarray(
-        pyshtools_expand.SHExpandGLQ(samples, weights, zeros, norm=4, csphase=1, lmax_calc=l_max)
+        shtools.call("expand.SHExpandGLQ", samples, weights, zeros, norm=4, csphase=1, lmax_calc=l_max)
     )
 
 
 def _glq_backward(cilm: FloatArray, degree: int) -> FloatArray:
     zeros, _ = _glq(degree)
-    return np.asarray(pyshtools_expand.MakeGridGLQ(cilm, zeros, lmax=degree, norm=4, csphase=1))
+    return np.asarray(shtools.call("expand.MakeGridGLQ", cilm, zeros, lmax=degree, norm=4, csphase=1))
 
 
 def _dh2_layout(degree: int) -> tuple[FloatArray, FloatArray, int]:
     n = 2 * (degree + 1)
-    weights = np.asarray(pyshtools_utils.DHaj(n))
+    weights = np.asarray(shtools.call("utils.DHaj", n))
     return np.cos(np.pi * np.arange(n) / n), weights * 2 / weights.sum(), 2 * n
 
 
 def _dh2_forward(samples: FloatArray, _degree: int, l_max: int) -> FloatArray:
-    return np.asarray(pyshtools_expand.SHExpandDH(samples, norm=4, sampling=2, csphase=1, lmax_calc=l_max))
+    return np.asarray(
+        shtools.call("expand.SHExpandDH", samples, norm=4, sampling=2, csphase=1, lmax_calc=l_max)
+    )
 
 
 def _dh2_backward(cilm: FloatArray, degree: int) -> FloatArray:
-    return np.asarray(pyshtools_expand.MakeGridDH(cilm, lmax=degree, norm=4, sampling=2, csphase=1))
+    return np.asarray(shtools.call("expand.MakeGridDH", cilm, lmax=degree, norm=4, sampling=2, csphase=1))
 
 
 GRIDS = {
@@ -131,7 +132,7 @@ GRIDS = {
 
 @cache
 def _glq(degree: int) -> tuple[FloatArray, FloatArray]:
-    zeros, weights = pyshtools_expand.SHGLQ(degree)
+    zeros, weights = shtools.call("expand.SHGLQ", degree)
     return np.asarray(zeros, dtype=np.float64), np.asarray(weights, dtype=np.float64)
 
 
