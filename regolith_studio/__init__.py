@@ -20,10 +20,12 @@ if TYPE_CHECKING:
     from regolith_studio.dataset.folder import read_dataset
     from regolith_studio.descriptors.describe import describe
     from regolith_studio.harmonics.fit import fit_harmonics
+    from regolith_studio.model.models.gaussian_field import GaussianFieldModel as GaussianRadiusModel
     from regolith_studio.readers.registry import read_mesh
 
 __version__ = "0.1.0"
 __all__ = [
+    "GaussianRadiusModel",
     "__version__",
     "build_dataset",
     "coarsen",
@@ -34,19 +36,21 @@ __all__ = [
 ]
 
 _DOORS = {
-    "build_dataset": "dataset.build",
-    "coarsen": "coarsening.coarsen",
-    "describe": "descriptors.describe",
-    "fit_harmonics": "harmonics.fit",
-    "read_dataset": "dataset.folder",
-    "read_mesh": "readers.registry",
+    "GaussianRadiusModel": "model.models.gaussian_field:GaussianFieldModel",
+    "build_dataset": "dataset.build:build_dataset",
+    "coarsen": "coarsening.coarsen:coarsen",
+    "describe": "descriptors.describe:describe",
+    "fit_harmonics": "harmonics.fit:fit_harmonics",
+    "read_dataset": "dataset.folder:read_dataset",
+    "read_mesh": "readers.registry:read_mesh",
 }
 
 
 def __getattr__(name: str) -> Any:
     if name not in _DOORS:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    value = getattr(import_module(f"{__name__}.{_DOORS[name]}"), name)
+    module, attribute = _DOORS[name].split(":")
+    value = getattr(import_module(f"{__name__}.{module}"), attribute)
     globals()[name] = value
     return value
 
