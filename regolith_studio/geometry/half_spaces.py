@@ -54,7 +54,7 @@ class HalfSpaces:
 
     @classmethod
     def from_points(cls, points: ArrayLike) -> "HalfSpaces":
-        """From the foot points p_i of Eq. 6, shape (n, 3): normal p_i / |p_i|, offset |p_i|.
+        """From the foot points p_i of Eq. 6, shape (n, 3): normal p_i / d_i, offset d_i, its length.
 
         Raises
         ------

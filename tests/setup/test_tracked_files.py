@@ -13,7 +13,7 @@ PRIVATE = re.compile(
     r"|(?:^|[\s\"'=(`])/(?:root|work|home/\w+|Users/\w+|opt/(?:wheels|pypi))/",
     re.IGNORECASE,
 )
-TERM = r"[a-z_]+ (?:<|>=|==|!=) '[A-Za-z0-9._]+'"
+TERM = r"[a-z_]+ (?:<|>=|==|!=) '[A-Za-z0-9._*]+'"
 PIN = re.compile(
     rf"[a-z0-9]+(?:[.-][a-z0-9]+)*==[0-9][0-9a-z.]*(?: ; {TERM}(?: (?:and|or) {TERM})*)?",
 )
