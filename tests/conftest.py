@@ -1,6 +1,7 @@
 """Fixtures that every folder of tests shares."""
 
 import os
+import signal
 from collections.abc import Callable
 from pathlib import Path
 
@@ -10,6 +11,9 @@ REAL_DATA = Path(
     os.environ.get("REGOLITH_REAL_DATA", Path(__file__).resolve().parents[2] / "shared" / "data")
 )
 """Scans that do not ship with the program; tests that need them are skipped where they are absent."""
+
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # started in the background of a shell
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # what the tests start would ignore Ctrl+C
 
 
 @pytest.fixture(scope="session")
