@@ -12,6 +12,7 @@ from regolith_studio.cli import (
     describe,
     extract,
     fit,
+    gallery,
     recipe,
     study,
     warm_up,
@@ -46,6 +47,7 @@ def _without_command(
 app.command("open")(window.open_files)
 app.command("describe")(describe.describe)
 app.command("fit")(fit.fit)
+app.command("gallery")(gallery.gallery)
 app.command("coarsen")(coarsen.coarsen)
 app.command("extract")(extract.extract)
 app.command("run")(recipe.run)

@@ -5,11 +5,27 @@ from typing import Annotated
 
 import typer
 
-from regolith_studio.cli.options import Jobs, Json, LMax, Meshes, Seed, Unit, as_bad_use
+from regolith_studio.cli.options import (
+    Jobs,
+    Json,
+    Level,
+    LMax,
+    Meshes,
+    RadiusRule,
+    Reference,
+    Seed,
+    StarPoint,
+    Unit,
+    as_bad_use,
+)
 
 Stem = Annotated[
     Path,
     typer.Option("--output", "-o", help="Writes FIT.json and FIT.npz.", metavar="FIT", show_default=False),
+]
+Surfaces = Annotated[
+    Path | None,
+    typer.Option("--surfaces", help="Folder for the surface of each fit as STL.", metavar="DIR"),
 ]
 
 
@@ -17,6 +33,11 @@ def fit(
     meshes: Meshes,
     output: Stem,
     l_max: LMax = 30,
+    star_point: StarPoint = "",
+    rule: RadiusRule = "volume",
+    reference: Reference = "sphere",
+    surfaces: Surfaces = None,
+    level: Level = 4,
     unit: Unit = "um",
     json: Json = False,
     jobs: Jobs = 1,
@@ -25,20 +46,25 @@ def fit(
     """Fit spherical harmonics to meshes; write coefficients and spectrum."""
     from regolith_studio.cli.inputs import exit_code, read_inputs
     from regolith_studio.cli.terminal import complain, follow, print_json
-    from regolith_studio.jobs.fitting import fit_sample
+    from regolith_studio.jobs.fitting import FitOrder, fit_sample
     from regolith_studio.session.choices import Choices
-    from regolith_studio.session.outputs.fits import FittedSample, fits_document, write_fits
+    from regolith_studio.session.outputs.fits import FittedSample, fits_document, write_fits, write_surfaces
 
     with as_bad_use():
-        Choices(l_max=l_max, seed=seed)
+        Choices(l_max=l_max, seed=seed, level=level)
+        order = FitOrder(l_max, star_point, rule, reference)
     stem = output.with_suffix("") if output.suffix in (".json", ".npz") else output
     loaded = read_inputs(meshes, unit)
-    sample = FittedSample.of(loaded.particles, follow(fit_sample(loaded.particles, l_max, jobs)))
+    sample = FittedSample.of(loaded.particles, follow(fit_sample(loaded.particles, order, jobs)))
     complain(f"{name}: {sentence}" for name, sentence in sample.failed)
+    holes: dict[str, str] = {}
     if sample.fits:
         paths = write_fits(stem, sample)
+        if surfaces is not None:
+            holes = write_surfaces(surfaces, sample, level)
+            complain(f"{name}: {sentence}" for name, sentence in holes.items())
         if json:
             print_json(fits_document(sample) | {"arrays": paths[1].name})
         else:
             typer.echo(f"{len(sample.fits)} fits up to l = {l_max} in {paths[0]} and {paths[1]}")
-    raise typer.Exit(exit_code(meshes, loaded, len(sample.failed)))
+    raise typer.Exit(exit_code(meshes, loaded, len(sample.failed) + len(holes)))

@@ -27,6 +27,30 @@ Folder = Annotated[Path, typer.Option("--output", "-o", help="Folder to write.",
 LMax = Annotated[
     int, typer.Option("--l-max", help="Degree of the spherical harmonics, 0 to 30.", metavar="L")
 ]
+StarPoint = Annotated[
+    str,
+    typer.Option(
+        "--star-point",
+        help="Where radii begin: centre_of_mass kernel_centre least_hidden_volume; by itself the first, "
+        "or the last where that lies outside.",
+        metavar="RULE",
+        show_default=False,
+    ),
+]
+RadiusRule = Annotated[
+    str,
+    typer.Option(
+        "--rule", help="The radius where a ray crosses twice: volume outermost first.", metavar="RULE"
+    ),
+]
+Reference = Annotated[
+    str,
+    typer.Option(
+        "--reference", help="What radii are divided by: sphere, or ellipsoid for flat grains.", metavar="R"
+    ),
+]
+Degrees = Annotated[str, typer.Option("--degrees", help="Values of l_max: 1,2,5 or 1-20.", metavar="LIST")]
+Level = Annotated[int, typer.Option("--level", help="Subdivisions of the fits' surface.", metavar="N")]
 Faces = Annotated[int, typer.Option("--faces", help="Facets of each polyhedron.", metavar="N")]
 Method = Annotated[str, typer.Option("--method", help="Coarsening method.", metavar="NAME")]
 Target = Annotated[

@@ -1,8 +1,9 @@
-"""The three views side by side as a picture, drawn in a process that may crash of its OpenGL."""
+"""Pictures drawn in a process of their own, because OpenGL may take the process with it."""
 
 import multiprocessing
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from regolith_studio.errors import EnvironmentProblem
 
@@ -33,10 +34,24 @@ def draw_three_views(
     if coarse is None:
         raise ValueError("there is no polyhedron to draw")
     fit = reconstruct(fit_harmonics(particle.mesh), choices.l_max, level=choices.level)
-    stage = path.with_name(f".{path.name}.png")
-    child = multiprocessing.get_context("spawn").Process(
-        target=_draw, args=(particle.mesh, fit, coarse, choices.l_max, stage), daemon=True
-    )
+    draw_apart(_draw, (particle.mesh, fit, coarse, choices.l_max), path)
+
+
+def draw_apart(draw: Callable[..., None], arguments: tuple[Any, ...], path: Path) -> None:
+    """Call ``draw(*arguments, stage)`` in a fresh process; what it wrote to `stage` becomes `path`.
+
+    Parameters
+    ----------
+    draw
+        Function of a module, which is imported in the new process.
+
+    Raises
+    ------
+    EnvironmentProblem
+        If this machine cannot draw.
+    """
+    stage = path.with_name(f".{path.stem}-drawn{path.suffix}")
+    child = multiprocessing.get_context("spawn").Process(target=draw, args=(*arguments, stage), daemon=True)
     child.start()
     child.join(_PATIENCE)
     if child.is_alive():

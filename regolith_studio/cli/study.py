@@ -1,19 +1,22 @@
 """``study``: tables and figures over a sample."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from regolith_studio.cli.coarsen import choices_from
 from regolith_studio.cli.options import (
+    Degrees,
     Faces,
     Folder,
     Jobs,
     Json,
+    Level,
     LMax,
     Meshes,
     Method,
+    Reference,
     Seed,
     Settings,
     Target,
@@ -25,6 +28,13 @@ from regolith_studio.cli.options import (
 if TYPE_CHECKING:
     from regolith_studio.jobs.events import Steps
 
+Below = Annotated[
+    float,
+    typer.Option(
+        "--below", help="Ask for the smallest l_max with every error below this.", metavar="PERCENT"
+    ),
+]
+
 app = typer.Typer(help="Tables and figures over a sample.", no_args_is_help=True, rich_markup_mode=None)
 
 
@@ -32,8 +42,10 @@ app = typer.Typer(help="Tables and figures over a sample.", no_args_is_help=True
 def lmax(
     meshes: Meshes,
     output: Folder,
-    degrees: Annotated[str, typer.Option("--degrees", help="Values of l_max: 1,2,5 or 1-20.")] = "1-20",
-    level: Annotated[int, typer.Option("--level", help="Subdivisions of the fits' surface.")] = 4,
+    degrees: Degrees = "1-20",
+    level: Level = 4,
+    below: Below = 5.0,
+    reference: Reference = "sphere",
     unit: Unit = "um",
     json: Json = False,
     jobs: Jobs = 1,
@@ -41,15 +53,20 @@ def lmax(
 ) -> None:
     """RMSRE of the descriptors against l_max (Fig. 3)."""
     from regolith_studio.cli.inputs import exit_code, read_inputs
+    from regolith_studio.jobs.fitting import FitOrder
     from regolith_studio.jobs.studying import study_lmax
     from regolith_studio.session.choices import L_MAX_LIMIT, Choices
+    from regolith_studio.studies.lmax import enough_degrees
 
     wanted = whole_numbers(degrees, 0, L_MAX_LIMIT)
     with as_bad_use():
         Choices(level=level, seed=seed)
+        FitOrder(reference=reference)
     loaded = read_inputs(meshes, unit)
-    steps = study_lmax(loaded.particles, jobs, seed, degrees=wanted, level=level)
-    _conclude("lmax_study", steps, output, json)
+    steps = study_lmax(loaded.particles, jobs, seed, degrees=wanted, level=level, reference=reference)
+    study = _conclude("lmax_study", steps, output, json)
+    if not json:
+        typer.echo(enough_degrees(study, below / 100))
     raise typer.Exit(exit_code(meshes, loaded))
 
 
@@ -77,7 +94,7 @@ def coarsening(
     raise typer.Exit(exit_code(meshes, loaded))
 
 
-def _conclude(kind: str, steps: "Steps", folder: Path, json: bool) -> None:
+def _conclude(kind: str, steps: "Steps", folder: Path, json: bool) -> Any:
     from regolith_studio.cli.terminal import follow, print_json, print_table
     from regolith_studio.session.outputs.staging import staged_folder
     from regolith_studio.session.outputs.studies import STUDIES
@@ -89,3 +106,4 @@ def _conclude(kind: str, steps: "Steps", folder: Path, json: bool) -> None:
         print_json({"folder": str(folder), "files": files})
     else:
         print_table(STUDIES[kind].table(study))
+    return study

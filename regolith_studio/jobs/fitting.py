@@ -1,11 +1,17 @@
 """Spherical-harmonics coefficients of one particle, its surface at a degree, and descriptors."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 from regolith_studio.descriptors.describe import Descriptors, describe
+from regolith_studio.errors import InputError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
+from regolith_studio.harmonics.coefficients import checked_degree
 from regolith_studio.harmonics.fit import HarmonicFit, fit_harmonics
+from regolith_studio.harmonics.radius_function import DEFAULT_RULE, RULES
+from regolith_studio.harmonics.reference import REFERENCES
+from regolith_studio.harmonics.star_point import STAR_POINT_RULES
 from regolith_studio.harmonics.surface import reconstruct
 from regolith_studio.jobs.batch import value_of
 from regolith_studio.jobs.crew import Crew, hired
@@ -15,10 +21,52 @@ FIT_DEGREE = 30
 """Everything is fitted to this degree once; lower ones are truncations of that fit."""
 
 
-def fit_one(mesh: Mesh, l_max: int = FIT_DEGREE) -> Steps:
-    """Fit `mesh` up to degree `l_max`; returns a ``HarmonicFit``."""
+@dataclass(frozen=True)
+class FitOrder:
+    """How particles are to be expanded.
+
+    Parameters
+    ----------
+    l_max
+        Highest degree.
+    star_point
+        Key of ``STAR_POINT_RULES``; empty for the centre of mass and, where that lies outside, the
+        nearest good point.
+    rule
+        Key of ``radius_function.RULES``.
+    reference
+        Key of ``REFERENCES``.
+
+    Raises
+    ------
+    InputError
+        If a key is unknown or the degree out of range.
+    """
+
+    l_max: int = FIT_DEGREE
+    star_point: str = ""
+    rule: str = DEFAULT_RULE
+    reference: str = "sphere"
+
+    def __post_init__(self) -> None:
+        checked_degree(self.l_max, FIT_DEGREE)
+        known = {"star_point": ("", *STAR_POINT_RULES), "rule": RULES, "reference": REFERENCES}
+        for name, keys in known.items():
+            if (value := getattr(self, name)) not in keys:
+                choices = ", ".join(filter(None, keys))
+                raise InputError(f"The {name.replace('_', ' ')} must be one of {choices}, got {value!r}.")
+
+
+def fit_one(mesh: Mesh, order: FitOrder = FitOrder()) -> Steps:
+    """Fit `mesh`; returns a ``HarmonicFit``."""
     yield Started("Fitting spherical harmonics")
-    return fit_harmonics(mesh, l_max=l_max)
+    return fit_harmonics(
+        mesh,
+        l_max=order.l_max,
+        star_point=order.star_point or None,
+        rule=order.rule,
+        reference=order.reference,
+    )
 
 
 def draw_surface(fit: HarmonicFit, l_max: int, level: int) -> Steps:
@@ -38,10 +86,10 @@ def describe_meshes(meshes: Mapping[str, Mesh], box_metric: str = "exact") -> St
     return described
 
 
-def fit_sample(particles: Sequence[Particle], l_max: int = FIT_DEGREE, workers: int | Crew = 1) -> Steps:
+def fit_sample(particles: Sequence[Particle], order: FitOrder = FitOrder(), workers: int | Crew = 1) -> Steps:
     """Fit every particle; returns a tuple of ``HarmonicFit``, or the sentence where that is impossible."""
     yield Started("Fitting spherical harmonics", len(particles))
-    jobs = [Job(fit_one, (particle.mesh, l_max)) for particle in particles]
+    jobs = [Job(fit_one, (particle.mesh, order)) for particle in particles]
     with hired(workers) as crew:
         endings = yield from crew.all(jobs, [particle.name for particle in particles])
     return tuple(e.sentence if isinstance(e, Failed) else value_of(e) for e in endings)

@@ -132,10 +132,18 @@ def _updater(bar: "weakref.ref[ScaleBar]") -> Callable[..., None]:
 
 
 def show_title(plotter: Any, title: str, surroundings: Surroundings = palette.PAPER, size: int = 11) -> None:
-    """One line above the picture, or none for an empty text."""
-    plotter.add_text(
-        title, position=(0.5, 0.945), viewport=True, font_size=size, color=surroundings.ink, name=TITLE
-    ).prop.justification_horizontal = "center"
+    """One line at the upper edge of the picture, or none for an empty text."""
+    text = plotter.add_text(
+        title,
+        position=(0.5, 0.985),
+        viewport=True,
+        font_size=size,
+        color=surroundings.ink,
+        name=TITLE,
+        render=False,
+    )
+    text.prop.justification_horizontal = "center"
+    text.prop.justification_vertical = "top"
 
 
 def show_colour_scale(plotter: Any, mapper: Any, surroundings: Surroundings) -> None:

@@ -249,6 +249,21 @@ def rmsre_table(study: LmaxStudy) -> Table:
     return Table("RMSRE of the descriptors against l_max", columns, tuple(rows), notes)
 
 
+def enough_degrees(study: LmaxStudy, tolerance: float) -> str:
+    """One sentence a group: the smallest l_max at which every descriptor's RMSRE is below `tolerance`."""
+    sentences = []
+    for group in study.group_names:
+        degree = study.smallest_l_max(tolerance, group)
+        whose = f" of {group}" if group else ""
+        found = (
+            f"l_max = {degree} is the smallest"
+            if degree is not None
+            else "No l_max that was studied is enough"
+        )
+        sentences.append(f"{found} with every RMSRE{whose} below {100 * tolerance:g} %.")
+    return "\n".join(sentences)
+
+
 def particle_table(study: LmaxStudy) -> Table:
     """Relative error of every descriptor of every particle at every l_max."""
     rows = [

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import tifffile
 import trimesh
+from PIL import Image
 
 from regolith_studio.geometry.directions import icosphere
 
@@ -24,6 +25,35 @@ def test_that_a_fit_holds_the_mean_radius_of_a_ball(command, tmp_path: Path) -> 
     assert document["particles"][0]["mean_radius"] == pytest.approx(25.0, rel=2e-3)
     assert len(document["spectrum"]["values"]) == 7
     assert "orthonormal" in document["convention"]
+
+
+def test_that_the_surface_of_a_fit_is_a_solid_with_the_volume_of_its_particle(
+    command, grains: Path, tmp_path: Path
+) -> None:
+    wanted = ("--surfaces", tmp_path / "surfaces", "--reference", "ellipsoid", "--l-max", 2)
+    assert command("fit", grains, "-o", tmp_path / "fit", *wanted).code == 0
+    assert json.loads((tmp_path / "fit.json").read_text())["particles"][0]["reference"]
+    for path in sorted(grains.glob("*.stl")):
+        surface = trimesh.load_mesh(tmp_path / "surfaces" / path.name)
+        assert surface.is_watertight
+        assert surface.volume == pytest.approx(trimesh.load_mesh(path).volume, rel=1e-3)
+
+
+def test_that_what_a_fit_cannot_have_is_bad_use(command, grains: Path, tmp_path: Path) -> None:
+    said = command("fit", grains, "-o", tmp_path / "fit", "--star-point", "middle")
+    assert said.code == 2
+    assert "must be one of centre_of_mass, kernel_centre, least_hidden_volume, got 'middle'" in said.err
+    assert not list(tmp_path.iterdir())
+
+
+def test_that_a_gallery_is_a_picture_and_an_animation_of_all_degrees(
+    command, grains: Path, tmp_path: Path
+) -> None:
+    said = command("gallery", grains / "grain-c.stl", "-o", tmp_path / "g", "--degrees", "0,2,4", "--json")
+    assert said.code == 0, said.err
+    assert said.json["files"] == ["grain-c_degrees.png", "grain-c_degrees.gif"]
+    with Image.open(tmp_path / "g" / "grain-c_degrees.gif") as animation:
+        assert animation.n_frames == 5
 
 
 def test_that_a_fit_can_be_named_by_either_of_its_files(command, grains: Path, tmp_path: Path) -> None:

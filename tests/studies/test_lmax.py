@@ -20,6 +20,7 @@ from regolith_studio.harmonics.fit import fit_harmonics
 from regolith_studio.harmonics.surface import reconstruct
 from regolith_studio.studies.lmax import (
     LmaxStudy,
+    enough_degrees,
     lmax_errors,
     lmax_study,
     particle_table,
@@ -102,6 +103,9 @@ def test_that_the_smallest_l_max_is_the_first_with_all_errors_below(made_up, stu
     assert made_up.smallest_l_max(0.15, "y") == 2
     assert made_up.smallest_l_max(0.001) is None
     assert study.smallest_l_max(1.0) in DEGREES
+    lines = enough_degrees(made_up, 0.15).splitlines()
+    assert lines[1] == "l_max = 2 is the smallest with every RMSRE of y below 15 %."
+    assert enough_degrees(made_up, 0.001).startswith("No l_max that was studied is enough with every RMSRE")
 
 
 def test_that_a_resample_counts_particles_as_often_as_its_weights_say():

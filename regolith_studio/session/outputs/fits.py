@@ -8,11 +8,14 @@ from typing import Any
 
 import numpy as np
 
+from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics import files
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.sample_spectrum import sample_spectrum
 from regolith_studio.harmonics.spectrum import PowerSpectrum
+from regolith_studio.harmonics.surface import reconstruct
+from regolith_studio.imaging.stl import stl_bytes
 from regolith_studio.session.outputs.staging import json_bytes, write_bytes
 
 
@@ -49,6 +52,26 @@ def write_fits(stem: Path, sample: FittedSample) -> tuple[Path, Path]:
     write_bytes(numbers, arrays.getvalue())
     write_bytes(text, json_bytes(fits_document(sample) | {"arrays": numbers.name}))
     return text, numbers
+
+
+def write_surfaces(folder: Path, sample: FittedSample, level: int) -> dict[str, str]:
+    """Write ``<name>.stl``, the surface of each fit in the particle's frame; the reasons of those without.
+
+    Parameters
+    ----------
+    level
+        Icosphere level of the surfaces.
+    """
+    reasons = {}
+    for particle, fit in zip(sample.particles, sample.fits, strict=True):
+        header = f"Regolith Studio, spherical-harmonics fit, l_max {fit.l_max}, micrometres"
+        try:
+            surface = reconstruct(fit, level=level)
+        except GeometryError as error:
+            reasons[particle.name] = str(error)
+        else:
+            write_bytes(folder / f"{particle.name}.stl", stl_bytes(surface, header))
+    return reasons
 
 
 def fits_document(sample: FittedSample) -> dict[str, Any]:

@@ -1,0 +1,84 @@
+"""``gallery``: one particle at several degrees of its expansion (Fig. 2)."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from regolith_studio.cli.options import (
+    Degrees,
+    Folder,
+    Json,
+    Meshes,
+    RadiusRule,
+    Reference,
+    StarPoint,
+    Unit,
+    as_bad_use,
+    whole_numbers,
+)
+
+if TYPE_CHECKING:
+    from regolith_studio.geometry.mesh import Mesh
+    from regolith_studio.harmonics.fit import HarmonicFit
+
+Animation = Annotated[
+    bool, typer.Option("--animation/--no-animation", help="Also a GIF of l_max from 0 to the highest degree.")
+]
+
+
+def gallery(
+    meshes: Meshes,
+    output: Folder,
+    degrees: Degrees = "0,1,2,5,10,20,30",
+    animation: Animation = True,
+    star_point: StarPoint = "",
+    rule: RadiusRule = "volume",
+    reference: Reference = "sphere",
+    unit: Unit = "um",
+    json: Json = False,
+) -> None:
+    """Draw each particle and its fits at several l_max (Fig. 2)."""
+    from regolith_studio.cli.inputs import exit_code, read_inputs
+    from regolith_studio.cli.picture import draw_apart
+    from regolith_studio.cli.terminal import complain, follow, print_json
+    from regolith_studio.harmonics.fit import HarmonicFit
+    from regolith_studio.jobs.fitting import FIT_DEGREE, FitOrder, fit_sample
+    from regolith_studio.session.outputs.staging import staged_folder
+
+    wanted = whole_numbers(degrees, 0, FIT_DEGREE)
+    with as_bad_use():
+        order = FitOrder(max(wanted), star_point, rule, reference)
+    loaded = read_inputs(meshes, unit)
+    fits = follow(fit_sample(loaded.particles, order))
+    drawn: list[str] = []
+    failed = 0
+    with staged_folder(output) as stage:
+        for particle, fit in zip(loaded.particles, fits, strict=True):
+            if not isinstance(fit, HarmonicFit):
+                complain([f"{particle.name}: {fit}"])
+                failed += 1
+                continue
+            names = [f"{particle.name}_degrees.png"]
+            draw_apart(_draw_picture, (particle.mesh, fit, wanted), stage / names[0])
+            if animation:
+                names.append(f"{particle.name}_degrees.gif")
+                draw_apart(_draw_animation, (particle.mesh, fit, range(order.l_max + 1)), stage / names[1])
+            drawn += names
+    if json:
+        print_json({"folder": str(output), "files": drawn})
+    else:
+        typer.echo(f"{len(drawn)} files in {output}")
+    raise typer.Exit(exit_code(meshes, loaded, failed))
+
+
+def _draw_picture(particle: "Mesh", fit: "HarmonicFit", degrees: tuple[int, ...], path: Path) -> None:
+    from regolith_studio.scene.degrees import degree_picture
+
+    degree_picture(particle, fit, degrees, path)
+
+
+def _draw_animation(particle: "Mesh", fit: "HarmonicFit", degrees: range, path: Path) -> None:
+    from regolith_studio.scene.degrees import degree_animation
+
+    degree_animation(particle, fit, degrees, path)
