@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
-from regolith_studio.coarsening.coarsen import coarsening_steps
+from regolith_studio.coarsening.coarsen import DEFAULT_METHOD, coarsening_steps
 from regolith_studio.coarsening.result import Coarsened
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import LossWeights
@@ -38,7 +38,7 @@ class CoarseningOrder:
 
     weights: LossWeights
     n_faces: int = 20
-    method: str = "annealing"
+    method: str = DEFAULT_METHOD
     settings: tuple[tuple[str, bool | int | float | str], ...] = ()
     seed: int = 0
     target: str = "fit"
@@ -85,9 +85,9 @@ def coarsen_particle(particle: Particle, order: CoarseningOrder, index: int) -> 
     begun = time.perf_counter()
     mesh, notes, coefficients = particle.mesh, particle.notes, None
     if order.target == "fit":
-        fit = fit_harmonics(mesh, l_max=max(order.l_max, FIT_DEGREE))
+        fit = fit_harmonics(mesh, l_max=max(order.l_max, FIT_DEGREE)).truncated(order.l_max)
         mesh, notes = reconstruct(fit, order.l_max, level=order.level), notes + fit.warnings
-        coefficients = fit.coefficients.truncated(order.l_max)
+        coefficients = fit.coefficients
     coarsened = yield from _told(mesh, order, index)
     seconds = time.perf_counter() - begun
     return CoarsenedParticle(particle.name, index, coarsened, "", coefficients, notes, seconds)

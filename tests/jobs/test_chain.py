@@ -5,16 +5,19 @@ from typing import Any
 
 import pytest
 
+from regolith_studio.coarsening.coarsen import DEFAULT_METHOD
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.errors import DatasetError, FileError
 from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
+from regolith_studio.harmonics.fit import fit_harmonics
 from regolith_studio.imaging.stl import stl_bytes
 from regolith_studio.jobs.building import DatasetOptions, build_dataset_folder
 from regolith_studio.jobs.coarsening import CoarseningOrder, coarsen_one, coarsen_sample
 from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
 from regolith_studio.jobs.examining import examine, examine_particles
+from regolith_studio.jobs.fitting import FIT_DEGREE
 from regolith_studio.jobs.loading import load_particles, uniquely_named
 from regolith_studio.jobs.warming import warm_up
 
@@ -106,3 +109,15 @@ def test_that_warming_up_covers_every_method() -> None:
     heard, names = played(warm_up(workers=1))
     assert {"fit", "exact", "annealing", "quadric"} <= set(names)
     assert heard[0] == Started("Compiling", len(names))
+
+
+def test_that_an_order_asks_for_the_method_of_the_coarsening_itself() -> None:
+    assert CoarseningOrder(LossWeights.from_preset("all")).method == DEFAULT_METHOD
+
+
+def test_that_a_particle_carries_the_warnings_of_the_fit_at_the_degree_that_is_coarsened() -> None:
+    flake = Particle("flake", Mesh(SPHERE.vertices * [60.0, 50.0, 6.0], SPHERE.faces))
+    wanted = fit_harmonics(flake.mesh, FIT_DEGREE).truncated(ORDER.l_max).warnings
+    assert any("up to l = 4" in sentence for sentence in wanted)
+    _, (told,) = played(coarsen_sample([flake], ORDER))
+    assert set(wanted) <= set(told.notes)
