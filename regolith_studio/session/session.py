@@ -1,7 +1,7 @@
 """The session: particles, choices and results, and the cycle that keeps the last two in step."""
 
 import dataclasses
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +16,7 @@ from regolith_studio.session.choices import Choices
 from regolith_studio.session.live import LiveResults
 from regolith_studio.session.plan import STUDIES, Kind, depends
 from regolith_studio.session.results import ParticleEntry, Results
+from regolith_studio.session.shelf import Shelf
 from regolith_studio.session.studies import study_job
 from regolith_studio.session.tasks import Reactions, Task, TaskBoard
 from regolith_studio.session.topics import Failure, Topics
@@ -42,6 +43,7 @@ class Session:
         self._board = TaskBoard(runner, self.topics.tasks.emit)
         self._live = LiveResults(self, self._board)
         self._studied: dict[Kind, Choices] = {}
+        self.shelf = Shelf(self.topics.shelf.emit)
 
     # --- reading -------------------------------------------------------------------------------
 
@@ -89,6 +91,23 @@ class Session:
     def open_sample(self) -> int:
         """Load the particles that ship with the program; returns the task's id."""
         return self._load("Reading the sample", Job(load_sample), add=False)
+
+    def adopt(self, particles: Sequence[Particle], add: bool = False) -> None:
+        """Take particles that have been made elsewhere, as if they had been read.
+
+        Parameters
+        ----------
+        add
+            Keep the particles that are open already.
+
+        Raises
+        ------
+        InputError
+            If there are none.
+        """
+        if not particles:
+            raise InputError("There are no particles to open.")
+        self._replace_particles(Loaded(tuple(particles)), add)
 
     def select(self, id: str) -> None:
         """Put another particle on screen."""
@@ -173,6 +192,36 @@ class Session:
 
         title = "Building the dataset"
         return self._board.start("export", title, job, Reactions(tell, failed=self.tell_failure(title)))
+
+    def run(
+        self,
+        lane: str,
+        title: str,
+        job: Job,
+        finished: Callable[[Any], None],
+        partial: Callable[[Any], None] | None = None,
+        failed: Callable[[Failed], None] | None = None,
+        stopped: Callable[[], None] | None = None,
+    ) -> int:
+        """Run any job in the background, the newest of its lane; returns the task's id.
+
+        Parameters
+        ----------
+        finished, partial, failed, stopped
+            Called in this thread while no newer job has taken the lane; a failure that nobody takes
+            care of is told by ``topics.failed``.
+        """
+        reactions = Reactions(
+            finished,
+            partial or (lambda _value: None),
+            failed or self.tell_failure(title),
+            stopped or (lambda: None),
+        )
+        return self._board.start(lane, title, job, reactions)
+
+    def stop(self, lane: str) -> None:
+        """Stop what runs in a lane, silently."""
+        self._board.stop_lane(lane)
 
     def cancel(self, task_id: int) -> None:
         """Stop one task; harmless if it has ended."""

@@ -29,6 +29,8 @@ class Topics:
     lmax_study: Signal[[]] = field(default_factory=Signal)
     coarsening_study: Signal[[]] = field(default_factory=Signal)
     tasks: Signal[[]] = field(default_factory=Signal)
+    shelf: Signal[[str]] = field(default_factory=Signal)
+    """The name of what was put on the shelf."""
     failed: Signal[[Failure]] = field(default_factory=Signal)
     problems: Signal[[tuple[Problem, ...]]] = field(default_factory=Signal)
     """Files that were refused at opening, or particles that an export left out."""

@@ -1,54 +1,19 @@
-"""What can be done from menus, tool bar and keyboard: one row each."""
+"""What can be done from menus, tool bar and keyboard: one row each; pages bring rows of their own."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from functools import partial
 
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import QMainWindow, QMenu, QToolBar, QToolButton
 
-from regolith_studio.scene.cameras import DIRECTIONS
+from regolith_studio.ui.action_spec import BREAK, PAGE_MENU, ActionSpec
 from regolith_studio.ui.icons import icon
+from regolith_studio.ui.page import Page
 from regolith_studio.ui.theme import Theme
 
-
-@dataclass(frozen=True)
-class ActionSpec:
-    """One row.
-
-    Parameters
-    ----------
-    menu
-        Title of its menu; those of :data:`WITHIN_VIEW` are menus within View.
-    name
-        Of the command that it runs, and its object name.
-    text
-        In the menu; "&" marks the letter.
-    icon
-        File in ``resources/icons``; empty for none.
-    shortcut
-        Empty for none.
-    tip
-        In the tool bar; the text if empty.
-    checked
-        ``True`` or ``False`` for a switch, ``None`` for a command.
-    bar
-        Its place in the tool bar: ``words`` with its text, ``icon`` without, empty for none.
-    """
-
-    menu: str
-    name: str
-    text: str
-    icon: str = ""
-    shortcut: str = ""
-    tip: str = ""
-    checked: bool | None = None
-    bar: str = ""
-
-
-BREAK = "-"
 WITHIN_VIEW = ("Look &from", "&Theme")
-_DIRECTION_KEYS = {"isometric": "Ctrl+0", "front": "Ctrl+1", "right": "Ctrl+3", "top": "Ctrl+7"}
+MENUS = ("&File", "&Edit", "&View", "&Go", PAGE_MENU, "&Help")
 
 ROWS: tuple[ActionSpec, ...] = (
     ActionSpec("&File", "open", "&Open …", "open", "Ctrl+O", "Open mesh files", None, "words"),
@@ -66,16 +31,9 @@ ROWS: tuple[ActionSpec, ...] = (
     ActionSpec("&File", "quit", "&Quit", "", "Ctrl+Q"),
     ActionSpec("&Edit", "undo", "&Undo", "undo", "Ctrl+Z", bar="icon"),
     ActionSpec("&Edit", "redo", "&Redo", "redo", "Ctrl+Shift+Z", bar="icon"),
-    ActionSpec("&View", "link", "&Link cameras", "link", "Ctrl+L", "Turn all views together", True, "icon"),
-    ActionSpec("&View", "reset", "&Reset cameras", "reset", "Ctrl+R", "Show the whole particle", bar="icon"),
-    *(
-        ActionSpec("Look &from", f"look_{key}", each.label, "", _DIRECTION_KEYS.get(key, ""))
-        for key, each in DIRECTIONS.items()
-    ),
-    ActionSpec("&View", BREAK, ""),
-    ActionSpec("&View", "wireframe", "&Wireframe", "wireframe", "Ctrl+M", "Show triangles", False, "icon"),
-    ActionSpec("&View", "heat", "&Distance map", "heat", "Ctrl+D", "Show fitting errors", False, "icon"),
-    ActionSpec("&View", BREAK, ""),
+    ActionSpec("&Go", "next_page", "&Next page", "", "Ctrl+PgDown"),
+    ActionSpec("&Go", "previous_page", "&Previous page", "", "Ctrl+PgUp"),
+    ActionSpec("&Go", BREAK, ""),
     ActionSpec("&Theme", "theme_system", "As the &system"),
     ActionSpec("&Theme", "theme_light", "&Light"),
     ActionSpec("&Theme", "theme_dark", "&Dark"),
@@ -93,41 +51,78 @@ class Actions:
         Gets the menus and the tool bar.
     commands
         A function for each name; switches are called with their state.
+    pages
+        Their rows are seen, and their shortcuts work, while the page is seen.
+    run
+        Runs a command of a page: its key, the name of the command, the state of a switch.
     """
 
-    def __init__(self, window: QMainWindow, commands: Mapping[str, Callable[..., object]]) -> None:
+    def __init__(
+        self,
+        window: QMainWindow,
+        commands: Mapping[str, Callable[..., object]],
+        pages: Mapping[str, Page],
+        run: Callable[..., object],
+    ) -> None:
         self._window = window
         self._menus: dict[str, QMenu] = {}
+        self._icons: list[tuple[QAction, str]] = []
+        self._of_page: dict[str, list[QAction]] = {key: [] for key in pages}
         self.by_name: dict[str, QAction] = {}
         self.bar = QToolBar("Tools")
         self.bar.setObjectName("tool_bar")
         self.bar.setMovable(False)
         window.addToolBar(self.bar)
+        for title in MENUS:
+            self._menu(title)
         for row in ROWS:
-            self._add(row, commands)
+            self._add(row, row.name, commands.get(row.name))
         self.recent = QMenu("Open &recent", window)
         self.by_name["recent"].setMenu(self.recent)
         self.bar.insertSeparator(self.by_name["undo"])
-        self.bar.insertSeparator(self.by_name["link"])
+        for number, page in enumerate(pages.values(), start=1):
+            self._add_page(page, number, run, commands["go"])
+
+    def show_page(self, key: str) -> None:
+        """Show the rows of one page and hide those of the others."""
+        for owner, actions in self._of_page.items():
+            for action in actions:
+                action.setVisible(owner == key)
+                action.setEnabled(owner == key)
+        for title in (PAGE_MENU, "Look &from"):
+            if menu := self._menus.get(title):
+                menu.menuAction().setVisible(any(each.isVisible() for each in menu.actions()))
+
+    def page_of(self, action: QAction) -> str:
+        """Key of the page that an action belongs to; empty for those of the window."""
+        return next((key for key, actions in self._of_page.items() if action in actions), "")
 
     def set_theme(self, theme: Theme) -> None:
         """Draw the icons in the colours of a theme."""
-        for row in ROWS:
-            if row.icon:
-                self.by_name[row.name].setIcon(icon(row.icon, theme.text, theme.muted))
+        for action, name in self._icons:
+            action.setIcon(icon(name, theme.text, theme.muted))
 
-    def _add(self, row: ActionSpec, commands: Mapping[str, Callable[..., object]]) -> None:
+    def _add_page(
+        self, page: Page, number: int, run: Callable[..., object], go: Callable[[str], object]
+    ) -> None:
+        row = ActionSpec("&Go", page.key, f"&{number} {page.title}", page.icon, f"Alt+{number}", page.tip)
+        self._add(row, f"go.{page.key}", partial(go, page.key))
+        mine = self._of_page[page.key]
+        if any(each.bar for each in page.actions):
+            mine.append(self.bar.addSeparator())
+        for each in page.actions:
+            mine.append(self._add(each, f"{page.key}.{each.name}", partial(run, page.key, each.name)))
+
+    def _add(self, row: ActionSpec, name: str, command: Callable[..., object] | None) -> QAction:
         menu = self._menu(row.menu)
         if row.name == BREAK:
-            menu.addSeparator()
-            return
+            return menu.addSeparator()
         action = QAction(row.text, self._window)
-        action.setObjectName(row.name)
+        action.setObjectName(name)
         if row.shortcut:
             action.setShortcut(QKeySequence(row.shortcut))
         keys = f" ({row.shortcut})" if row.shortcut else ""
-        action.setToolTip((row.tip or row.text.replace("&", "").rstrip(" …")) + keys)
-        command = commands.get(row.name)
+        action.setToolTip((row.tip or row.plain) + keys)
         if row.checked is not None and command:
             action.setCheckable(True)
             action.setChecked(row.checked)
@@ -135,15 +130,18 @@ class Actions:
         elif command:
             action.triggered.connect(lambda _checked=False, run=command: run())
         menu.addAction(action)
-        self.by_name[row.name] = action
+        self.by_name[name] = action
+        if row.icon:
+            self._icons.append((action, row.icon))
         if row.bar:
             self._place(row, action)
+        return action
 
     def _place(self, row: ActionSpec, action: QAction) -> None:
         self.bar.addAction(action)
         button = self.bar.widgetForAction(action)
         if isinstance(button, QToolButton):
-            button.setAccessibleName(row.tip or row.text.replace("&", ""))
+            button.setAccessibleName(row.tip or row.plain)
             words, only = Qt.ToolButtonStyle.ToolButtonTextBesideIcon, Qt.ToolButtonStyle.ToolButtonIconOnly
             button.setToolButtonStyle(words if row.bar == "words" else only)
 

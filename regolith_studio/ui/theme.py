@@ -150,6 +150,12 @@ QToolBar {{ border: none; border-bottom: 1px solid {theme.border}; spacing: 2px;
 QToolBar QToolButton {{ padding: 4px 7px; border-radius: 4px; border: 1px solid transparent; }}
 QToolBar QToolButton:hover {{ background: {theme.raised}; border-color: {theme.border}; }}
 QToolBar QToolButton:checked {{ background: {theme.base}; border-color: {theme.border}; }}
+QFrame[role="sidebar"] {{ background: {theme.base}; border-right: 1px solid {theme.border}; }}
+QFrame[role="sidebar"] QToolButton {{ padding: 6px 2px 4px 2px; border-radius: 5px; color: {theme.muted};
+    border: 1px solid transparent; }}
+QFrame[role="sidebar"] QToolButton:hover {{ background: {theme.window}; color: {theme.text}; }}
+QFrame[role="sidebar"] QToolButton:focus {{ border-color: {theme.accent}; }}
+QFrame[role="sidebar"] QToolButton:checked {{ background: {theme.selected}; color: {theme.text}; }}
 *[role="heading"] {{ font-weight: 600; }}
 *[role="remark"] {{ color: {theme.muted}; }}
 *[role="warning"] {{ color: {theme.doubtful}; }}

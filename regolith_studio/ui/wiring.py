@@ -2,7 +2,6 @@
 
 import time
 from collections.abc import Callable, Mapping
-from functools import partial
 from typing import Any, Protocol
 
 from PySide6.QtCore import QObject, QTimer
@@ -72,12 +71,22 @@ class Wiring(QObject):
         beat = self._slow if slow else self._fast
         for topic in topics.split():
             signal = getattr(self._session.topics, topic)
-            self._cuts.append(signal.connect(partial(beat.add, action)))
+            self._cuts.append(signal.connect(lambda *_: beat.add(action)))
         action()
 
     def hear(self, topic: str, action: Callable[..., None]) -> None:
         """Call `action` with what a topic says, at once."""
         self._cuts.append(getattr(self._session.topics, topic).connect(action))
+
+    def pause(self) -> None:
+        """Refresh nothing until :meth:`resume`; what is due meanwhile is kept."""
+        self._fast.pause()
+        self._slow.pause()
+
+    def resume(self) -> None:
+        """Refresh what has become due, and go on."""
+        self._fast.resume()
+        self._slow.resume()
 
     def cut(self) -> None:
         """Disconnect everything."""
@@ -96,6 +105,7 @@ class _Beat(QObject):
         self._seconds, self._at_once = seconds, at_once
         self._due: dict[Callable[[], None], float] = {}
         self._last: dict[Callable[[], None], float] = {}
+        self._paused = False
         self._timer = QTimer(self, singleShot=True)
         self._timer.timeout.connect(self._run)
 
@@ -106,6 +116,16 @@ class _Beat(QObject):
             self._due[action] = begin + self._seconds
             self._wait()
 
+    def pause(self) -> None:
+        """Call nothing for a while."""
+        self._paused = True
+        self._timer.stop()
+
+    def resume(self) -> None:
+        """Call what has become due."""
+        self._paused = False
+        self._wait()
+
     def stop(self) -> None:
         """Call nothing any more."""
         self._timer.stop()
@@ -113,7 +133,7 @@ class _Beat(QObject):
         self._last.clear()
 
     def _wait(self) -> None:
-        if self._due:
+        if self._due and not self._paused:
             self._timer.start(max(0, round(1000 * (min(self._due.values()) - time.monotonic()))))
 
     def _run(self) -> None:

@@ -56,7 +56,7 @@ def settle(window, wait):
 
 
 def pictures(window):
-    return [view.picture().astype(int) for view in window.triptych.views.values()]
+    return [view.picture().astype(int) for view in window.page.triptych.views.values()]
 
 
 def difference(one, other):
@@ -157,7 +157,7 @@ def open_by_keys(window, path, wait):
     timers = [answer_file_dialog(path), answer_unit_dialog()]
     activate(window)
     QTest.keyClick(window, Qt.Key.Key_O, Qt.KeyboardModifier.ControlModifier)
-    wait(lambda: [entry.id for entry in window.particles.entries()] == [path.stem], SECONDS)
+    wait(lambda: [entry.id for entry in window.page.particles.entries()] == [path.stem], SECONDS)
     for timer in timers:
         timer.stop()
 
@@ -191,7 +191,7 @@ def test_that_a_file_becomes_a_dataset_by_mouse_and_keys_alone(window, wait, tmp
         True,
     ]
 
-    turn = window.triptych.views["fit"].widget.childAt(60, 60)
+    turn = window.page.triptych.views["fit"].widget.childAt(60, 60)
     QTest.mousePress(turn, Qt.MouseButton.LeftButton, pos=QPoint(60, 60))
     QTest.mouseMove(turn, QPoint(160, 90))
     QTest.mouseRelease(turn, Qt.MouseButton.LeftButton, pos=QPoint(160, 90))
@@ -216,7 +216,7 @@ def test_that_the_picture_of_the_documentation_can_be_taken(window, wait):
     settle(window, wait)
     QTest.qWait(400)
     picture = window.grab().toImage()
-    for frame in window.triptych.frames.values():
+    for frame in window.page.triptych.frames.values():
         corner = frame.view.widget.mapTo(window, QPoint(0, 0))
         size = frame.view.widget.size()
         inside = picture.copy(corner.x(), corner.y(), size.width(), size.height())

@@ -34,7 +34,7 @@ def window(shown, preferences, wait):
 
 
 def pictures(window):
-    return [view.picture().astype(int) for view in window.triptych.views.values()]
+    return [view.picture().astype(int) for view in window.page.triptych.views.values()]
 
 
 def changed(before, after):
@@ -77,12 +77,12 @@ def answer(kind, act):
 
 
 def test_that_the_window_opens_on_the_sample_with_three_different_views(window):
-    assert len(window.particles.entries()) == 12
+    assert len(window.page.particles.entries()) == 12
     one, two, three = pictures(window)
     assert changed([one, two], [two, three]) == [True, True]
-    assert not window.plots.error_bars.plot.is_empty()
-    assert not window.plots.loss_curve.plot.is_empty()
-    assert not window.plots.spectrum.plot.is_empty()
+    assert not window.page.plots.error_bars.plot.is_empty()
+    assert not window.page.plots.loss_curve.plot.is_empty()
+    assert not window.page.plots.spectrum.plot.is_empty()
 
 
 def test_that_l_max_changes_the_fit_and_the_polyhedron_but_not_the_particle(window, wait):
@@ -94,7 +94,7 @@ def test_that_l_max_changes_the_fit_and_the_polyhedron_but_not_the_particle(wind
     wait(lambda: window.session.results.coarsened is not None and not window.session.tasks, SECONDS)
     QTest.qWait(80)
     assert changed(before, pictures(window)) == [False, True, True]
-    assert "4" in window.triptych.frames["fit"]._title.text()
+    assert "4" in window.page.triptych.frames["fit"]._title.text()
 
 
 def test_that_a_dragged_slider_is_one_step_of_undo(window, wait):
@@ -109,18 +109,18 @@ def test_that_a_dragged_slider_is_one_step_of_undo(window, wait):
     assert QTest.qWaitForWindowActive(window, 5000)
     QTest.keySequence(window, "Ctrl+Z")
     wait(lambda: window.session.choices.n_faces == 20)
-    assert window.coarsening.value()["n_faces"] == 20
+    assert window.page.coarsening.value()["n_faces"] == 20
     QTest.keySequence(window, "Ctrl+Shift+Z")
-    wait(lambda: window.coarsening.value()["n_faces"] == 30)
+    wait(lambda: window.page.coarsening.value()["n_faces"] == 30)
 
 
 def test_that_another_particle_fills_all_three_views(window, wait):
     before = pictures(window)
-    table = window.particles.table
+    table = window.page.particles.table
     QTest.mouseClick(
         table.viewport(), Qt.MouseButton.LeftButton, pos=table.visualRect(table.model().index(6, 0)).center()
     )
-    wait(lambda: window.session.choices.selected == window.particles.entries()[6].id)
+    wait(lambda: window.session.choices.selected == window.page.particles.entries()[6].id)
     wait(lambda: window.session.results.coarsened is not None and not window.session.tasks, SECONDS)
     QTest.qWait(80)
     assert changed(before, pictures(window)) == [True, True, True]
@@ -133,7 +133,7 @@ def test_that_dropped_files_are_opened_in_the_unit_that_is_answered(window, wait
     timer = answer(UnitDialog, lambda dialog: (dialog.setValue("mm"), dialog.accept()))
     copy, nothing = Qt.DropAction.CopyAction, Qt.KeyboardModifier.NoModifier
     window.dropEvent(QDropEvent(QPointF(5, 5), copy, data, Qt.MouseButton.LeftButton, nothing))
-    wait(lambda: [entry.id for entry in window.particles.entries()] == ["egg"], SECONDS)
+    wait(lambda: [entry.id for entry in window.page.particles.entries()] == ["egg"], SECONDS)
     timer.stop()
     assert np.ptp(window.session.particles[0].particle.mesh.vertices[:, 2]) == pytest.approx(4000.0)
     assert window.preferences.unit_for(path) == "mm"
@@ -146,7 +146,7 @@ def test_that_a_broken_file_costs_one_sentence_and_nothing_else(window, wait, tm
     window.commands.open_paths([path], "um")
     wait(window.toast.isVisible, SECONDS)
     assert "broken.stl" in window.toast.sentence.text()
-    assert len(window.particles.entries()) == 12
+    assert len(window.page.particles.entries()) == 12
 
 
 def test_that_an_error_of_the_program_is_told_and_survived(window, capsys):
@@ -191,7 +191,7 @@ def test_that_the_window_follows_dark_and_light(window):
     light = [picture.mean() for picture in pictures(window)]
     window.menus.by_name["theme_dark"].trigger()
     assert current_theme() is DARK
-    assert window.plots.error_bars.plot.theme is DARK
+    assert window.page.plots.error_bars.plot.theme is DARK
     assert all(picture.mean() < mean - 60 for picture, mean in zip(pictures(window), light, strict=True))
     assert window.preferences.window["theme"] == "dark"
     window.menus.by_name["theme_light"].trigger()

@@ -1,0 +1,152 @@
+"""What a page of the window is, and what it is given; see :mod:`regolith_studio.ui.pages`."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from PySide6.QtWidgets import QWidget
+
+from regolith_studio.jobs.events import Failed, Job
+from regolith_studio.session.preferences import Preferences
+from regolith_studio.session.session import Session
+from regolith_studio.ui.action_spec import ActionSpec
+from regolith_studio.ui.commands import Commands
+from regolith_studio.ui.theme import Theme
+from regolith_studio.ui.widgets.toast import Toast
+from regolith_studio.ui.wiring import Wiring
+
+
+class PageWidget(QWidget):
+    """What a page shows; every method may be left as it is."""
+
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme; called once after building and at every change."""
+
+    def commands(self) -> Mapping[str, Callable[..., object]]:
+        """A function for each name in :attr:`Page.actions`; switches are called with their state."""
+        return {}
+
+    def entered(self) -> None:
+        """The page is seen from now on."""
+
+    def left(self) -> None:
+        """Another page is seen from now on."""
+
+    def busy(self) -> str:
+        """One sentence on what closing would lose or stop, or nothing; tasks need not be named."""
+        return ""
+
+    def state(self) -> dict[str, Any]:
+        """What a project file keeps of this page, as plain JSON."""
+        return {}
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Show what :meth:`state` returned once, maybe by another version: ignore what is not known."""
+
+    def release(self) -> None:
+        """The window closes: give graphics memory back, stop timers."""
+
+
+@dataclass(frozen=True)
+class PageContext:
+    """What a page is given.
+
+    Parameters
+    ----------
+    key
+        Of the page.
+    session
+        Particles, choices, results, topics; see :mod:`regolith_studio.session`.
+    wiring
+        The page's own: what it refreshes is refreshed while the page is seen, and at its next visit
+        if something has changed meanwhile.
+    preferences
+        What is remembered between sittings; see :meth:`recall`.
+    toast
+        ``note(sentence)`` and ``problem(sentence, details)``.
+    commands
+        Opening, saving and exporting, with their dialogs.
+    views
+        Backend of three-dimensional views, for :func:`regolith_studio.ui.views.factory.make_view`.
+    go
+        Shows another page by its key, and returns its widget.
+    """
+
+    key: str
+    session: Session
+    wiring: Wiring
+    preferences: Preferences
+    toast: Toast
+    commands: Commands
+    views: str
+    go: Callable[[str], PageWidget]
+
+    def start(
+        self,
+        title: str,
+        job: Job,
+        finished: Callable[[Any], None],
+        partial: Callable[[Any], None] | None = None,
+        failed: Callable[[Failed], None] | None = None,
+        stopped: Callable[[], None] | None = None,
+        lane: str = "",
+    ) -> int:
+        """Run a job in the background, seen in the task list; returns the number for :meth:`Session.cancel`.
+
+        Parameters
+        ----------
+        title
+            On screen.
+        job
+            A generator function with its arguments; see :mod:`regolith_studio.jobs.events`.
+        finished, partial, failed, stopped
+            Called in the thread of the window, and only while no newer job has taken the lane. A
+            failure that is not taken care of becomes a toast.
+        lane
+            Jobs of one lane of one page replace each other.
+        """
+        return self.session.run(f"{self.key}:{lane}", title, job, finished, partial, failed, stopped)
+
+    def stop(self, lane: str = "") -> None:
+        """Stop what runs in a lane of this page, silently: its reactions are not called any more."""
+        self.session.stop(f"{self.key}:{lane}")
+
+    def recall(self, name: str, default: Any = None) -> Any:
+        """What was remembered under this name by this page."""
+        return self.preferences.window.get(f"page.{self.key}", {}).get(name, default)
+
+    def remember(self, name: str, value: Any) -> None:
+        """Remember plain JSON for the next sitting; written when the window closes."""
+        kept = self.preferences.window.get(f"page.{self.key}", {}) | {name: value}
+        self.preferences.window = self.preferences.window | {f"page.{self.key}": kept}
+
+
+@dataclass(frozen=True)
+class Page:
+    """One page, as the sidebar announces it.
+
+    Parameters
+    ----------
+    key
+        Name of its package.
+    title
+        In the sidebar: one word or two.
+    icon
+        File in ``resources/icons``.
+    order
+        Place in the sidebar, from small to large.
+    tip
+        One sentence on what can be done there.
+    build
+        Makes the widget at the first visit; imports its modules inside, so that the window starts fast.
+    actions
+        Commands of the page, in menus and tool bar while it is seen, in the command palette always.
+    """
+
+    key: str
+    title: str
+    icon: str
+    order: int
+    tip: str
+    build: Callable[[PageContext], PageWidget]
+    actions: tuple[ActionSpec, ...] = ()

@@ -1,0 +1,138 @@
+"""The sidebar and the page that is seen; a page is built when it is first visited."""
+
+from collections.abc import Callable
+from functools import partial
+
+from PySide6.QtCore import QSize, Qt, Signal
+from PySide6.QtWidgets import (
+    QButtonGroup,
+    QFrame,
+    QHBoxLayout,
+    QStackedWidget,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from regolith_studio.ui.icons import icon
+from regolith_studio.ui.page import Page, PageContext, PageWidget
+from regolith_studio.ui.theme import Theme, current_theme
+
+_ICON = 24
+
+
+class PageStack(QWidget):
+    """Shows one page at a time.
+
+    Parameters
+    ----------
+    pages
+        In the order of the sidebar.
+    context_of
+        What a page is given, by its key.
+    """
+
+    changed = Signal(str)
+
+    def __init__(self, pages: tuple[Page, ...], context_of: Callable[[str], PageContext]) -> None:
+        super().__init__()
+        self.pages = {page.key: page for page in pages}
+        self.widgets: dict[str, PageWidget] = {}
+        self._contexts: dict[str, PageContext] = {}
+        self._context_of = context_of
+        self._current = ""
+        self._stack = QStackedWidget()
+        self._bar = QFrame()
+        self._bar.setObjectName("sidebar")
+        self._bar.setProperty("role", "sidebar")
+        self._group = QButtonGroup(self)
+        self.buttons: dict[str, QToolButton] = {}
+        self._arrange()
+
+    @property
+    def current(self) -> str:
+        """Key of the page that is seen."""
+        return self._current
+
+    def go(self, key: str) -> PageWidget:
+        """Show a page, building it if need be."""
+        widget = self.widgets.get(key) or self._build(key)
+        if key != self._current:
+            self._leave()
+            self._current = key
+            self._stack.setCurrentWidget(widget)
+            self.buttons[key].setChecked(True)
+            self._contexts[key].wiring.resume()
+            widget.entered()
+            self.changed.emit(key)
+        return widget
+
+    def neighbour(self, step: int) -> None:
+        """The next page, or the one before."""
+        keys = list(self.pages)
+        self.go(keys[(keys.index(self._current) + step) % len(keys)])
+
+    def run(self, key: str, command: str, *arguments: object) -> None:
+        """Run a command of a page, which is shown first."""
+        self.go(key).commands()[command](*arguments)
+
+    def busy(self) -> list[str]:
+        """What the pages say about being closed now."""
+        return [sentence for each in self.widgets.values() if (sentence := each.busy())]
+
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        for key, page in self.pages.items():
+            self.buttons[key].setIcon(icon(page.icon, theme.text, theme.muted))
+        for widget in self.widgets.values():
+            widget.set_theme(theme)
+
+    def release(self) -> None:
+        """The window closes."""
+        for key, widget in self.widgets.items():
+            self._contexts[key].wiring.cut()
+            widget.release()
+
+    def _build(self, key: str) -> PageWidget:
+        context = self._contexts[key] = self._context_of(key)
+        widget = self.widgets[key] = self.pages[key].build(context)
+        widget.set_theme(current_theme())
+        self._stack.addWidget(widget)
+        return widget
+
+    def _leave(self) -> None:
+        if self._current:
+            self._contexts[self._current].wiring.pause()
+            self.widgets[self._current].left()
+
+    def _arrange(self) -> None:
+        column = QVBoxLayout(self._bar)
+        column.setContentsMargins(5, 8, 5, 8)
+        column.setSpacing(3)
+        for number, (key, page) in enumerate(self.pages.items(), start=1):
+            button = self.buttons[key] = self._button(page, number)
+            self._group.addButton(button)
+            column.addWidget(button)
+        column.addStretch(1)
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.setSpacing(0)
+        row.addWidget(self._bar)
+        row.addWidget(self._stack, 1)
+
+    def _button(self, page: Page, number: int) -> QToolButton:
+        button = QToolButton()
+        button.setObjectName(f"page_{page.key}")
+        button.setText(page.title)
+        button.setAccessibleName(f"Page {page.title}")
+        button.setToolTip(f"{page.tip} (Alt+{number})")
+        button.setCheckable(True)
+        button.setAutoRaise(True)
+        button.setIconSize(QSize(_ICON, _ICON))
+        button.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextUnderIcon)
+        button.setMinimumWidth(74)
+        button.clicked.connect(partial(self._clicked, page.key))
+        return button
+
+    def _clicked(self, key: str) -> None:
+        self.go(key)

@@ -1,0 +1,91 @@
+'''The pages of the window; each package of this folder that defines ``PAGE`` is one.
+
+How to add a page
+-----------------
+Make the package ``ui/pages/<key>/`` and an icon ``resources/icons/<name>.svg``; nothing else needs to
+be edited. ``__init__.py`` stays cheap and announces the page; the widget lives in modules beside it::
+
+    """Page "Grains": what it is for."""
+
+    from regolith_studio.ui.action_spec import PAGE_MENU, ActionSpec
+    from regolith_studio.ui.page import Page, PageContext, PageWidget
+
+
+    def build(context: PageContext) -> PageWidget:
+        from regolith_studio.ui.pages.grains.page import GrainsPage
+
+        return GrainsPage(context)
+
+
+    PAGE = Page(
+        key="grains", title="Grains", icon="sample", order=25, tip="Count the grains.", build=build,
+        actions=(ActionSpec(PAGE_MENU, "count", "&Count", "play", "Ctrl+Return", bar="words"),),
+    )
+
+and ``page.py``::
+
+    class GrainsPage(PageWidget):
+        def __init__(self, context: PageContext) -> None:
+            super().__init__()
+            self._context = context
+            self.plot = CurvePlot("Grain", "Size [µm]", "Press Count.")
+            QVBoxLayout(self).addWidget(self.plot)
+            context.wiring.refresh("particles", self._show_particles, slow=True)
+
+        def commands(self):
+            return {"count": self.count}
+
+        def set_theme(self, theme):
+            self.plot.set_theme(theme)
+
+        def count(self):
+            particles = [entry.particle for entry in self._context.session.particles]
+            self._context.start("Counting grains", Job(count_grains, (particles,)), self._show_counts)
+
+What a page can rely on
+-----------------------
+* It is built at its first visit, in the thread of the window, and kept until the window closes.
+* **State**: ``context.session`` is the one truth: ``particles``, ``choices``, ``results``,
+  ``choose(...)``, ``adopt(particles)`` for particles made by a page (they replace or join the open
+  ones and are measured and shown everywhere), ``shelf`` for anything else that pages hand to each
+  other: ``session.shelf.put("population", value)``, ``.get("population")``, topic ``shelf`` (carries
+  the name). Names on the shelf so far: ``population`` (virtual particles drawn by a model),
+  ``dataset_folder`` (Path written last), ``contact`` (contact parameters).
+* **Refreshing**: ``context.wiring.refresh("particles choices", action)`` calls `action` soon after these
+  topics, and now; ``slow=True`` for tables and plots. Nothing is refreshed while the page is hidden;
+  what was missed follows at the next visit. ``context.wiring.hear(topic, action)`` is not held back.
+* **Work**: ``context.start(title, job, finished, partial=..., lane=...)`` runs a generator of
+  ``Started``, ``Progress`` and ``Partial`` events in a thread; requests are numbered, the newest of a
+  lane wins, what an older one says is dropped. Progress, time left and the stop button are in the
+  status bar and in the task list by themselves; ``context.session.cancel(number)`` cancels, and
+  :class:`~regolith_studio.ui.widgets.study_frame.StudyFrame` shows a task beside a plot. Never compute
+  in a slot for more than 50 ms.
+* **Three-dimensional views**: ``make_view(context.views, theme.surroundings)`` from ``ui.views.factory``,
+  filled by functions of ``scene``; call ``view.release()`` in :meth:`PageWidget.release`.
+* **Words**: ``context.toast.note("Saved.")``, ``context.toast.problem("One sentence.", details)``.
+* **Memory**: ``context.remember(name, value)``, ``context.recall(name, default)`` between sittings;
+  :meth:`PageWidget.state` and ``restore`` for project files. A splitter made by ``ui.layout`` that has
+  an object name is remembered by itself.
+* **Closing**: the window asks when tasks run or when :meth:`PageWidget.busy` says a sentence;
+  :meth:`PageWidget.release` comes last.
+* Widgets, plots and themes: ``ui.widgets`` (``Plot``, ``CurvePlot``, ``BarPlot``, ``HeatTable``,
+  ``NumberSlider``, ``SettingsForm``, ``StudyFrame``, ``labels``), ``ui.theme``, ``ui.layout``. No style
+  sheets on single widgets; every control has an accessible name and an object name.
+* In tests: ``window.go("grains")`` builds and shows the page and returns its widget.
+
+Pages do not import each other, nor does anything below import a page.
+'''
+
+import pkgutil
+from functools import cache
+from importlib import import_module
+
+from regolith_studio.ui.page import Page
+
+
+@cache
+def pages() -> tuple[Page, ...]:
+    """Every page, in the order of the sidebar."""
+    modules = [import_module(f"{__name__}.{each.name}") for each in pkgutil.iter_modules(__path__)]
+    found = [module.PAGE for module in modules if hasattr(module, "PAGE")]
+    return tuple(sorted(found, key=lambda page: (page.order, page.key)))

@@ -1,0 +1,41 @@
+"""Page "Explore": one particle in three linked views, with every choice at hand and every number below."""
+
+from regolith_studio.scene.cameras import DIRECTIONS
+from regolith_studio.ui.action_spec import BREAK, ActionSpec
+from regolith_studio.ui.page import Page, PageContext, PageWidget
+
+_DIRECTION_KEYS = {"isometric": "Ctrl+0", "front": "Ctrl+1", "right": "Ctrl+3", "top": "Ctrl+7"}
+
+
+def build(context: PageContext) -> PageWidget:
+    """The page's widget."""
+    from regolith_studio.ui.pages.explore.page import ExplorePage
+
+    return ExplorePage(context)
+
+
+PAGE = Page(
+    key="explore",
+    title="Explore",
+    icon="page_explore",
+    order=10,
+    tip="One particle, its spherical-harmonics fit and its polyhedron side by side",
+    build=build,
+    actions=(
+        ActionSpec(
+            "&View", "link", "&Link cameras", "link", "Ctrl+L", "Turn all views together", True, "icon"
+        ),
+        ActionSpec(
+            "&View", "reset", "&Reset cameras", "reset", "Ctrl+R", "Show the whole particle", bar="icon"
+        ),
+        *(
+            ActionSpec("Look &from", f"look_{key}", each.label, "", _DIRECTION_KEYS.get(key, ""))
+            for key, each in DIRECTIONS.items()
+        ),
+        ActionSpec("&View", BREAK, ""),
+        ActionSpec(
+            "&View", "wireframe", "&Wireframe", "wireframe", "Ctrl+M", "Show triangles", False, "icon"
+        ),
+        ActionSpec("&View", "heat", "&Distance map", "heat", "Ctrl+D", "Show fitting errors", False, "icon"),
+    ),
+)

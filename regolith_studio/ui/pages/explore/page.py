@@ -1,0 +1,80 @@
+"""Particles on the left, three views and plots in the middle, controls on the right."""
+
+from collections.abc import Callable, Mapping
+from functools import partial
+
+from PySide6.QtWidgets import QHBoxLayout
+
+from regolith_studio.scene.cameras import DIRECTIONS
+from regolith_studio.ui.layout import CONTROLS_WIDTH, padded, scrolled_column, side_by_side, stacked
+from regolith_studio.ui.page import PageContext, PageWidget
+from regolith_studio.ui.pages.explore.plot_area import PlotArea
+from regolith_studio.ui.panels.coarsening import CoarseningPanel
+from regolith_studio.ui.panels.fit import FitPanel
+from regolith_studio.ui.panels.loss import LossPanel
+from regolith_studio.ui.panels.particle_list import ParticleListPanel
+from regolith_studio.ui.theme import Theme
+from regolith_studio.ui.views.triptych import Triptych
+
+
+class ExplorePage(PageWidget):
+    """Places panels and views, and lets the session fill them."""
+
+    def __init__(self, context: PageContext) -> None:
+        super().__init__()
+        self.setObjectName("explore")
+        self._session = context.session
+        self.particles, self.fit = ParticleListPanel(), FitPanel()
+        self.coarsening, self.loss = CoarseningPanel(), LossPanel()
+        self.triptych = Triptych(context.views)
+        self.plots = PlotArea()
+        self._themed = (self.particles, self.coarsening, self.plots, self.triptych)
+        self._place()
+        self._wire(context)
+
+    def set_theme(self, theme: Theme) -> None:
+        for part in self._themed:
+            part.set_theme(theme)
+
+    def commands(self) -> Mapping[str, Callable[..., object]]:
+        views = self.triptych
+        return {
+            **{f"look_{key}": partial(views.link.look_from, key) for key in DIRECTIONS},
+            "link": views.link.set_linked,
+            "reset": views.reset_cameras,
+            "wireframe": views.set_wireframe,
+            "heat": views.set_heat,
+        }
+
+    def release(self) -> None:
+        self.triptych.release()
+
+    def _place(self) -> None:
+        middle = stacked([self.triptych, self.plots], [520, 300], stretch=0)
+        middle.setObjectName("explore_rows")
+        controls = scrolled_column([self.fit, self.coarsening, self.loss])
+        parts = [padded(self.particles, 10, 10, 2, 8), padded(middle, 2, 10, 2, 8), controls]
+        columns = side_by_side(parts, [300, 900, CONTROLS_WIDTH], stretch=1)
+        columns.setObjectName("explore_columns")
+        layout = QHBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(columns)
+
+    def _wire(self, context: PageContext) -> None:
+        session, wiring = context.session, context.wiring
+        for panel in (self.particles, self.fit, self.coarsening, self.loss):
+            wiring.edit(panel)
+        wiring.refresh("particles", lambda: self.particles.set_entries(session.particles))
+        wiring.refresh("particles choices", lambda: self.triptych.show_particle(session.selected))
+        wiring.refresh("fit", lambda: self.fit.set_findings(session.results.fit), slow=True)
+        wiring.refresh("surface", self._show_fit)
+        wiring.refresh("coarsening", self._show_coarsening)
+        self.plots.wire(session, wiring, context.commands)
+
+    def _show_fit(self) -> None:
+        self.triptych.show_fit(self._session.results.surface, self._session.choices.l_max)
+
+    def _show_coarsening(self) -> None:
+        results = self._session.results
+        self.triptych.show_polyhedron(results)
+        self.coarsening.set_outcome(results.coarsened.reason if results.coarsened else None)

@@ -1,0 +1,156 @@
+"""The sidebar and its pages: found by themselves, built when visited, quiet while hidden."""
+
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QLabel, QVBoxLayout, QWidget
+
+from regolith_studio.jobs.events import Job, Partial, Progress, Started
+from regolith_studio.jobs.loading import load_sample
+from regolith_studio.jobs.runners.inline import InlineRunner
+from regolith_studio.resources import resource
+from regolith_studio.session.session import Session
+from regolith_studio.ui.action_spec import PAGE_MENU, ActionSpec
+from regolith_studio.ui.commands import Commands
+from regolith_studio.ui.page import Page, PageContext, PageWidget
+from regolith_studio.ui.page_stack import PageStack
+from regolith_studio.ui.pages import pages
+from regolith_studio.ui.widgets.toast import Toast
+from regolith_studio.ui.wiring import Wiring
+
+
+class _Counter(PageWidget):
+    """A page that counts how often it is refreshed, and the numbers of a job."""
+
+    def __init__(self, context):
+        super().__init__()
+        self.context, self.refreshed, self.heard, self.entries = context, 0, [], 0
+        QVBoxLayout(self).addWidget(QLabel(context.key))
+        context.wiring.refresh("shelf", self._refresh)
+
+    def _refresh(self):
+        self.refreshed += 1
+
+    def commands(self):
+        return {"count": self.count}
+
+    def count(self):
+        job = Job(_numbers, (3,))
+        self.context.start("Counting", job, self.heard.append, partial=self.heard.append)
+
+    def entered(self):
+        self.entries += 1
+
+    def busy(self):
+        return "Something is written." if self.heard else ""
+
+
+def _numbers(total):
+    yield Started("Counting", total)
+    for number in range(total):
+        yield Partial(number)
+        yield Progress(number + 1, total)
+    return "done"
+
+
+def _page(key, order):
+    action = ActionSpec(PAGE_MENU, "count", "&Count")
+    return Page(key, key.title(), "sample", order, "A page.", _Counter, (action,))
+
+
+@pytest.fixture
+def stack(shown, preferences):
+    session = Session(InlineRunner())
+    window = shown(QWidget())
+    toast = Toast(window)
+    commands = Commands(session, preferences, toast, window)
+
+    def context(key):
+        wiring = Wiring(session, toast.problem, window)
+        return PageContext(key, session, wiring, preferences, toast, commands, "image", lambda _key: window)
+
+    made = PageStack((_page("one", 1), _page("two", 2)), context)
+    made.setParent(window)
+    made.session = session
+    yield made
+    made.release()
+    session.close()
+
+
+def test_that_every_page_has_an_icon_a_tip_and_a_key_of_its_own():
+    found = pages()
+    assert found[0].key == "explore"
+    assert len({page.key for page in found}) == len(found) == len({page.title for page in found})
+    for page in found:
+        assert resource("icons", f"{page.icon}.svg").exists()
+        assert page.tip
+        names = [each.name for each in page.actions if each.text]
+        assert len(set(names)) == len(names)
+
+
+def test_that_a_page_is_built_at_its_first_visit_and_kept(stack):
+    assert not stack.widgets
+    first = stack.go("one")
+    assert list(stack.widgets) == ["one"]
+    QTest.mouseClick(stack.buttons["two"], Qt.MouseButton.LeftButton)
+    assert stack.current == "two"
+    assert stack.go("one") is first
+    assert first.entries == 2
+
+
+def test_that_a_hidden_page_is_refreshed_when_it_is_seen_again(stack, wait):
+    one = stack.go("one")
+    assert one.refreshed == 1
+    stack.go("two")
+    for number in range(5):
+        stack.session.shelf.put("population", number)
+    QTest.qWait(100)
+    assert one.refreshed == 1
+    stack.go("one")
+    wait(lambda: one.refreshed == 2)
+    QTest.qWait(60)
+    assert one.refreshed == 2
+
+
+def test_that_a_command_of_a_hidden_page_shows_it_first(stack):
+    stack.go("two")
+    stack.run("one", "count")
+    assert stack.current == "one"
+    assert stack.widgets["one"].heard == [0, 1, 2, "done"]
+    assert stack.busy() == ["Something is written."]
+
+
+def test_that_the_neighbours_of_a_page_go_round(stack):
+    stack.go("one")
+    stack.neighbour(1)
+    assert stack.current == "two"
+    stack.neighbour(1)
+    assert stack.current == "one"
+
+
+def test_that_what_a_page_remembers_is_kept_apart_from_the_others(stack, preferences):
+    one, two = stack.go("one").context, stack.go("two").context
+    one.remember("split", [1, 2])
+    assert two.recall("split", "nothing") == "nothing"
+    assert one.recall("split") == [1, 2]
+    assert preferences.window == {"page.one": {"split": [1, 2]}}
+
+
+def test_that_particles_made_by_a_page_are_open_everywhere(stack):
+    loaded = next(iter(_outcome(load_sample())))
+    session = stack.session
+    session.adopt(loaded.particles[:2])
+    assert [entry.id for entry in session.particles] == [each.name for each in loaded.particles[:2]]
+    assert all(entry.descriptors is not None for entry in session.particles)
+    assert session.choices.selected == session.particles[0].id
+    session.adopt(loaded.particles[:1], add=True)
+    assert len({entry.id for entry in session.particles}) == 3
+
+
+def _outcome(steps):
+    while True:
+        try:
+            next(steps)
+        except StopIteration as end:
+            yield end.value
+            return
