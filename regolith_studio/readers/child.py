@@ -6,6 +6,7 @@ input ends. It kills itself when a request takes too long, so that it cannot out
 
 import contextlib
 import hashlib
+import logging
 import os
 import signal
 import sys
@@ -13,7 +14,7 @@ import time
 import warnings
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from regolith_studio.errors import RegolithError
 from regolith_studio.readers.mesh_file import parse_mesh
@@ -43,7 +44,25 @@ def sleep(_request: dict[str, Any]) -> Message:
     return Message({})
 
 
-TASKS: dict[str, Task] = {"mesh": read_mesh_file, "sleep": sleep}
+def volume_task(name: str) -> Task:
+    """A function of ``volume_task``, imported when it is first asked for."""
+
+    def run(request: dict[str, Any]) -> Message:
+        from regolith_studio.readers import volume_task as tasks
+
+        logging.disable(logging.CRITICAL)
+        return cast(Task, getattr(tasks, name))(request)
+
+    return run
+
+
+TASKS: dict[str, Task] = {
+    "mesh": read_mesh_file,
+    "volume-prepare": volume_task("prepare_volume"),
+    "volume-open": volume_task("open_volume"),
+    "volume-slices": volume_task("read_slices"),
+    "sleep": sleep,
+}
 """What the child can be asked for; another kind of file is another row."""
 
 
@@ -68,13 +87,15 @@ def answer(request: dict[str, Any]) -> Message:
 def main() -> None:
     """Answer requests until the parent closes the pipe."""
     source, sink = _private_pipes()
-    _limit_memory(int(sys.argv[1]) if len(sys.argv) > 1 else 0)
+    limit = int(sys.argv[1]) if len(sys.argv) > 1 else 0
+    _limit_memory(limit)
     warnings.simplefilter("ignore")
     send(sink, Message({"status": "ready", "pid": os.getpid()}))
     with contextlib.suppress(EOFError, OSError, KeyboardInterrupt):
         while True:
             request = receive(source).header
             _alarm(float(request.get("seconds", 60.0)))
+            _allow_memory(int(request.get("memory", 0)), limit)
             send(sink, answer(request))
             _alarm(0.0)
 
@@ -106,6 +127,17 @@ def _limit_memory(limit: int) -> None:
         resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
         if limit:
             resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
+
+
+def _allow_memory(more: int, limit: int) -> None:
+    """For this request only `more` bytes of addresses than now, never above `limit`; for 0 up to it."""
+    with contextlib.suppress(ImportError, ValueError, OSError):
+        import resource
+
+        if limit:
+            pages = int(Path("/proc/self/statm").read_text().split()[0]) if more else 0
+            now = pages * resource.getpagesize()
+            resource.setrlimit(resource.RLIMIT_AS, (min(limit, now + more) if more else limit, limit))
 
 
 if __name__ == "__main__":

@@ -59,7 +59,19 @@ class Guard:
         FileError
             With one sentence if the file is refused, hangs or kills its reader.
         """
-        seconds = self._seconds + checked_size(path) * SECONDS_PER_BYTE
+        return self.ask(task, path, self._seconds + checked_size(path) * SECONDS_PER_BYTE, **options)
+
+    def ask(self, task: str, path: Path, seconds: float, **options: Any) -> Message:
+        """As `request`, for who has looked at the file or folder before: no check of its size.
+
+        Parameters
+        ----------
+        seconds
+            Wall time that the task may take.
+        options
+            More of what the task needs; ``memory`` is how many bytes it may use above what the child
+            has already, so that a damaged file cannot take all that the child may ever have.
+        """
         header = {"task": task, "path": str(path.absolute()), "seconds": seconds + 2.0, **options}
         with self._lock:
             message = self._asked(Message(header), seconds)
@@ -69,7 +81,7 @@ class Guard:
             case "refused":
                 raise FileError(str(message.header["sentence"]))
             case "memory":
-                limit = self._memory / 1024**3
+                limit = options.get("memory", self._memory) / 1024**3
                 reason = f"needs more than the {limit:.3g} GiB of memory that a reader may use."
             case "late":
                 reason = f"was given up after {seconds:.2g} s: it is damaged, or far larger than it looks."
@@ -155,8 +167,8 @@ def _ends_child(answer: Message) -> bool:
     return answer.header["status"] not in ("read", "refused") or size > LARGEST_WARM_RESULT
 
 
-def checked_size(path: Path) -> int:
-    """Size in bytes of a regular file that can be read whole.
+def checked_size(path: Path, largest: int | None = LARGEST_FILE) -> int:
+    """Size in bytes of a regular file that can be read whole, or in parts if `largest` is None.
 
     Raises
     ------
@@ -172,7 +184,7 @@ def checked_size(path: Path) -> int:
         raise FileError(sentence_about(path, "is a folder, not a file."))
     if not stat.S_ISREG(status.st_mode):
         raise FileError(sentence_about(path, "is a device or a pipe, not a file."))
-    if status.st_size > LARGEST_FILE:
+    if largest is not None and status.st_size > largest:
         raise FileError(
             sentence_about(path, f"has {status.st_size / 1024**3:.1f} GiB; at most 2 GiB are read.")
         )
@@ -215,11 +227,17 @@ def _end(process: subprocess.Popen[bytes]) -> None:
         process.wait()
 
 
-_SHARED = Guard()
+_SHARED, _VOLUMES = Guard(), Guard()
 if hasattr(os, "register_at_fork"):
     os.register_at_fork(after_in_child=_SHARED.forget)
+    os.register_at_fork(after_in_child=_VOLUMES.forget)
 
 
 def shared_guard() -> Guard:
-    """The one guard of this process."""
+    """The one guard of this process for files that are read at once."""
     return _SHARED
+
+
+def volume_guard() -> Guard:
+    """The one guard of this process for volumes, whose long reading must not keep meshes waiting."""
+    return _VOLUMES

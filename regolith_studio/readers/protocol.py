@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 _LENGTH = struct.Struct("<Q")
 LONGEST_HEADER = 1 << 24
-KINDS = frozenset(("<f8", "<i8", "<f4", "|u1", "<u2", "<i4", "<u4"))
+KINDS = frozenset(("|b1", "|u1", "|i1", "<u2", "<i2", "<u4", "<i4", "<u8", "<i8", "<f2", "<f4", "<f8"))
 
 
 class Readable(Protocol):

@@ -7,6 +7,21 @@ from regolith_studio.errors import InputError
 UNITS: dict[str, float] = {"um": 1.0, "mm": 1e3, "m": 1e6, "nm": 1e-3, "cm": 1e4, "voxel": math.nan}
 """Micrometres in a unit; not a number for ``voxel``, whose size must be given: ``voxel:2.5``."""
 
+_NAMES = {
+    "um": ("um", "µm", "μm", "\\u00b5m", "\\u03bcm", "micron", "microns",
+           "micrometer", "micrometre", "micrometers", "micrometres"),
+    "mm": ("mm", "millimeter", "millimetre", "millimeters", "millimetres"),
+    "m": ("m", "meter", "metre", "meters", "metres"),
+    "nm": ("nm", "nanometer", "nanometre", "nanometers", "nanometres"),
+    "cm": ("cm", "centimeter", "centimetre", "centimeters", "centimetres"),
+}  # fmt: skip
+_KEYS = {name: key for key, names in _NAMES.items() for name in names}
+
+
+def unit_named(text: str) -> str | None:
+    """The key of `UNITS` for a unit as files spell it (``µm``, ``micron``, ``millimetre``), or None."""
+    return _KEYS.get(text.strip().strip("\"'\0").strip().lower())
+
 
 def unit_factor(unit: str) -> float:
     """Micrometres in `unit`: a key of `UNITS`, or ``voxel:SIZE`` with the voxel's edge in micrometres.

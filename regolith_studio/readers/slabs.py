@@ -1,0 +1,164 @@
+"""A volume slab by slab, each read by the guarded child (or straight from a file of plain voxels)."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from regolith_studio.errors import FileError
+from regolith_studio.readers.guard import START_SECONDS, Guard, checked_size, volume_guard
+from regolith_studio.readers.plain_voxels import PlainVoxels, plain_voxels
+from regolith_studio.readers.sentences import sentence_about
+from regolith_studio.readers.volume_files import slice_names, slices_stamp
+from regolith_studio.readers.volume_format import DatasetEntry, Kind, Shape, Sizes
+from regolith_studio.readers.volume_header import RawLayout
+
+SLAB = 64 * 1024**2
+"""Bytes that the child hands over at a time, or one slice where that has more."""
+OPEN_SECONDS, OPEN_BYTES_A_SECOND = 2.0, 2e7
+SLAB_SECONDS, SLAB_BYTES_A_SECOND, SKIPPED_BYTES_A_SECOND = 2.0, 1e7, 3e7
+LEAST_MEMORY = 512 * 1024**2
+
+Progress = Callable[[int, int], None]
+"""Told how many slices are read, of how many."""
+
+
+@dataclass(frozen=True)
+class OpenedFile:
+    """A volume whose header has been read, slices first; nothing of it is in memory.
+
+    Parameters
+    ----------
+    path, request
+        The file and what the child is asked with.
+    answer
+        What the child said about it.
+    """
+
+    path: Path
+    request: dict[str, Any]
+    answer: dict[str, Any]
+    guard: Guard
+    size_on_disk: int
+    straight: PlainVoxels | None = field(default=None)
+
+    @property
+    def shape(self) -> Shape:
+        """Slices, rows, columns."""
+        nz, ny, nx = self.answer["shape"]
+        return int(nz), int(ny), int(nx)
+
+    @property
+    def dtype(self) -> np.dtype[Any]:
+        """Type of a voxel, in the machine's byte order."""
+        return np.dtype(str(self.answer["dtype"])).newbyteorder("=")
+
+    @property
+    def slice_bytes(self) -> int:
+        """Bytes of a slice."""
+        return self.shape[1] * self.shape[2] * self.dtype.itemsize
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of all voxels in memory."""
+        return self.shape[0] * self.slice_bytes
+
+    @property
+    def stated_size(self) -> tuple[Sizes | None, str | None]:
+        """Voxel edges along x, y, z and their unit, as far as the file says."""
+        size = self.answer["voxel_size"]
+        return (None if size is None else (float(size[0]), float(size[1]), float(size[2]))), self.answer[
+            "unit"
+        ]
+
+    @property
+    def stated_kind(self) -> Kind | None:
+        """What the file itself says it holds."""
+        kind: Kind | None = self.answer["kind"]
+        return kind
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What a user should know."""
+        return tuple(self.answer["notes"])
+
+    @property
+    def datasets(self) -> tuple[DatasetEntry, ...]:
+        """The volumes in the file, where it can hold several."""
+        return tuple(
+            DatasetEntry(name, tuple(shape), dtype) for name, shape, dtype in self.answer["datasets"]
+        )
+
+    def pieces(self, z0: int, z1: int) -> Iterator[tuple[int, int]]:
+        """Ranges of slices that make at most `SLAB` bytes each."""
+        step = max(1, SLAB // self.slice_bytes)
+        for start in range(z0, z1, step):
+            yield start, min(z1, start + step)
+
+    def read(self, z0: int, z1: int, into: NDArray[Any] | None = None) -> NDArray[Any]:
+        """Slices z0 to z1, shape (z1 - z0, ny, nx).
+
+        Raises
+        ------
+        FileError
+            If the file is damaged there.
+        """
+        out = np.empty((z1 - z0, *self.shape[1:]), self.dtype) if into is None else into
+        for start, end in self.pieces(z0, z1):
+            out[start - z0 : end - z0] = self._piece(start, end)
+        return out
+
+    def _piece(self, z0: int, z1: int) -> NDArray[Any]:
+        if self.straight is not None:
+            try:
+                return self.straight.read(z0, z1)
+            except (OSError, FileError) as error:
+                reason = str(error) if isinstance(error, FileError) else f"cannot be read: {error.strerror}."
+                raise FileError(sentence_about(self.path, reason)) from None
+        size = (z1 - z0) * self.slice_bytes
+        seconds = SLAB_SECONDS + size / SLAB_BYTES_A_SECOND
+        if self.answer["in_order"]:
+            seconds += z0 * self.slice_bytes / SKIPPED_BYTES_A_SECOND
+        request = {**self.request, "memory": LEAST_MEMORY + 6 * size}
+        self.guard.ask("volume-prepare", self.path, START_SECONDS)
+        message = self.guard.ask("volume-slices", self.path, seconds, z0=z0, z1=z1, **request)
+        voxels = message.arrays[0]
+        if voxels.shape != (z1 - z0, *self.shape[1:]) or voxels.dtype != self.dtype:
+            raise FileError(sentence_about(self.path, "changed while it was read."))
+        return voxels
+
+
+def opened_file(
+    path: Path, dataset: str | None = None, raw: RawLayout | None = None, guard: Guard | None = None
+) -> OpenedFile:
+    """A volume's header, read and checked by the child.
+
+    Raises
+    ------
+    FileError
+        With one sentence if it is no volume, is damaged, or holds several and none was named.
+    """
+    guard = guard or volume_guard()
+    names = slice_names(path) if path.is_dir() else ()
+    if path.is_dir():
+        size, stamp = slices_stamp(path, names)
+    else:
+        size = checked_size(path, largest=None)
+        stamp = [size, path.stat().st_mtime_ns]
+    request = {
+        "stamp": stamp,
+        "dataset": dataset,
+        "raw": None if raw is None else raw.as_request(),
+        "names": list(names),
+    }
+    guard.ask("volume-prepare", path, START_SECONDS)
+    seconds = OPEN_SECONDS + size / OPEN_BYTES_A_SECOND
+    answer = guard.ask("volume-open", path, seconds, memory=LEAST_MEMORY, **request).header
+    opened = OpenedFile(path, request, answer, guard, size)
+    if answer["plain"] is None:
+        return opened
+    straight = plain_voxels(answer["plain"], opened.shape, opened.dtype)
+    return OpenedFile(path, request, answer, guard, size, straight)

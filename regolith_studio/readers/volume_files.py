@@ -1,0 +1,92 @@
+"""Which files make a volume: a file, a folder of slices, or each volume in a folder."""
+
+import os
+import re
+from pathlib import Path
+
+from regolith_studio.errors import FileError
+from regolith_studio.readers.guard import checked_size
+from regolith_studio.readers.sentences import shown_name
+from regolith_studio.readers.volume_formats import volume_suffixes
+
+SLICE_SUFFIXES = (".tif", ".tiff", ".png", ".bmp")
+LEAST_SLICES = 3
+MOST_SLICES = 100_000
+_NUMBER = re.compile(r"\d+")
+
+
+def volume_files(path: str | Path) -> tuple[Path, ...]:
+    """The volumes that a path stands for, in the order of their names.
+
+    A file is a volume. A folder with three or more images whose names differ in a number only is one
+    volume, given as the folder itself; any other folder stands for the volume files in it.
+
+    Raises
+    ------
+    FileError
+        If there is nothing at the path, or nothing in the folder.
+    """
+    path = Path(path)
+    if not path.is_dir():
+        checked_size(path, largest=None)
+        return (path,)
+    if slice_names(path):
+        return (path,)
+    suffixes = tuple(sorted(volume_suffixes()))
+    found = [file for file in _visible(path) if file.lower().endswith(suffixes)]
+    if not found:
+        raise FileError(
+            f"The folder {shown_name(path)} holds no volume; volumes end in {', '.join(suffixes)}."
+        )
+    return tuple(path / file for file in sorted(found, key=_natural))
+
+
+def slice_names(folder: Path) -> tuple[str, ...]:
+    """Names of the slices in a folder, in the order of their numbers; empty if they are none.
+
+    Of several series, that with the most slices counts.
+    """
+    series: dict[tuple[str, ...], list[str]] = {}
+    for name in _visible(folder):
+        if name.lower().endswith(SLICE_SUFFIXES):
+            series.setdefault(_without_counter(name), []).append(name)
+    if not series:
+        return ()
+    names = max(series.values(), key=len)
+    if not LEAST_SLICES <= len(names) <= MOST_SLICES:
+        return ()
+    return tuple(sorted(names, key=_natural))
+
+
+def slices_stamp(folder: Path, names: tuple[str, ...]) -> tuple[int, list[int]]:
+    """Bytes of the slices in all, and a fingerprint of their sizes and times.
+
+    Raises
+    ------
+    FileError
+        If one of them is no regular file.
+    """
+    total, newest = 0, 0
+    for name in names:
+        total += checked_size(folder / name)
+        newest = max(newest, (folder / name).stat().st_mtime_ns)
+    return total, [total, newest, len(names)]
+
+
+def _visible(folder: Path) -> list[str]:
+    return [entry.name for entry in os.scandir(folder) if not entry.name.startswith(".") and entry.is_file()]
+
+
+def _without_counter(name: str) -> tuple[str, ...]:
+    """The name without its last number, which counts the slices."""
+    numbers = list(_NUMBER.finditer(Path(name).stem))
+    if not numbers:
+        return (name,)
+    start, end = numbers[-1].span()
+    return name[:start], name[end:]
+
+
+def _natural(name: str) -> list[tuple[int, int, str]]:
+    """Sorts ``slice10`` after ``slice9``."""
+    parts = re.split(r"(\d+)", name)
+    return [(1, int(part), "") if part.isdigit() and part.isascii() else (0, 0, part) for part in parts]

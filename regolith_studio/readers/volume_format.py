@@ -1,0 +1,189 @@
+"""What a volume format says about itself, and what it hands over: voxels, slice by slice.
+
+Inside the readers a volume is indexed [z, y, x], slices first, as nearly all files hold it; the
+public door (``readers.volumes``) turns it to the [x, y, z] of ``imaging.Volume``.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from regolith_studio.errors import FileError
+
+Shape = tuple[int, int, int]
+Sizes = tuple[float, float, float]
+Kind = Literal["labels", "grey"]
+
+VOXEL_TYPES = frozenset(("b1", "u1", "u2", "u4", "u8", "i1", "i2", "i4", "i8", "f2", "f4", "f8"))
+LONGEST_EDGE = 1 << 20
+LARGEST_SLICE = 1 << 30
+"""Bytes of the largest slice that is read; a detector of 16,384 pixels' width gives half of that."""
+
+
+@dataclass(frozen=True)
+class DatasetEntry:
+    """One array of a file that can hold several."""
+
+    name: str
+    shape: tuple[int, ...]
+    dtype: str
+
+
+@dataclass(frozen=True)
+class VoxelHeader:
+    """What a file says about its voxels before any of them is decoded.
+
+    Parameters
+    ----------
+    shape
+        Slices, rows, columns: (nz, ny, nx).
+    dtype
+        Type of the voxels as they are handed over, in the machine's byte order.
+    voxel_size
+        Edges along x, y and z, in `unit`; None where the file does not say.
+    unit
+        A key of ``readers.units.UNITS``; None where the file does not say.
+    kind
+        Where the file itself says what it holds.
+    notes
+        One sentence for each thing that a user should know.
+    datasets, dataset
+        The arrays that the file offers, and the name of the one that this is.
+    """
+
+    shape: Shape
+    dtype: np.dtype[Any]
+    voxel_size: Sizes | None = None
+    unit: str | None = None
+    kind: Kind | None = None
+    notes: tuple[str, ...] = ()
+    datasets: tuple[DatasetEntry, ...] = ()
+    dataset: str | None = None
+
+    @property
+    def slice_bytes(self) -> int:
+        """Bytes of one slice."""
+        return self.shape[1] * self.shape[2] * self.dtype.itemsize
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of all voxels."""
+        return self.shape[0] * self.slice_bytes
+
+
+class OpenVolume(Protocol):
+    """An opened file: its header, and its slices."""
+
+    @property
+    def header(self) -> VoxelHeader:
+        """What the file says about its voxels."""
+
+    def read(self, z0: int, z1: int) -> NDArray[Any]:
+        """Slices z0 to z1, shape (z1 - z0, ny, nx)."""
+
+    def close(self) -> None:
+        """Let go of the file."""
+
+
+@dataclass(frozen=True)
+class VolumeFormat:
+    """One row of the table of volume formats; each file of ``readers.volume_formats`` announces one.
+
+    Parameters
+    ----------
+    key
+        Short name, ``tiff``.
+    label
+        As a sentence names it, ``a TIFF stack``.
+    suffixes
+        Lower case, with the dot.
+    recognises
+        Whether the first 1,024 bytes can only be this format.
+    prepare
+        Import what opening needs; takes long the first time.
+    open
+        Path and options of the request to an opened volume. Raises ``FileError`` with the second
+        half of a sentence that begins with the file's name.
+    """
+
+    key: str
+    label: str
+    suffixes: tuple[str, ...]
+    recognises: Callable[[bytes], bool]
+    open: Callable[[Path, Mapping[str, Any]], OpenVolume]
+    prepare: Callable[[], None] = lambda: None
+
+
+def three_dimensions(shape: tuple[int, ...], named: str = "shape") -> Shape:
+    """The shape without its edges of one voxel, which must leave three (or the last three).
+
+    Raises
+    ------
+    FileError
+        If no volume has such a shape.
+    """
+    edges = [int(edge) for edge in shape]
+    if any(edge < 1 for edge in edges):
+        raise FileError(f"holds no voxels: its {named} is {shown_shape(shape)}.")
+    while len(edges) > 3 and 1 in edges:
+        edges.remove(1)
+    if len(edges) != 3:
+        raise FileError(
+            f"is no volume: its {named} is {shown_shape(shape)}, and three dimensions are needed."
+        )
+    if max(edges) > LONGEST_EDGE:
+        raise FileError(f"is damaged: no volume has the {named} {shown_shape(shape)}.")
+    return edges[0], edges[1], edges[2]
+
+
+def voxel_type(dtype: np.dtype[Any]) -> np.dtype[Any]:
+    """The type in the machine's byte order, if voxels can have it.
+
+    Raises
+    ------
+    FileError
+        If they cannot.
+    """
+    if dtype.hasobject:
+        raise FileError("holds Python objects, which could run programs; save it as plain numbers.")
+    if dtype.kind == "c":
+        raise FileError("holds complex numbers; save their magnitude.")
+    if dtype.names or dtype.subdtype or f"{dtype.kind}{dtype.itemsize}" not in VOXEL_TYPES:
+        raise FileError(f"holds {_type_name(dtype)} values; voxels are whole numbers or floats.")
+    return dtype.newbyteorder("=")
+
+
+def checked_header(header: VoxelHeader) -> VoxelHeader:
+    """The header, if its slices are of a size that can be read.
+
+    Raises
+    ------
+    FileError
+        If a single slice is too large.
+    """
+    if header.slice_bytes > LARGEST_SLICE:
+        size = header.slice_bytes / 1024**3
+        raise FileError(f"has slices of {size:.3g} GiB; at most 1 GiB is read at a time.")
+    return header
+
+
+def sizes_or_none(values: tuple[float, ...] | list[float]) -> Sizes | None:
+    """Three positive finite edges, or None."""
+    edges = tuple(abs(float(value)) for value in values)
+    if len(edges) == 3 and all(1e-12 < edge < 1e12 for edge in edges):
+        return edges[0], edges[1], edges[2]
+    return None
+
+
+def shown_shape(shape: tuple[int, ...]) -> str:
+    """``512 × 512 × 100``, cut short where it is long."""
+    edges = [f"{edge}" for edge in shape[:6]]
+    return " × ".join(edges + (["…"] if len(shape) > 6 else [])) or "()"
+
+
+def _type_name(dtype: np.dtype[Any]) -> str:
+    return "structured" if dtype.names else str(dtype)[:40]

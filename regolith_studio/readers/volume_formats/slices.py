@@ -1,0 +1,131 @@
+"""A folder of slices: one TIFF, PNG or BMP file for each."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from regolith_studio.errors import FileError
+from regolith_studio.readers.sentences import shown_name
+from regolith_studio.readers.tiff_structure import check_tiff
+from regolith_studio.readers.tiff_voxel_size import stated_size
+from regolith_studio.readers.volume_format import (
+    LARGEST_SLICE,
+    VolumeFormat,
+    VoxelHeader,
+    shown_shape,
+    voxel_type,
+)
+
+SLICE_SUFFIXES = (".tif", ".tiff", ".png", ".bmp")
+
+
+class SliceFiles:
+    """Slices that are files of their own, opened one after the other."""
+
+    def __init__(self, paths: list[Path], header: VoxelHeader) -> None:
+        self.header = header
+        self._paths = paths
+
+    def read(self, z0: int, z1: int) -> NDArray[Any]:
+        """Slices z0 to z1, shape (z1 - z0, ny, nx)."""
+        _, ny, nx = self.header.shape
+        out = np.empty((z1 - z0, ny, nx), self.header.dtype)
+        for place, path in enumerate(self._paths[z0:z1]):
+            image = _image(path)
+            if image.shape != (ny, nx) or image.dtype != self.header.dtype:
+                raise FileError(
+                    f"is no volume: its slice {shown_name(path)} has {shown_shape(image.shape[::-1])} pixels "
+                    f"of {image.dtype}, the first one {nx} × {ny} of {self.header.dtype}."
+                )
+            out[place] = image
+        return out
+
+    def close(self) -> None:
+        """Nothing is kept open."""
+
+
+def open_slices(path: Path, options: Mapping[str, Any]) -> SliceFiles:
+    """The files ``options["names"]`` of a folder as the slices of one volume, in that order.
+
+    Raises
+    ------
+    FileError
+        If there are none, or the first one cannot be read.
+    """
+    paths = [path / str(name) for name in options.get("names") or ()]
+    if not paths:
+        raise FileError(f"holds no slices; they end in {', '.join(SLICE_SUFFIXES)}.")
+    first = _image(paths[0])
+    size, unit, notes = _stated(paths[0])
+    shape = (len(paths), *first.shape)
+    return SliceFiles(
+        paths, VoxelHeader((shape[0], shape[1], shape[2]), first.dtype, size, unit, None, notes)
+    )
+
+
+def _image(path: Path) -> NDArray[Any]:
+    """One slice, shape (ny, nx), in the machine's byte order."""
+    try:
+        image = _tiff(path) if path.suffix.lower() in (".tif", ".tiff") else _picture(path)
+    except (FileError, MemoryError, OSError) as error:
+        if isinstance(error, FileError):
+            raise FileError(f"cannot be read: its slice {shown_name(path)} {error}") from None
+        raise
+    except Exception:  # noqa: BLE001 (each codec has errors of its own)
+        raise FileError(f"cannot be read: its slice {shown_name(path)} is damaged.") from None
+    image = image.squeeze() if image.ndim > 2 else image
+    if image.ndim != 2 or not image.size:
+        raise FileError(f"cannot be read: its slice {shown_name(path)} is no single grey image.")
+    return image.astype(voxel_type(image.dtype), copy=False)
+
+
+def _tiff(path: Path) -> NDArray[Any]:
+    import tifffile
+
+    pages = check_tiff(path)
+    if pages != 1:
+        raise FileError(f"has {pages:,} pages: it is a stack of its own.")
+    with tifffile.TiffFile(path, mode="r", is_ome=False, _multifile=False) as file:
+        page: Any = file.pages.first
+        if page.nbytes > LARGEST_SLICE:
+            raise FileError("is larger than 1 GiB.")
+        decoded: NDArray[Any] = page.asarray(maxworkers=1)
+    return decoded
+
+
+def _picture(path: Path) -> NDArray[Any]:
+    import imagecodecs
+
+    data = path.read_bytes()
+    if data.startswith(b"\x89PNG\r\n\x1a\n") and len(data) > 24:
+        edges = int.from_bytes(data[16:20], "big"), int.from_bytes(data[20:24], "big")
+        decode = imagecodecs.png_decode
+    elif data.startswith(b"BM") and len(data) > 26:
+        edges = int.from_bytes(data[18:22], "little"), abs(int.from_bytes(data[22:26], "little", signed=True))
+        decode = imagecodecs.bmp_decode
+    else:
+        raise FileError("is neither a PNG nor a BMP image.")
+    if not 0 < edges[0] * edges[1] <= LARGEST_SLICE // 8:
+        raise FileError(f"cannot have {edges[0]:,} × {edges[1]:,} pixels.")
+    decoded: NDArray[Any] = decode(data)
+    return decoded
+
+
+def _stated(path: Path) -> Any:
+    if path.suffix.lower() not in (".tif", ".tiff"):
+        return None, None, ()
+    import tifffile
+
+    with tifffile.TiffFile(path, mode="r", is_ome=False, _multifile=False) as file:
+        return stated_size(file)
+
+
+def _prepare() -> None:
+    import imagecodecs  # noqa: F401
+    import tifffile  # noqa: F401
+
+
+FORMAT = VolumeFormat("slices", "a folder of slices", (), lambda _head: False, open_slices, _prepare)

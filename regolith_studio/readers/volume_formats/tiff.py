@@ -1,0 +1,121 @@
+"""TIFF stacks: one file of many pages, as ImageJ, OME and scanners write them."""
+
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from regolith_studio.errors import FileError
+from regolith_studio.readers.plain_voxels import PlainVoxels
+from regolith_studio.readers.tiff_structure import check_tiff
+from regolith_studio.readers.tiff_voxel_size import stated_size
+from regolith_studio.readers.volume_format import (
+    OpenVolume,
+    VolumeFormat,
+    VoxelHeader,
+    shown_shape,
+    three_dimensions,
+    voxel_type,
+)
+
+_CHANNELS = re.compile(r"<Pixels\b[^>]*\bSize[CT]=\"(?!1\")(\d+)\"")
+
+
+class TiffPages:
+    """A stack whose pages are decoded one at a time."""
+
+    def __init__(self, file: Any, pages: list[Any], header: VoxelHeader) -> None:
+        self.header = header
+        self._file = file
+        self._pages = pages
+
+    def read(self, z0: int, z1: int) -> NDArray[Any]:
+        """Slices z0 to z1, shape (z1 - z0, ny, nx)."""
+        _, ny, nx = self.header.shape
+        out = np.empty((z1 - z0, ny, nx), self.header.dtype)
+        for place, page in enumerate(self._pages[z0:z1]):
+            out[place] = self._decoded(page, z0 + place).reshape(ny, nx)
+        return out
+
+    def _decoded(self, page: Any, number: int) -> NDArray[Any]:
+        try:
+            decoded: NDArray[Any] = page.asarray(maxworkers=1)
+        except MemoryError:
+            raise
+        except Exception:  # noqa: BLE001 (each codec has errors of its own)
+            raise FileError(f"is damaged: the pixels of page {number + 1:,} cannot be decoded.") from None
+        return decoded
+
+    def close(self) -> None:
+        """Let go of the file."""
+        self._file.close()
+
+
+def open_tiff(path: Path, _options: Mapping[str, Any]) -> OpenVolume:
+    """A stack of pages of one size and type.
+
+    Raises
+    ------
+    FileError
+        If the file is broken, holds colours, or its pages are no stack.
+    """
+    import tifffile
+
+    check_tiff(path)
+    file: Any = None
+    try:
+        file = tifffile.TiffFile(path, mode="r", is_ome=False, _multifile=False)
+        return _stack(path, file)
+    except Exception as error:
+        if file is not None:
+            file.close()
+        if isinstance(error, FileError | MemoryError):
+            raise
+        raise FileError("is a broken TIFF file; export it again.") from None
+
+
+def _stack(path: Path, file: Any) -> OpenVolume:
+    series = max(file.series, key=lambda each: each.size)
+    page = series.keyframe
+    _check_colours(series, page)
+    shape = three_dimensions(tuple(series.shape))
+    size, unit, notes = stated_size(file)
+    if len(file.series) > 1:
+        notes += (f"The file holds {len(file.series)} series of images; the largest was read.",)
+    header = VoxelHeader(shape, voxel_type(np.dtype(series.dtype)), size, unit, None, notes)
+    if series.dataoffset is not None:
+        file.close()
+        stored = np.dtype(series.dtype).newbyteorder(file.byteorder)
+        return PlainVoxels(path, int(series.dataoffset), header, stored)
+    pages = list(series.pages)
+    if len(pages) != shape[0] or any(each is None for each in pages):
+        raise FileError(
+            f"is no stack of slices: its {len(pages):,} pages do not make the shape {shown_shape(shape)}."
+        )
+    return TiffPages(file, pages, header)
+
+
+def _check_colours(series: Any, page: Any) -> None:
+    for axis, edge in zip(series.axes, series.shape, strict=True):
+        if axis in "SC" and edge > 1:
+            raise FileError(f"holds {edge} colours or channels; save one of them as greys.")
+    channels = _CHANNELS.search(page.description[:100_000])
+    if channels:
+        raise FileError(f"holds {channels[1]} channels or times; save one of them alone.")
+
+
+def _prepare() -> None:
+    import imagecodecs  # noqa: F401 (tifffile asks for it when it meets the first compressed page)
+    import tifffile  # noqa: F401
+
+
+def _recognises(head: bytes) -> bool:
+    return head[:4] in (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")
+
+
+FORMAT = VolumeFormat(
+    "tiff", "a TIFF stack", (".tif", ".tiff", ".btf", ".tf8"), _recognises, open_tiff, _prepare
+)

@@ -1,0 +1,144 @@
+"""The child's part of reading volumes: opens one at a time, keeps it open, hands over its slices."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from regolith_studio.errors import FileError
+from regolith_studio.readers.plain_voxels import PlainVoxels
+from regolith_studio.readers.protocol import Message
+from regolith_studio.readers.sentences import printable, sentence_about
+from regolith_studio.readers.volume_format import OpenVolume, VolumeFormat, checked_header
+from regolith_studio.readers.volume_formats import volume_formats, volume_suffixes
+
+_HEAD = 1024
+_opened: dict[str, tuple[OpenVolume, VolumeFormat]] = {}
+"""At most one volume, by the request that opened it."""
+
+
+def prepare_volume(request: dict[str, Any]) -> Message:
+    """Import what the format of the file needs; the only step that may take long on a small file."""
+    path = Path(request["path"])
+    try:
+        row, _ = volume_format_of(path)
+    except FileError as error:
+        raise FileError(sentence_about(path, str(error))) from None
+    row.prepare()
+    return Message({"format": row.key})
+
+
+def open_volume(request: dict[str, Any]) -> Message:
+    """The header of the volume that the request names, which stays open for `read_slices`."""
+    path = Path(request["path"])
+    try:
+        volume, row = _open_one(request)
+    except FileError as error:
+        raise FileError(sentence_about(path, str(error))) from None
+    return Message(_as_json(volume, row, volume_format_of(path)[1]))
+
+
+def read_slices(request: dict[str, Any]) -> Message:
+    """Slices ``request["z0"]`` to ``request["z1"]``, shape (z1 - z0, ny, nx)."""
+    path = Path(request["path"])
+    try:
+        volume, _ = _open_one(request)
+        z0, z1 = int(request["z0"]), int(request["z1"])
+        with np.errstate(all="ignore"):
+            voxels = checked_slices(volume, z0, z1)
+    except FileError as error:
+        raise FileError(sentence_about(path, str(error))) from None
+    return Message({}, (_little(voxels),))
+
+
+def checked_slices(volume: OpenVolume, z0: int, z1: int) -> NDArray[Any]:
+    """What the volume gives for the slices, if it is what its header promised.
+
+    Raises
+    ------
+    FileError
+        If the file holds something else.
+    """
+    voxels = volume.read(z0, z1)
+    header = volume.header
+    if voxels.shape != (z1 - z0, *header.shape[1:]) or voxels.dtype != header.dtype:
+        raise FileError("is damaged: its slices are not of the size and type that its header says.")
+    return voxels
+
+
+def opened_volume(path: Path, request: dict[str, Any]) -> tuple[OpenVolume, VolumeFormat]:
+    """An opened volume with a checked header, and the format that it came in.
+
+    Raises
+    ------
+    FileError
+        With the second half of a sentence.
+    """
+    row, _ = volume_format_of(path)
+    with np.errstate(all="ignore"):
+        volume = row.open(path, request)
+    checked_header(volume.header)
+    return volume, row
+
+
+def volume_format_of(path: Path) -> tuple[VolumeFormat, tuple[str, ...]]:
+    """The format of a file by its content where that is unmistakable, else by its suffix; and notes.
+
+    Raises
+    ------
+    FileError
+        If it is no volume format.
+    """
+    rows = volume_formats()
+    if path.is_dir():
+        return rows["slices"], ()
+    with path.open("rb") as file:
+        head = file.read(_HEAD)
+    if not head:
+        raise FileError("is empty: it has no bytes at all.")
+    name = path.name.lower()
+    named = next((row for row in rows.values() if name.endswith(row.suffixes)), None)
+    shown = next((row for row in rows.values() if row.recognises(head)), None)
+    if shown is not None and shown is not named:
+        return shown, (
+            f"The file is named {printable(path.suffix) or 'without a suffix'} but is {shown.label}.",
+        )
+    if named is not None:
+        return named, ()
+    raise FileError(
+        f"is no volume that is read here ({printable(path.suffix) or 'no suffix'}); volumes end in "
+        f"{', '.join(sorted(volume_suffixes()))}."
+    )
+
+
+def _open_one(request: dict[str, Any]) -> tuple[OpenVolume, VolumeFormat]:
+    key = repr([request.get(name) for name in ("path", "stamp", "dataset", "raw", "names")])
+    if key not in _opened:
+        for volume, _ in _opened.values():
+            volume.close()
+        _opened.clear()
+        _opened[key] = opened_volume(Path(request["path"]), request)
+    return _opened[key]
+
+
+def _as_json(volume: OpenVolume, row: VolumeFormat, notes: tuple[str, ...]) -> dict[str, Any]:
+    header = volume.header
+    return {
+        "format": row.key,
+        "label": row.label,
+        "shape": header.shape,
+        "dtype": header.dtype.str,
+        "voxel_size": header.voxel_size,
+        "unit": header.unit,
+        "kind": header.kind,
+        "notes": notes + header.notes,
+        "datasets": [(entry.name, entry.shape, entry.dtype) for entry in header.datasets],
+        "dataset": header.dataset,
+        "plain": volume.plain() if isinstance(volume, PlainVoxels) else None,
+        "in_order": bool(getattr(volume, "in_order", False)),
+    }
+
+
+def _little(voxels: NDArray[Any]) -> NDArray[Any]:
+    return voxels.astype(voxels.dtype.newbyteorder("<"), copy=False)

@@ -1,0 +1,291 @@
+"""Volumes of voxels on their way in: what a file holds, all of it, a part of it, or slab by slab."""
+
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from regolith_studio.errors import FileError, InputError
+from regolith_studio.imaging.volume import Volume, VolumeKind
+from regolith_studio.readers.guard import Guard
+from regolith_studio.readers.sentences import printable, sentence_about
+from regolith_studio.readers.slabs import OpenedFile, Progress, opened_file
+from regolith_studio.readers.volume_files import volume_files
+from regolith_studio.readers.volume_format import DatasetEntry, Shape, Sizes
+from regolith_studio.readers.volume_header import (
+    RawLayout,
+    VolumeHeader,
+    VoxelSize,
+    voxel_size_in_micrometres,
+)
+from regolith_studio.readers.volume_kind import kind_of
+
+__all__ = [
+    "Bounds",
+    "RawLayout",
+    "SlabSource",
+    "VolumeHeader",
+    "datasets_in",
+    "describe_volume",
+    "guess_kind",
+    "open_slabs",
+    "read_volume",
+    "volume_files",
+]
+
+Bounds = tuple[tuple[int, int], tuple[int, int], tuple[int, int]]
+"""First voxel and the one after the last, along x, y and z."""
+
+SHARE_OF_MEMORY = 0.5
+"""A volume that takes more of the machine's memory is read in slabs only."""
+_SAMPLES, _SAMPLE_BYTES = (0.5, 0.3, 0.7), 32 * 1024**2
+
+
+@dataclass(frozen=True)
+class SlabSource:
+    """A volume of any size, read a few slices at a time; indexed [x, y, z] as `Volume` is.
+
+    Parameters
+    ----------
+    shape
+        Voxels along x, y and z.
+    dtype
+        Type of a voxel.
+    voxel_size
+        Edges along x, y and z in micrometres.
+    kind
+        ``labels`` or ``grey``.
+    name
+        As the user knows the volume.
+    notes
+        Sentences that a user should read.
+    """
+
+    shape: Shape
+    dtype: np.dtype[Any]
+    voxel_size: Sizes
+    kind: VolumeKind
+    name: str
+    notes: tuple[str, ...]
+    _file: OpenedFile
+
+    def read(self, z0: int, z1: int) -> NDArray[Any]:
+        """Slices z0 to z1, shape (nx, ny, z1 - z0), in Fortran's order.
+
+        Raises
+        ------
+        FileError
+            If the file is damaged there.
+        """
+        if not 0 <= z0 < z1 <= self.shape[2]:
+            raise ValueError(f"slices {z0} to {z1} are not within 0 to {self.shape[2]}")
+        voxels = self._file.read(z0, z1)
+        if self.kind == "labels" and voxels.dtype.kind == "f":
+            voxels = _whole_numbers(self._file.path, voxels)
+        return voxels.T
+
+    def slabs(self, depth: int, overlap: int = 0) -> Iterator[tuple[int, NDArray[Any]]]:
+        """The volume from below: the first slice's index, and up to `depth` + `overlap` slices.
+
+        Each slab begins `depth` slices after the one before; with an overlap it holds the first
+        slices of the next one too.
+        """
+        for z0 in range(0, self.shape[2], depth):
+            yield z0, self.read(z0, min(z0 + depth + overlap, self.shape[2]))
+
+
+def describe_volume(
+    path: str | Path, *, dataset: str | None = None, raw: RawLayout | None = None, guard: Guard | None = None
+) -> VolumeHeader:
+    """What a volume's file says about itself; at most a few slices are decoded.
+
+    Parameters
+    ----------
+    path
+        TIFF stack, folder of slices, NRRD, MetaImage, NIfTI, HDF5, NPY or raw.
+    dataset
+        Which volume of a file that holds several; by default the likeliest.
+    raw
+        What a raw file does not say itself.
+    guard
+        The child process that parses the file; by default the one of this process for volumes.
+
+    Raises
+    ------
+    FileError
+        With one sentence if the file cannot be read.
+    """
+    file = opened_file(Path(path), dataset, raw, guard)
+    size, unit = file.stated_size
+    nz, ny, nx = file.shape
+    return VolumeHeader(
+        path=file.path,
+        format=str(file.answer["format"]),
+        shape=(nx, ny, nz),
+        dtype=file.dtype,
+        voxel_size=size,
+        unit=unit,
+        kind=file.stated_kind or _guessed(file),
+        datasets=file.datasets,
+        dataset=file.answer["dataset"],
+        bytes=file.nbytes,
+        notes=file.notes,
+    )
+
+
+def read_volume(
+    path: str | Path,
+    *,
+    dataset: str | None = None,
+    voxel_size: VoxelSize | None = None,
+    unit: str | None = None,
+    kind: VolumeKind | None = None,
+    bounds: Bounds | None = None,
+    raw: RawLayout | None = None,
+    guard: Guard | None = None,
+    on_progress: Progress | None = None,
+) -> Volume:
+    """The voxels of a volume, or of a box in it, in memory.
+
+    Parameters
+    ----------
+    path, dataset, raw, guard
+        As for `describe_volume`.
+    voxel_size
+        One edge, or three along x, y and z, in `unit` (micrometres without one); by default what
+        the file says.
+    unit
+        Unit of `voxel_size`, or of the file's own numbers; ``voxel:SIZE`` gives both.
+    kind
+        ``labels`` or ``grey``; by default guessed.
+    bounds
+        The box of voxels to read.
+    on_progress
+        Told after each slab how many slices are read; it may raise to stop.
+
+    Raises
+    ------
+    FileError
+        With one sentence if the file cannot be read or is too large for the memory.
+    InputError
+        If nobody says how large a voxel is, or the box lies outside the volume.
+    """
+    file = opened_file(Path(path), dataset, raw, guard)
+    edges = voxel_size_in_micrometres(file.path, file.stated_size, voxel_size, unit)
+    box = _checked_bounds(file, bounds)
+    _check_memory(file, box)
+    kind = kind or file.stated_kind or _guessed(file)
+    array = _read_box(file, box, on_progress)
+    if kind == "labels" and array.dtype.kind == "f":
+        array = _whole_numbers(file.path, array)
+    return Volume(array.T, np.array(edges), kind, _name_of(file))
+
+
+def open_slabs(
+    path: str | Path,
+    *,
+    dataset: str | None = None,
+    voxel_size: VoxelSize | None = None,
+    unit: str | None = None,
+    kind: VolumeKind | None = None,
+    raw: RawLayout | None = None,
+    guard: Guard | None = None,
+) -> SlabSource:
+    """A volume that is read slab by slab and so may be larger than the memory.
+
+    Parameters and errors are those of `read_volume`.
+    """
+    file = opened_file(Path(path), dataset, raw, guard)
+    edges = voxel_size_in_micrometres(file.path, file.stated_size, voxel_size, unit)
+    nz, ny, nx = file.shape
+    kind = kind or file.stated_kind or _guessed(file)
+    dtype = np.dtype(np.int64) if kind == "labels" and file.dtype.kind == "f" else file.dtype
+    return SlabSource((nx, ny, nz), dtype, edges, kind, _name_of(file), file.notes, file)
+
+
+def datasets_in(path: str | Path, *, guard: Guard | None = None) -> tuple[DatasetEntry, ...]:
+    """The volumes in a file that can hold several (HDF5); empty for the other formats.
+
+    Raises
+    ------
+    FileError
+        With one sentence if the file cannot be read.
+    """
+    return opened_file(Path(path), guard=guard).datasets
+
+
+def guess_kind(volume: Volume | NDArray[Any]) -> VolumeKind:
+    """``labels`` or ``grey``, judged by three slices of a volume indexed [x, y, z]."""
+    array = volume.array if isinstance(volume, Volume) else volume
+    places = sorted({int(share * array.shape[2]) for share in _SAMPLES})
+    return kind_of(np.ascontiguousarray(array[:, :, places].T))
+
+
+def _guessed(file: OpenedFile) -> VolumeKind:
+    """The kind, judged by slices from the middle, or from what comes first where that is quicker."""
+    depth = file.shape[0]
+    if file.answer["in_order"]:
+        depth = min(depth, max(1, 4 * _SAMPLE_BYTES // file.slice_bytes))
+    n_samples = max(1, min(len(_SAMPLES), _SAMPLE_BYTES // file.slice_bytes))
+    places = sorted({int(share * depth) for share in _SAMPLES[:n_samples]})
+    return kind_of(np.concatenate([file.read(place, place + 1) for place in places]))
+
+
+def _checked_bounds(file: OpenedFile, bounds: Bounds | None) -> Bounds:
+    """The box in the order of the file: slices, rows, columns."""
+    if bounds is None:
+        nz, ny, nx = file.shape
+        return (0, nz), (0, ny), (0, nx)
+    edges = file.shape[::-1]
+    if len(bounds) != 3 or any(not 0 <= a < b <= n for (a, b), n in zip(bounds, edges, strict=False)):
+        raise InputError(f"The box {bounds} does not lie within the {edges} voxels of {file.path.name}.")
+    return bounds[2], bounds[1], bounds[0]
+
+
+def _check_memory(file: OpenedFile, box: Bounds) -> None:
+    voxels = 1
+    for first, last in box:
+        voxels *= last - first
+    size = voxels * file.dtype.itemsize
+    limit = _memory() * SHARE_OF_MEMORY
+    if size > limit:
+        raise FileError(
+            sentence_about(
+                file.path,
+                f"has {size / 1024**3:.3g} GiB of voxels, more than half of this machine's memory; "
+                "choose a part of it, or have it read in slabs.",
+            )
+        )
+
+
+def _memory() -> float:
+    try:
+        return float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
+    except (AttributeError, ValueError, OSError):
+        return 8.0 * 1024**3
+
+
+def _read_box(file: OpenedFile, box: Bounds, on_progress: Progress | None) -> NDArray[Any]:
+    (z0, z1), (y0, y1), (x0, x1) = box
+    out = np.empty((z1 - z0, y1 - y0, x1 - x0), file.dtype)
+    for start, end in file.pieces(z0, z1):
+        out[start - z0 : end - z0] = file.read(start, end)[:, y0:y1, x0:x1]
+        if on_progress is not None:
+            on_progress(end - z0, z1 - z0)
+    return out
+
+
+def _whole_numbers(path: Path, array: NDArray[Any]) -> NDArray[Any]:
+    """Labels that a file holds as floats."""
+    if not np.isfinite(array).all() or (array != np.floor(array)).any():
+        raise FileError(sentence_about(path, "holds numbers with fractions; labels are whole numbers."))
+    return array.astype(np.int64)
+
+
+def _name_of(file: OpenedFile) -> str:
+    dataset = file.answer["dataset"]
+    return printable(f"{file.path.name}/{dataset}" if dataset else file.path.name)
