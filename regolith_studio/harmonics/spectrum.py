@@ -6,7 +6,7 @@ from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.stats import chi2
+from scipy.special import chdtri
 
 from regolith_studio.geometry.arrays import FloatArray, locked_floats
 
@@ -80,6 +80,6 @@ def with_gaussian_band(spectrum: PowerSpectrum, confidence: float = 0.95) -> Pow
     """
     freedom = 2 * np.arange(spectrum.l_max + 1) + 1
     tail = (1 - confidence) / 2
-    low = spectrum.values * freedom / chi2.ppf(1 - tail, freedom)
-    high = spectrum.values * freedom / chi2.ppf(tail, freedom)
+    low = spectrum.values * freedom / chdtri(freedom, tail)
+    high = spectrum.values * freedom / chdtri(freedom, 1 - tail)
     return PowerSpectrum(spectrum.values, spectrum.mean_radius, low, high)
