@@ -111,13 +111,13 @@ def build_dataset(
     """
     if not entries:
         raise InputError("A dataset needs at least one particle.")
-    own = [_own_class(particle) for particle, _ in entries] if classes is None else list(classes)
+    own = [own_class(particle) for particle, _ in entries] if classes is None else list(classes)
     if len(own) != len(entries):
         raise InputError(f"{len(entries)} particles need as many classes, got {len(own)}.")
     weights = normalised_shares([one.weight for one in own])
     names = unique_names(particle.name for particle, _ in entries)
     representatives = tuple(
-        _representative(title, particle, shape, replace(one, weight=weight, sizes=sizes or one.sizes))
+        representative_of(title, particle, shape, replace(one, weight=weight, sizes=sizes or one.sizes))
         for title, (particle, shape), one, weight in zip(names, entries, own, weights, strict=True)
     )
     story = provenance or Provenance()
@@ -154,13 +154,15 @@ def unique_names(names: Iterable[str]) -> tuple[str, ...]:
     return tuple(result)
 
 
-def _own_class(particle: Particle) -> ShapeClass:
+def own_class(particle: Particle) -> ShapeClass:
+    """The class of a particle that stands for itself."""
     return ShapeClass(1.0, DiscreteSizes.empirical([equivalent_diameter(particle.mesh.volume)]))
 
 
-def _representative(
+def representative_of(
     name: str, particle: Particle, coarsened: CoarsenedShape, own: ShapeClass
 ) -> Representative:
+    """The representative of a class, aligned and at unit volume."""
     shape, frame = aligned(coarsened.polyhedron, coarsened.centre)
     fidelity = Fidelity(
         method=coarsened.method,

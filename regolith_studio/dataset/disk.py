@@ -14,7 +14,7 @@ import shutil
 import sys
 import time
 import uuid
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import cache
 from pathlib import Path
 
@@ -25,8 +25,14 @@ LEFTOVER_AGE = 3600.0
 """Seconds after which what an interrupted write has left is taken for dead and removed."""
 
 
-def replace_folder(target: Path, files: Mapping[str, bytes]) -> None:
+Content = bytes | Iterable[bytes]
+"""Of a file: whole, or piece by piece."""
+
+
+def replace_folder(target: Path, files: Mapping[str, Content] | Iterable[tuple[str, Content]]) -> None:
     """Make `target` hold exactly `files` (relative POSIX paths), in one step.
+
+    Files may come one by one, as pairs, so that they are never in memory together.
 
     Raises
     ------
@@ -74,13 +80,14 @@ def remove_quietly(folder: Path) -> None:
         shutil.rmtree(folder, ignore_errors=True)
 
 
-def write_file(path: Path, content: bytes) -> None:
+def write_file(path: Path, content: Content) -> None:
     """Write a new file and bring it to the disk."""
     handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o666)
     try:
-        rest = memoryview(content)
-        while rest:
-            rest = rest[os.write(handle, rest) :]
+        for piece in (content,) if isinstance(content, bytes) else content:
+            rest = memoryview(piece)
+            while rest:
+                rest = rest[os.write(handle, rest) :]
         os.fsync(handle)
     finally:
         os.close(handle)
@@ -97,10 +104,10 @@ def sync_folder(folder: Path) -> None:
         os.close(handle)
 
 
-def _fill(folder: Path, files: Mapping[str, bytes]) -> None:
+def _fill(folder: Path, files: Mapping[str, Content] | Iterable[tuple[str, Content]]) -> None:
     os.mkdir(folder)  # noqa: PTH102
     folders = {folder}
-    for name, content in files.items():
+    for name, content in files.items() if isinstance(files, Mapping) else files:
         path = folder.joinpath(*name.split("/"))
         if path.parent not in folders:
             os.mkdir(path.parent)  # noqa: PTH102

@@ -15,6 +15,7 @@ from regolith_studio.dataset.dataset import (
     Representative,
 )
 from regolith_studio.dataset.schema import FORMAT, SCHEMA_VERSION, DatasetDocument, RepresentativeRecord
+from regolith_studio.dataset.size_distribution import Weighting
 from regolith_studio.dataset.strict_json import strict_json, tidy_json
 from regolith_studio.errors import DatasetError, RegolithError
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
@@ -25,13 +26,24 @@ from regolith_studio.imaging.stl import stl_bytes
 
 def mesh_files(dataset: Dataset) -> dict[str, bytes]:
     """Relative path and content of the STL file of each representative, in order."""
-    digits = max(4, len(str(len(dataset) - 1)))
     return {
-        f"meshes/particle_{index:0{digits}d}.stl": stl_bytes(
-            representative.shape.mesh, f"regolith-studio unit-volume shape {index:0{digits}d}"
-        )
+        mesh_path(index, len(dataset)): stl_bytes(representative.shape.mesh, mesh_header(index, len(dataset)))
         for index, representative in enumerate(dataset.representatives)
     }
+
+
+def mesh_path(index: int, count: int) -> str:
+    """Relative path of the STL file of one of `count` representatives."""
+    return f"meshes/particle_{_numbered(index, count)}.stl"
+
+
+def mesh_header(index: int, count: int) -> str:
+    """Header of that file."""
+    return f"regolith-studio unit-volume shape {_numbered(index, count)}"
+
+
+def _numbered(index: int, count: int) -> str:
+    return f"{index:0{max(4, len(str(count - 1)))}d}"
 
 
 def document_text(dataset: Dataset, files: dict[str, bytes]) -> str:
@@ -43,27 +55,31 @@ def document_text(dataset: Dataset, files: dict[str, bytes]) -> str:
         If the dataset holds what the schema forbids, such as an error that is not finite.
     """
     records = [
-        _record(representative, file, content)
+        record_of(representative, file, content)
         for representative, (file, content) in zip(dataset.representatives, files.items(), strict=True)
     ]
-    content = {
-        "format": FORMAT,
-        "schema_version": SCHEMA_VERSION,
-        "name": dataset.name,
-        "length_unit": "um",
-        "shape_unit": "unit volume",
-        "size_measure": "equivalent diameter",
-        "vertical_axis": "z",
-        "weighting": dataset.weighting,
-        "representatives": records,
-        "metadata": _metadata(dataset.provenance),
-    }
+    content = frame_of(dataset.name, dataset.weighting, dataset.provenance) | {"representatives": records}
     try:
         text = tidy_json(content)
     except ValueError as error:
         raise DatasetError(f"The dataset cannot be written: {error}.") from error
     parsed_document(text, "The new dataset.json")
     return text
+
+
+def frame_of(name: str, weighting: Weighting, provenance: Provenance) -> dict[str, Any]:
+    """Everything in a ``dataset.json`` but the representatives."""
+    return {
+        "format": FORMAT,
+        "schema_version": SCHEMA_VERSION,
+        "name": name,
+        "length_unit": "um",
+        "shape_unit": "unit volume",
+        "size_measure": "equivalent diameter",
+        "vertical_axis": "z",
+        "weighting": weighting,
+        "metadata": _metadata(provenance),
+    }
 
 
 def parsed_document(text: str, where: str) -> DatasetDocument:
@@ -145,7 +161,8 @@ def _provenance(document: DatasetDocument) -> Provenance:
     )
 
 
-def _record(representative: Representative, file: str, content: bytes) -> dict[str, Any]:
+def record_of(representative: Representative, file: str, content: bytes) -> dict[str, Any]:
+    """What ``dataset.json`` says of one representative, whose STL file is `file` and holds `content`."""
     shape, frame = representative.shape, representative.frame
     fidelity, source = representative.fidelity, representative.source
     return {

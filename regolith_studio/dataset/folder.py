@@ -38,7 +38,7 @@ def write_dataset(folder: Path | str, dataset: Dataset, *, overwrite: bool = Tru
     files = dataset_files(dataset)
     try:
         recovered(target)
-        _check_replaceable(target, overwrite)
+        check_replaceable(target, overwrite)
         replace_folder(target, files)
     except OSError as error:
         reason = error.strerror or str(error)
@@ -69,7 +69,14 @@ def read_dataset(folder: Path | str) -> Dataset:
     return dataset_of(document, str(target / DOCUMENT))
 
 
-def _check_replaceable(target: Path, overwrite: bool) -> None:
+def check_replaceable(target: Path, overwrite: bool) -> None:
+    """Refuse a folder that holds anything else than a dataset, or one that may not be replaced.
+
+    Raises
+    ------
+    DatasetError
+        Saying what stands there.
+    """
     if not target.exists():
         return
     if not target.is_dir():

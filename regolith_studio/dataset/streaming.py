@@ -1,0 +1,157 @@
+"""A dataset of any size, written representative by representative: the same bytes as written at once.
+
+Each particle is first reduced to a :class:`StoredShape`, wherever and whenever that suits; the folder is
+then put together from them, with one in memory at a time.
+"""
+
+import hashlib
+import json
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from regolith_studio.dataset.build import (
+    CoarsenedShape,
+    own_class,
+    representative_of,
+    software_versions,
+)
+from regolith_studio.dataset.dataset import Provenance, Representative
+from regolith_studio.dataset.disk import recovered, replace_folder
+from regolith_studio.dataset.document import frame_of, mesh_header, mesh_path, parsed_document, record_of
+from regolith_studio.dataset.folder import check_replaceable
+from regolith_studio.dataset.reading import DOCUMENT, LARGEST_DOCUMENT, README
+from regolith_studio.dataset.readme_text import README as README_TEXT
+from regolith_studio.dataset.schema import RepresentativeRecord
+from regolith_studio.dataset.size_distribution import normalised_shares
+from regolith_studio.dataset.strict_json import tidy_json
+from regolith_studio.errors import DatasetError
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.imaging.stl import stl_bytes
+
+_HEADER = 80
+_PLACE = "representatives"
+
+
+@dataclass(frozen=True)
+class StoredShape:
+    """One particle that stands for itself, as it will lie in a dataset.
+
+    Parameters
+    ----------
+    record
+        What ``dataset.json`` will say; weight, file and hash are filled in later.
+    mesh
+        Binary STL of the shape.
+    """
+
+    record: Mapping[str, Any]
+    mesh: bytes
+
+
+def stored_shape(particle: Particle, coarsened: CoarsenedShape) -> StoredShape:
+    """The shape that stands for `particle`, aligned and at unit volume."""
+    representative: Representative = representative_of(
+        particle.name, particle, coarsened, own_class(particle)
+    )
+    mesh = stl_bytes(representative.shape.mesh, mesh_header(0, 1))
+    return StoredShape(record_of(representative, mesh_path(0, 1), mesh), mesh)
+
+
+def write_stored(
+    folder: Path | str,
+    shapes: Callable[[], Iterable[StoredShape]],
+    count: int,
+    *,
+    name: str,
+    provenance: Provenance,
+    overwrite: bool = True,
+) -> Path:
+    """Write a dataset in which each of `count` shapes has the same weight, as ``write_dataset`` would.
+
+    Parameters
+    ----------
+    shapes
+        Gives all shapes in order, each time anew; their names all differ.
+
+    Raises
+    ------
+    DatasetError
+        If there is no shape, one breaks the schema, the folder holds anything else than a dataset, or
+        something cannot be written.
+    """
+    if count < 1:
+        raise DatasetError("A dataset needs at least one particle.")
+    target = Path(folder).resolve()
+    story = provenance if provenance.software else _with_software(provenance)
+    try:
+        recovered(target)
+        check_replaceable(target, overwrite)
+        replace_folder(target, _files(shapes, count, name, story))
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise DatasetError(f"The dataset could not be written to {target}: {reason}.") from error
+    return target
+
+
+def _files(
+    shapes: Callable[[], Iterable[StoredShape]], count: int, name: str, provenance: Provenance
+) -> Iterator[tuple[str, bytes | Iterable[bytes]]]:
+    digests: list[str] = []
+    for index, shape in enumerate(shapes()):
+        content = mesh_header(index, count).encode("ascii").ljust(_HEADER) + shape.mesh[_HEADER:]
+        digests.append(hashlib.sha256(content).hexdigest())
+        yield mesh_path(index, count), content
+    records = _records(shapes(), digests)
+    yield DOCUMENT, _document(records, name, provenance)
+    yield README, README_TEXT.format(name=name, count=count, counted="particles").encode("utf-8")
+
+
+def _records(shapes: Iterable[StoredShape], digests: list[str]) -> Iterator[dict[str, Any]]:
+    """Checked records with weight, file and hash."""
+    count = len(digests)
+    weights = normalised_shares([1.0] * count)
+    for index, shape in enumerate(shapes):
+        mesh = {**shape.record["mesh"], "file": mesh_path(index, count), "sha256": digests[index]}
+        record = {**shape.record, "weight": weights[index], "mesh": mesh}
+        try:
+            RepresentativeRecord.model_validate_json(json.dumps(record))
+        except ValidationError as error:
+            first = error.errors(include_url=False)[0]
+            place = ".".join(map(str, first["loc"]))
+            raise DatasetError(
+                f"The dataset cannot be written: {record['name']}, {place}: {first['msg']}."
+            ) from error
+        yield record
+
+
+def _document(records: Iterable[dict[str, Any]], name: str, provenance: Provenance) -> Iterator[bytes]:
+    """``dataset.json`` piece by piece; the frame is checked with the first record in it."""
+    frame = frame_of(name, "number", provenance)
+    try:
+        before, after = tidy_json(frame | {_PLACE: ""}).split(f'\n  "{_PLACE}": ""')
+    except ValueError as error:
+        raise DatasetError(f"The dataset cannot be written: {error}.") from error
+    yield f'{before}\n  "{_PLACE}": ['.encode()
+    size = 0
+    for index, record in enumerate(records):
+        if index == 0:
+            alone = frame | {_PLACE: [{**record, "weight": 1.0}]}
+            parsed_document(tidy_json(alone), "The new dataset.json")
+        text = tidy_json(record).rstrip("\n").replace("\n", "\n    ")
+        piece = f"{',' if index else ''}\n    {text}".encode()
+        size += len(piece)
+        if size > LARGEST_DOCUMENT:
+            raise DatasetError(
+                f"A dataset of more than {index:,} such particles is larger than can be read again; make "
+                "several, or choose representatives."
+            )
+        yield piece
+    yield f"\n  ]{after}".encode()
+
+
+def _with_software(provenance: Provenance) -> Provenance:
+    return replace(provenance, software=software_versions())
