@@ -23,6 +23,8 @@ def test_that_a_fit_holds_the_mean_radius_of_a_ball(command, tmp_path: Path) -> 
     assert coefficients.shape == (1, 49)
     assert coefficients[0, 0] / np.sqrt(4 * np.pi) == pytest.approx(25.0, rel=2e-3)
     assert document["particles"][0]["mean_radius"] == pytest.approx(25.0, rel=2e-3)
+    assert document["particles"][0]["deviation_by_scale"].keys() == {"form", "roundness", "roughness"}
+    assert document["particles"][0]["deviation_by_scale"]["form"] < 1e-3
     assert len(document["spectrum"]["values"]) == 7
     assert "orthonormal" in document["convention"]
 

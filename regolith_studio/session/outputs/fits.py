@@ -13,7 +13,7 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics import files
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.sample_spectrum import sample_spectrum
-from regolith_studio.harmonics.spectrum import PowerSpectrum
+from regolith_studio.harmonics.spectrum import PowerSpectrum, roughness_split
 from regolith_studio.harmonics.surface import reconstruct
 from regolith_studio.imaging.stl import stl_bytes
 from regolith_studio.session.outputs.staging import json_bytes, write_bytes
@@ -81,7 +81,9 @@ def fits_document(sample: FittedSample) -> dict[str, Any]:
     for entry, particle, fit in zip(document["particles"], sample.particles, sample.fits, strict=True):
         entry["group"] = particle.group
         entry["sha256"] = particle.source.sha256 if particle.source else None
-        entry["power_spectrum"] = fit.coefficients.power_spectrum().values.tolist()
+        spectrum = fit.coefficients.power_spectrum()
+        entry["power_spectrum"] = spectrum.values.tolist()
+        entry["deviation_by_scale"] = roughness_split(spectrum)
         entry["notes"] = list(particle.notes)
     document["spectrum"] = _spectrum(sample.spectrum)
     document["failed"] = [{"name": name, "reason": sentence} for name, sentence in sample.failed]
