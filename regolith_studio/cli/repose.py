@@ -1,0 +1,121 @@
+"""``repose``: the angle of repose of simulated or imported particles (sections 2.6 and 3.3)."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from regolith_studio.cli.options import Json, Settings, as_bad_use, values
+
+if TYPE_CHECKING:
+    from regolith_studio.dem.evaluation.settings import EvaluationSettings
+
+app = typer.Typer(
+    help="The angle of repose: simulate a lifting cylinder, measure a pile.",
+    no_args_is_help=True,
+    rich_markup_mode=None,
+)
+Figures = Annotated[
+    Path | None, typer.Option("--output", "-o", help="Folder for the JSON and Fig. 9.", metavar="DIR")
+]
+PositionUnit = Annotated[
+    str, typer.Option("--unit", help="Length unit of files that have none: m mm um cm nm.", metavar="U")
+]
+Diameter = Annotated[
+    float, typer.Option("--diameter", help="Of all particles, where the file has none.", metavar="D")
+]
+
+
+@app.command("measure")
+def measure(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="Particle positions at rest.")],
+    output: Figures = None,
+    set_: Settings = None,
+    diameter: Diameter = 0.0,
+    unit: PositionUnit = "m",
+    json: Json = False,
+) -> None:
+    """Measure the angle of repose of a pile: both sections and both models of the paper."""
+    from regolith_studio.cli.terminal import complain, print_json
+    from regolith_studio.dem.repose import measure_repose, measurement_document
+
+    settings = evaluation_settings(set_)
+    points, diameters = read_positions(file, unit, diameter)
+    measurement = measure_repose(points, diameters, settings)
+    document = {"file": str(file), "length_unit": "m"} | measurement_document(measurement)
+    if output is not None:
+        from regolith_studio.session.outputs.staging import json_bytes, staged_folder
+        from regolith_studio.studies.repose_figures import write_section_figure
+
+        with staged_folder(output) as stage:
+            (stage / "repose.json").write_bytes(json_bytes(document))
+            write_section_figure(points, diameters, measurement, stage)
+    complain(measurement.warnings)
+    if json:
+        print_json(document)
+    else:
+        typer.echo(in_words(document))
+
+
+def evaluation_settings(entries: list[str] | None) -> "EvaluationSettings":
+    """Settings of the evaluation from KEY=VALUE entries; a wrong one is bad use."""
+    from regolith_studio.dem.evaluation.settings import EvaluationSettings
+
+    found: EvaluationSettings = filled(EvaluationSettings, values(entries, "setting"), "evaluation setting")
+    return found
+
+
+def filled(kind: type[Any], given: dict[str, Any], what: str) -> Any:
+    """A settings dataclass with the given values; an unknown name or a bad value is bad use."""
+    import dataclasses
+
+    known = {each.name: each for each in dataclasses.fields(kind)}
+    for name, value in given.items():
+        if name not in known:
+            raise typer.BadParameter(f"There is no {what} {name!r}; there are {', '.join(known)}.")
+        default = known[name].default
+        if isinstance(default, float) and isinstance(value, int) and not isinstance(value, bool):
+            given[name] = float(value)
+        elif not isinstance(given[name], type(default)):
+            raise typer.BadParameter(f"The {what} {name} must be like {default!r}, got {value!r}.")
+    with as_bad_use():
+        return kind(**given)
+
+
+def read_positions(file: Path, unit: str, diameter: float) -> tuple[Any, Any]:
+    """Points (n, 3) and diameters (n,) in metres.
+
+    Raises
+    ------
+    FileError
+        If the file holds no positions, or no diameters and none is given.
+    """
+    from regolith_studio.dem.pile import read_pile
+    from regolith_studio.errors import FileError
+
+    if file.suffix.lower() != ".npz":
+        raise FileError(f"{file.name} is no result of this program (.npz).")
+    del unit, diameter
+    pile = read_pile(file)
+    return pile.points, pile.diameters
+
+
+def in_words(document: dict[str, Any]) -> str:
+    """The measurement in a few lines for a person."""
+    paper = document["paper_sections"]
+    low, high = document["interval_deg"]
+    lines = [
+        f"angle of repose      {document['angle_deg']:.1f} deg ({low:.1f} to {high:.1f}, "
+        f"{100 * document['settings']['confidence']:g} % interval, {len(document['sections'])} sections)"
+    ]
+    for section in document["sections"][:2]:
+        two = section["asymmetric"]
+        lines.append(
+            f"section {section['plane']}          left {two['left_deg']:.1f}  right {two['right_deg']:.1f}  "
+            f"symmetric {section['symmetric']['angle_deg']:.1f}"
+        )
+    lines.append(
+        f"the paper's sections asymmetric {paper['asymmetric']['mean_deg']:.1f}  "
+        f"symmetric {paper['symmetric']['mean_deg']:.1f}"
+    )
+    return "\n".join(lines)

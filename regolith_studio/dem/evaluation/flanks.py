@@ -1,0 +1,176 @@
+"""The two triangles of section 3.3, fitted to surface points by least squares."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+
+from regolith_studio.geometry.arrays import FloatArray
+
+
+@dataclass(frozen=True)
+class Line:
+    """z = slope u + intercept."""
+
+    slope: float
+    intercept: float
+
+    @property
+    def angle(self) -> float:
+        """arctan |slope| in degrees."""
+        return float(np.degrees(np.arctan(abs(self.slope))))
+
+
+@dataclass(frozen=True)
+class AsymmetricFit:
+    """Two independent lines.
+
+    Parameters
+    ----------
+    left, right
+        The flanks.
+    break_point
+        Where the points are divided: half-way between the last of the left and the first of the right.
+    apex
+        (u, z) where the lines meet.
+    r_squared
+        Share of the points' variance that the two lines explain.
+    """
+
+    left: Line
+    right: Line
+    break_point: float
+    apex: tuple[float, float]
+    r_squared: float
+
+    @property
+    def angle(self) -> float:
+        """Mean of the two flanks' angles, in degrees."""
+        return (self.left.angle + self.right.angle) / 2
+
+
+@dataclass(frozen=True)
+class SymmetricFit:
+    """z = apex_z - slope |u - apex_u|: one angle for both flanks.
+
+    Parameters
+    ----------
+    slope
+        Positive for a pile.
+    apex
+        (u, z).
+    r_squared
+        Share of the points' variance that is explained.
+    """
+
+    slope: float
+    apex: tuple[float, float]
+    r_squared: float
+
+    @property
+    def angle(self) -> float:
+        """arctan |slope| in degrees."""
+        return float(np.degrees(np.arctan(abs(self.slope))))
+
+
+def fit_asymmetric(u: FloatArray, z: FloatArray, min_points: int) -> AsymmetricFit | None:
+    """Two lines with the break point at the least sum of squared residuals, tried exhaustively.
+
+    Parameters
+    ----------
+    u, z
+        Surface points with ascending u, shape (m,).
+    min_points
+        Points that each flank keeps.
+
+    Returns
+    -------
+    AsymmetricFit
+        ``None`` where the points are too few or the lines do not rise and fall.
+    """
+    breaks = np.arange(min_points, len(u) - min_points + 1)
+    if not len(breaks):
+        return None
+    forward, backward = _running_lines(u, z), _running_lines(u[::-1], z[::-1])
+    losses = forward.losses[breaks - 1] + backward.losses[len(u) - breaks - 1]
+    best = int(breaks[losses.argmin()])
+    left, right = forward.line(best - 1), backward.line(len(u) - best - 1)
+    if left.slope <= 0.0 or right.slope >= 0.0:
+        return None
+    meeting = (right.intercept - left.intercept) / (left.slope - right.slope)
+    return AsymmetricFit(
+        left=left,
+        right=right,
+        break_point=float(u[best - 1] + u[best]) / 2,
+        apex=(float(meeting), float(left.slope * meeting + left.intercept)),
+        r_squared=_explained(float(losses.min()), z),
+    )
+
+
+def fit_symmetric(u: FloatArray, z: FloatArray, min_points: int) -> SymmetricFit | None:
+    """One angle for both flanks, the apex position varied to minimise the residual.
+
+    Returns
+    -------
+    SymmetricFit
+        ``None`` where the points are too few or form no roof.
+    """
+    if len(u) < 2 * min_points:
+        return None
+    candidates = np.linspace(u[min_points - 1], u[-min_points], 64)
+    losses = [_roof(place, u, z)[0] for place in candidates]
+    best = int(np.argmin(losses))
+    step = candidates[1] - candidates[0]
+    if step <= 0.0:
+        return None
+    refined = minimize_scalar(
+        lambda place: _roof(place, u, z)[0],
+        bounds=(candidates[best] - step, candidates[best] + step),
+        method="bounded",
+        options={"xatol": 1e-6 * float(step)},
+    )
+    place = float(refined.x)
+    loss, slope, height = _roof(place, u, z)
+    if slope <= 0.0:
+        return None
+    return SymmetricFit(slope, (place, height), _explained(loss, z))
+
+
+@dataclass(frozen=True, eq=False)
+class _Running:
+    """Regressions over the first k + 1 points for every k."""
+
+    losses: FloatArray
+    slopes: FloatArray
+    intercepts: FloatArray
+
+    def line(self, k: int) -> Line:
+        return Line(float(self.slopes[k]), float(self.intercepts[k]))
+
+
+def _running_lines(u: FloatArray, z: FloatArray) -> _Running:
+    """Least-squares lines through the first 1, 2, ... points, from running sums about the mean."""
+    shift_u, shift_z = u.mean(), z.mean()
+    x, y = u - shift_u, z - shift_z
+    n = np.arange(1, len(u) + 1)
+    sx, sy = np.cumsum(x), np.cumsum(y)
+    sxx = np.cumsum(x * x) - sx**2 / n
+    sxy = np.cumsum(x * y) - sx * sy / n
+    syy = np.cumsum(y * y) - sy**2 / n
+    slope = np.divide(sxy, sxx, out=np.zeros_like(sxy), where=sxx > 0.0)
+    losses = np.maximum(syy - slope * sxy, 0.0)
+    return _Running(losses, slope, sy / n - slope * sx / n + shift_z - slope * shift_u)
+
+
+def _roof(place: float, u: FloatArray, z: FloatArray) -> tuple[float, float, float]:
+    """Loss, slope and apex height of the best symmetric roof with its apex at `place`."""
+    away = np.abs(u - place)
+    spread = away - away.mean()
+    slope = -float(spread @ z) / float(spread @ spread)
+    height = float(z.mean() + slope * away.mean())
+    return float(((z - height + slope * away) ** 2).sum()), slope, height
+
+
+def _explained(loss: float, z: FloatArray) -> float:
+    total = float(((z - z.mean()) ** 2).sum())
+    return 1.0 - loss / total if total > 0.0 else 0.0

@@ -1,0 +1,93 @@
+"""Every choice that the evaluation of section 3.3 leaves open, with the paper's where it gives one."""
+
+from dataclasses import dataclass, field, fields
+
+from regolith_studio.errors import InputError
+
+
+@dataclass(frozen=True)
+class EvaluationSettings:
+    """Parameters of the evaluation. Lengths are in mean particle diameters.
+
+    Parameters
+    ----------
+    gap
+        Vertical gap that ends the connected column from the base ("a multiple of the mean diameter").
+    bin_width
+        Distance of the vertical lines on which the surface is read.
+    median_window
+        Points of the rolling median, odd; 1 for none.
+    cut_top, cut_bottom
+        Shares of the pile's height that are left out above and below (the paper: 0.15).
+    toe
+        The lower cut is at least this high: one layer of grains is no flank. 0 for the paper's letter.
+    slab
+        Thickness of the slice that is projected; 0 projects the whole pile, as the paper does.
+    grain_correction
+        Add to the surface what the silhouette of a pile of few grains lacks
+        (:mod:`~regolith_studio.dem.evaluation.grain_size`); only for the projection of the whole pile.
+        Off for the paper's letter.
+    azimuths
+        Vertical sections, equally spaced over half a turn and beginning with x-z; even, so that y-z is
+        one of them. 2 for the paper's two.
+    min_points
+        Surface points that each flank needs.
+    min_particles
+        Fewer particles are no pile.
+    min_height
+        A lower heap is a layer, not a pile.
+    confidence
+        Of the bootstrap interval.
+    seed
+        Of the bootstrap.
+
+    Raises
+    ------
+    InputError
+        If a value is out of its range.
+    """
+
+    gap: float = field(default=1.0, metadata={"label": "Gap, in mean d", "minimum": 0.1, "maximum": 10.0})
+    bin_width: float = field(
+        default=0.5, metadata={"label": "Bin width, in mean d", "minimum": 0.05, "maximum": 3.0}
+    )
+    median_window: int = field(default=5, metadata={"label": "Rolling median", "minimum": 1, "maximum": 101})
+    cut_top: float = field(default=0.15, metadata={"label": "Upper cut", "minimum": 0.0, "maximum": 0.45})
+    cut_bottom: float = field(default=0.15, metadata={"label": "Lower cut", "minimum": 0.0, "maximum": 0.45})
+    toe: float = field(
+        default=1.5, metadata={"label": "Lowest cut, in mean d", "minimum": 0.0, "maximum": 10.0}
+    )
+    slab: float = field(
+        default=0.0,
+        metadata={"label": "Slice, in mean d", "minimum": 0.0, "maximum": 1000.0, "tip": "0: whole pile"},
+    )
+    grain_correction: bool = field(
+        default=True, metadata={"label": "Correct for grain size", "minimum": False, "maximum": True}
+    )
+    azimuths: int = field(default=12, metadata={"label": "Sections", "minimum": 2, "maximum": 360})
+    min_points: int = field(default=4, metadata={"label": "Points a flank", "minimum": 3, "maximum": 1000})
+    min_particles: int = field(
+        default=150, metadata={"label": "Fewest particles", "minimum": 10, "maximum": 1_000_000}
+    )
+    min_height: float = field(
+        default=2.5, metadata={"label": "Lowest pile, in mean d", "minimum": 0.0, "maximum": 100.0}
+    )
+    confidence: float = field(
+        default=0.95, metadata={"label": "Confidence", "minimum": 0.5, "maximum": 0.999}
+    )
+    seed: int = field(default=0, metadata={"label": "Bootstrap seed", "minimum": 0, "maximum": 2**31 - 1})
+
+    def __post_init__(self) -> None:
+        for each in fields(self):
+            value, limits = getattr(self, each.name), each.metadata
+            if not limits["minimum"] <= value <= limits["maximum"]:
+                raise InputError(
+                    f"The evaluation setting {each.name} must lie between {limits['minimum']:g} and "
+                    f"{limits['maximum']:g}, got {value}."
+                )
+        if self.median_window % 2 == 0:
+            raise InputError(f"The rolling median needs an odd number of points, got {self.median_window}.")
+        if self.azimuths % 2:
+            raise InputError(
+                f"The number of sections must be even, with x-z and y-z among them, got {self.azimuths}."
+            )

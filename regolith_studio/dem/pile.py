@@ -1,0 +1,104 @@
+"""Particles at one moment: positions, diameters, orientations, and their ``.npz`` file."""
+
+import io
+import zipfile
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from regolith_studio.errors import FileError
+from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats, locked_integers
+
+LARGEST = 2_000_000_000
+"""Bytes that a file may unpack to."""
+
+
+@dataclass(frozen=True, eq=False)
+class Pile:
+    """Particles at one moment, in SI units, z up, the plate at z = 0.
+
+    Parameters
+    ----------
+    points
+        Centres of mass in metres, shape (n, 3).
+    diameters
+        Equivalent diameters in metres, shape (n,).
+    orientations
+        Quaternions (w, x, y, z) that turn a shape of the dataset into the particle, shape (n, 4).
+    class_index
+        Which shape each particle has, shape (n,).
+    time
+        Simulated seconds.
+    wall
+        Height of the cylinder's lower rim in metres; infinite once it is gone.
+    phase
+        What the test is doing: ``fill``, ``settle``, ``lift``, ``rest`` ...
+    """
+
+    points: FloatArray
+    diameters: FloatArray
+    orientations: FloatArray
+    class_index: IntArray
+    time: float = 0.0
+    wall: float = float("inf")
+    phase: str = ""
+
+    def __post_init__(self) -> None:
+        n = len(self.points)
+        for name, shape in (("points", (None, 3)), ("diameters", (n,)), ("orientations", (n, 4))):
+            object.__setattr__(self, name, locked_floats(getattr(self, name), shape, name))
+        object.__setattr__(self, "class_index", locked_integers(self.class_index, (n,), "class_index"))
+
+    def __reduce__(self) -> tuple[Callable[..., "Pile"], tuple[Any, ...]]:
+        fields = (self.points, self.diameters, self.orientations, self.class_index)
+        return Pile, (*fields, self.time, self.wall, self.phase)
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+
+def pile_bytes(pile: Pile) -> bytes:
+    """The content of a ``.npz`` file."""
+    buffer = io.BytesIO()
+    np.savez_compressed(
+        buffer,
+        points_m=pile.points.astype(np.float32),
+        diameters_m=pile.diameters,
+        orientations=pile.orientations.astype(np.float32),
+        class_index=pile.class_index.astype(np.int32),
+        time_s=np.float64(pile.time),
+        wall_m=np.float64(pile.wall),
+        phase=np.array(pile.phase),
+    )
+    return buffer.getvalue()
+
+
+def read_pile(path: Path) -> Pile:
+    """The particles of a ``.npz`` file that this program wrote.
+
+    Raises
+    ------
+    FileError
+        If it is none.
+    """
+    try:
+        with zipfile.ZipFile(path) as archive:
+            if sum(entry.file_size for entry in archive.infolist()) > LARGEST:
+                raise FileError(f"{path.name} would unpack to more than {LARGEST // 10**9} GB.")
+        with np.load(path, allow_pickle=False) as content:
+            return Pile(
+                content["points_m"].astype(np.float64),
+                content["diameters_m"],
+                content["orientations"].astype(np.float64),
+                content["class_index"],
+                float(content["time_s"]),
+                float(content["wall_m"]),
+                str(content["phase"]),
+            )
+    except OSError as error:
+        raise FileError(f"{path} cannot be read: {error.strerror or error}.") from error
+    except (zipfile.BadZipFile, KeyError, ValueError, EOFError) as error:
+        raise FileError(f"{path.name} holds no particles of a simulation of this program.") from error

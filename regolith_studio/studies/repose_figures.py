@@ -1,0 +1,88 @@
+"""Fig. 9: two orthogonal sections through a pile with the surface and the fitted flanks."""
+
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import EllipseCollection
+from matplotlib.figure import Figure
+
+from regolith_studio.dem.evaluation.profile import project
+from regolith_studio.dem.evaluation.section import Section
+from regolith_studio.dem.repose import ReposeMeasurement
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.studies.figure_files import write_figure
+
+MILLIMETRE = 1e3
+LEFT, RIGHT, BOTH = "#0072b2", "#e69f00", "#009e73"
+"""Colours of the left flank, the right flank and the symmetric model, as in the paper's figure."""
+
+
+def section_figure(points: FloatArray, diameters: FloatArray, measurement: ReposeMeasurement) -> Figure:
+    """The x-z and y-z sections; positions and diameters in metres."""
+    figure = Figure(figsize=(10.5, 3.8), layout="constrained")
+    axes = figure.subplots(1, 2, sharey=True)
+    for axis, section in zip(axes, measurement.sections[:2], strict=True):
+        _draw_particles(axis, points, diameters, measurement, section)
+        _draw_fits(axis, section)
+        plane = "x-z" if section.azimuth == 0.0 else "y-z"
+        axis.set_title(
+            f"{plane}: {section.asymmetric.left.angle:.1f}° | {section.asymmetric.right.angle:.1f}°"
+        )
+        axis.set_xlabel("x (mm)" if section.azimuth == 0.0 else "y (mm)")
+    axes[0].set_ylabel("z (mm)")
+    handles, labels = axes[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=4, frameon=False)
+    low, high = measurement.interval
+    figure.suptitle(
+        f"Angle of repose {measurement.angle:.1f}° ({low:.1f}° to {high:.1f}°), "
+        f"{measurement.n_particles:,} particles"
+    )
+    return figure
+
+
+def write_section_figure(
+    points: FloatArray, diameters: FloatArray, measurement: ReposeMeasurement, folder: Path
+) -> tuple[Path, Path]:
+    """``sections.png`` and ``sections.svg``."""
+    return write_figure(section_figure(points, diameters, measurement), folder, "sections")
+
+
+def _draw_particles(
+    axis: Axes, points: FloatArray, diameters: FloatArray, measurement: ReposeMeasurement, section: Section
+) -> None:
+    discs = project(points, diameters, measurement.base, np.radians(section.azimuth))
+    widths = 2 * MILLIMETRE * discs.radius
+    grains = EllipseCollection(
+        widths,
+        widths,
+        np.zeros_like(widths),
+        units="xy",
+        offsets=MILLIMETRE * np.column_stack([discs.u, discs.z]),
+        offset_transform=axis.transData,
+        facecolors="0.82",
+        edgecolors="0.6",
+        linewidths=0.2,
+        rasterized=True,
+    )
+    axis.add_collection(grains)
+    axis.set_aspect("equal")
+    axis.autoscale_view()
+    axis.set_ylim(bottom=0.0)
+
+
+def _draw_fits(axis: Axes, section: Section) -> None:
+    u, z = MILLIMETRE * section.profile.u, MILLIMETRE * section.profile.height
+    axis.plot(u[section.used], z[section.used], "o", color="0.15", markersize=3, label="surface in range")
+    for cut in (section.low, section.high):
+        axis.axhline(MILLIMETRE * cut, color="0.5", linewidth=0.6, linestyle=":")
+    two, one = section.asymmetric, section.symmetric
+    flanks = (("left flank", two.left, LEFT), ("right flank", two.right, RIGHT))
+    for name, line, colour in flanks:
+        ends = np.array([two.apex[0], -line.intercept / line.slope])
+        axis.plot(
+            MILLIMETRE * ends, MILLIMETRE * (line.slope * ends + line.intercept), color=colour, label=name
+        )
+    reach = one.apex[1] / one.slope
+    roof = MILLIMETRE * np.array([one.apex[0] - reach, one.apex[0], one.apex[0] + reach])
+    axis.plot(roof, [0.0, MILLIMETRE * one.apex[1], 0.0], "--", color=BOTH, label="symmetric")

@@ -1,0 +1,189 @@
+"""The evaluation of section 3.3 against cones of known angle and against what is no pile."""
+
+import dataclasses
+import pickle
+
+import numpy as np
+import pytest
+
+from regolith_studio.dem.evaluation.flanks import fit_asymmetric, fit_symmetric
+from regolith_studio.dem.evaluation.interval import bootstrap_interval
+from regolith_studio.dem.evaluation.profile import Discs, base_level, connected_tops, project
+from regolith_studio.dem.evaluation.refusal import NoPile
+from regolith_studio.dem.evaluation.settings import EvaluationSettings
+from regolith_studio.dem.repose import azimuths_of, measure_repose, measurement_document
+from regolith_studio.errors import InputError
+from tests.dem.packings import cone, packing
+
+
+@pytest.mark.parametrize("angle", [15, 20, 25, 30, 35, 40, 45])
+def test_that_a_cone_of_a_thousand_grains_is_measured_within_half_a_degree(angle: int) -> None:
+    found = [measure_repose(cone(angle, 1000, seed), 1.0) for seed in range(6)]
+    assert abs(np.mean([each.angle for each in found]) - angle) < 0.5
+    assert abs(np.mean([each.symmetric.mean for each in found]) - angle) < 0.6
+    assert max(abs(each.angle - angle) for each in found) < 1.3
+
+
+def test_that_more_grains_measure_better() -> None:
+    assert measure_repose(cone(30, 6000, 1), 1.0).angle == pytest.approx(30.0, abs=0.3)
+
+
+def test_that_the_paper_s_letter_reads_a_coarse_cone_too_flat() -> None:
+    letter = EvaluationSettings(grain_correction=False, toe=0.0, azimuths=2)
+    found = [measure_repose(cone(30, 1000, seed), 1.0, letter).angle for seed in range(6)]
+    assert 0.3 < 30.0 - np.mean(found) < 1.5
+
+
+@pytest.mark.parametrize("angle", [20, 30, 40])
+def test_that_a_cut_off_top_does_not_change_the_angle(angle: int) -> None:
+    found = [measure_repose(cone(angle, 1500, seed, plateau=0.7), 1.0).angle for seed in range(4)]
+    assert np.mean(found) == pytest.approx(angle, abs=1.0)
+
+
+def test_that_a_leaning_cone_has_its_two_flanks_in_the_asymmetric_model() -> None:
+    sections = [measure_repose(cone(30, 3000, seed, lean=0.3), 1.0).sections[0] for seed in range(3)]
+    slope = np.tan(np.radians(30.0))
+    left, right = np.degrees(np.arctan(slope / 1.3)), np.degrees(np.arctan(slope / 0.7))
+    assert np.mean([each.asymmetric.left.angle for each in sections]) == pytest.approx(left, abs=1.0)
+    assert np.mean([each.asymmetric.right.angle for each in sections]) == pytest.approx(right, abs=1.0)
+
+
+def test_that_strays_around_and_above_a_pile_do_not_count() -> None:
+    pile = cone(30, 1500, 0)
+    generator = np.random.default_rng(0)
+    around = np.column_stack([generator.uniform(-40, 40, (80, 2)), np.full(80, 0.5)])
+    above = np.column_stack([generator.uniform(-5, 5, (6, 2)), np.full(6, 30.0)])
+    clean = measure_repose(pile, 1.0, base=0.0).angle
+    strewn = measure_repose(np.concatenate([pile, around, above]), 1.0, base=0.0).angle
+    assert strewn == pytest.approx(clean, abs=0.4)
+
+
+def test_that_unit_place_and_heading_do_not_matter() -> None:
+    pile = cone(30, 1200, 3)
+    here = measure_repose(pile, 1.0)
+    there = measure_repose(pile * 2e-3 + [1.0, -2.0, 0.7], 2e-3)
+    quarter = np.column_stack([-pile[:, 1], pile[:, 0], pile[:, 2]])
+    assert there.angle == pytest.approx(here.angle, abs=1e-6)
+    assert there.height == pytest.approx(2e-3 * here.height)
+    assert measure_repose(quarter, 1.0).angle == pytest.approx(here.angle, abs=0.4)
+
+
+def test_that_the_interval_holds_the_truth_of_most_cones() -> None:
+    found = [measure_repose(cone(32, 1500, seed), 1.0) for seed in range(10)]
+    assert sum(each.interval[0] - 0.5 <= 32 <= each.interval[1] + 0.5 for each in found) >= 8
+
+
+def _refused(points: np.ndarray) -> NoPile:
+    with pytest.raises(NoPile) as refusal:
+        measure_repose(points, 1.0)
+    return refusal.value
+
+
+def test_that_what_is_no_pile_is_refused_with_the_reason() -> None:
+    generator = np.random.default_rng(0)
+    plug = packing(6, 14, 0)
+    plug = plug[np.hypot(plug[:, 0], plug[:, 1]) < 4.5]
+    layer = np.column_stack([generator.uniform(-15, 15, (900, 2)), np.full(900, 0.5)])
+    scattered = np.column_stack([generator.uniform(-40, 40, (900, 2)), generator.uniform(0.5, 9, 900)])
+    half, aside = cone(30, 700, 0), np.array([12.0, 0.0, 0.0])
+    two_piles = np.concatenate([half - aside, half + aside])
+    assert _refused(layer).status == "layer"
+    assert _refused(plug).status == "column stands"
+    assert _refused(cone(66, 1000, 0)).status == "column stands"
+    assert _refused(cone(30, 100, 0)).status == "too few particles"
+    assert _refused(scattered).status == "scattered"
+    assert _refused(two_piles).status == "scattered"
+    assert _refused(packing(9, 6, 0)).status == "no flanks"
+    assert str(_refused(layer)).endswith(".")
+
+
+def test_that_a_refusal_survives_the_way_between_processes() -> None:
+    copy = pickle.loads(pickle.dumps(NoPile("It is flat.", "layer")))
+    assert (str(copy), copy.status) == ("It is flat.", "layer")
+
+
+def test_that_bad_numbers_are_refused() -> None:
+    with pytest.raises(InputError, match="shape"):
+        measure_repose(np.zeros((5, 2)), 1.0)
+    with pytest.raises(InputError, match="positive"):
+        measure_repose(np.zeros((5, 3)), 0.0)
+    with pytest.raises(InputError, match="odd"):
+        EvaluationSettings(median_window=4)
+    with pytest.raises(InputError, match="even"):
+        EvaluationSettings(azimuths=5)
+    with pytest.raises(InputError, match="cut_top"):
+        EvaluationSettings(cut_top=0.9)
+
+
+def test_that_a_column_ends_at_the_first_wide_gap() -> None:
+    stack = Discs(np.zeros(4), np.array([0.5, 1.6, 2.9, 5.0]), np.full(4, 0.5))
+    place = np.array([0.0])
+    assert connected_tops(stack, place, 1.0, gap=1.0) == pytest.approx([3.4])
+    assert connected_tops(stack, place, 1.0, gap=0.2) == pytest.approx([2.1])
+    assert connected_tops(stack, place, 1.0, gap=2.0) == pytest.approx([5.5])
+    hanging = Discs(np.zeros(1), np.array([4.0]), np.full(1, 0.5))
+    assert connected_tops(hanging, place, 1.0, gap=1.0) == pytest.approx([0.0])
+
+
+def test_that_a_disc_is_read_on_its_chord() -> None:
+    ball = Discs(np.zeros(1), np.array([0.5]), np.array([0.5]))
+    tops = connected_tops(ball, np.array([-0.6, -0.3, 0.0, 0.3]), 0.3, gap=1.0)
+    assert tops == pytest.approx([0.0, 0.9, 1.0, 0.9])
+
+
+def test_that_sections_show_x_z_and_y_z() -> None:
+    points = np.array([[1.0, 0.0, 0.5], [0.0, 2.0, 0.5], [0.0, 0.0, 0.5]])
+    assert project(points, np.ones(3), 0.0, 0.0).u == pytest.approx([1, 0, 0])
+    assert project(points, np.ones(3), 0.0, np.pi / 2).u == pytest.approx([0, 2, 0])
+    assert len(project(points, np.ones(3), 0.0, 0.0, slab=1.0).u) == 2
+    assert base_level(points, np.ones(3)) == pytest.approx(0.0)
+    assert azimuths_of(EvaluationSettings(azimuths=4)) == [0.0, 90.0, 45.0, 135.0]
+
+
+def test_that_exact_roofs_are_found_exactly() -> None:
+    u = np.linspace(-4.0, 6.0, 41)
+    z = np.minimum(5.0 + 0.8 * (u - 0.3), 5.0 - 0.5 * (u - 0.3))
+    two = fit_asymmetric(u, z, 4)
+    assert two is not None
+    assert two.left.slope == pytest.approx(0.8)
+    assert two.right.slope == pytest.approx(-0.5)
+    assert two.apex == pytest.approx((0.3, 5.0))
+    assert two.r_squared == pytest.approx(1.0)
+    one = fit_symmetric(u, 5.0 - 0.6 * np.abs(u - 0.77), 4)
+    assert one is not None
+    assert one.slope == pytest.approx(0.6)
+    assert one.apex == pytest.approx((0.77, 5.0), abs=1e-5)
+    assert fit_asymmetric(u[:7], z[:7], 4) is None
+    assert fit_asymmetric(u, -z, 4) is None
+
+
+def test_that_the_break_point_is_the_best_of_all() -> None:
+    generator = np.random.default_rng(4)
+    u = np.sort(generator.uniform(-5, 5, 40))
+    z = 4.0 - 0.7 * np.abs(u - 0.5) + generator.normal(0, 0.2, 40)
+    fit = fit_asymmetric(u, z, 4)
+    assert fit is not None
+
+    def loss(k: int) -> float:
+        parts = ((u[:k], z[:k]), (u[k:], z[k:]))
+        return sum(float(np.polyfit(x, y, 1, full=True)[1][0]) for x, y in parts)
+
+    best = min(range(4, 37), key=loss)
+    assert fit.break_point == pytest.approx((u[best - 1] + u[best]) / 2)
+    assert fit.left.slope == pytest.approx(np.polyfit(u[:best], z[:best], 1)[0])
+
+
+def test_that_the_bootstrap_of_equal_flanks_has_no_width_and_of_noise_the_known_one() -> None:
+    assert bootstrap_interval(np.full(24, 31.0), 0.95, 0) == (31.0, 31.0)
+    noise = np.random.default_rng(0).normal(30.0, 2.0, 360)
+    low, high = bootstrap_interval(noise, 0.95, 0)
+    assert low < noise.mean() < high
+    assert bootstrap_interval(noise, 0.95, 7) == bootstrap_interval(noise, 0.95, 7)
+
+
+def test_that_the_document_names_both_planes_and_every_choice() -> None:
+    found = measure_repose(cone(30, 1000, 0), 1.0)
+    document = measurement_document(found)
+    assert [each["plane"] for each in document["sections"][:3]] == ["x-z", "y-z", None]
+    assert document["angle_deg"] == found.angle
+    assert set(document["settings"]) == {each.name for each in dataclasses.fields(EvaluationSettings)}

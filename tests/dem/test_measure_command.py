@@ -1,0 +1,57 @@
+"""``repose measure`` as a user calls it."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from regolith_studio.cli.entry import run
+from regolith_studio.dem.pile import Pile, pile_bytes
+from tests.dem.packings import cone
+
+
+@pytest.fixture
+def pile_file(tmp_path: Path) -> Path:
+    points = 2e-3 * cone(32, 1500, 1)
+    n = len(points)
+    pile = Pile(points, np.full(n, 2e-3), np.tile([1.0, 0, 0, 0], (n, 1)), np.zeros(n, dtype=int))
+    path = tmp_path / "final.npz"
+    path.write_bytes(pile_bytes(pile))
+    return path
+
+
+def test_that_a_saved_pile_is_measured_and_drawn(
+    pile_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(["repose", "measure", str(pile_file), "--json", "-o", str(tmp_path / "out")]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert document["angle_deg"] == pytest.approx(32.0, abs=1.2)
+    assert document["sections"][0]["plane"] == "x-z"
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {
+        "repose.json",
+        "sections.png",
+        "sections.svg",
+    }
+    assert json.loads((tmp_path / "out" / "repose.json").read_text("utf-8")) == document
+
+
+def test_that_settings_reach_the_evaluation_and_bad_ones_are_bad_use(
+    pile_file: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(["repose", "measure", str(pile_file), "--set", "azimuths=2", "--set", "gap=2", "--json"]) == 0
+    assert len(json.loads(capsys.readouterr().out)["sections"]) == 2
+    for wrong in ("azimuths=3", "colour=red", "gap=wide", "cut_top=0.6"):
+        assert run(["repose", "measure", str(pile_file), "--set", wrong]) == 2
+    assert "Traceback" not in capsys.readouterr().err
+
+
+def test_that_what_is_no_pile_is_one_sentence(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "few.npz").write_bytes(
+        pile_bytes(
+            Pile(np.zeros((5, 3)), np.ones(5), np.tile([1.0, 0, 0, 0], (5, 1)), np.zeros(5, dtype=int))
+        )
+    )
+    assert run(["repose", "measure", str(tmp_path / "few.npz")]) == 1
+    assert capsys.readouterr().err.strip() == "5 particles are too few for a pile; at least 150 are needed."
+    assert run(["repose", "measure", str(tmp_path / "absent.npz")]) == 1

@@ -1,0 +1,50 @@
+"""Files of particles at one moment."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from regolith_studio.dem.pile import Pile, pile_bytes, read_pile
+from regolith_studio.errors import FileError
+
+
+def _pile() -> Pile:
+    generator = np.random.default_rng(0)
+    return Pile(
+        generator.normal(size=(5, 3)),
+        generator.uniform(1e-3, 2e-3, 5),
+        np.tile([1.0, 0, 0, 0], (5, 1)),
+        np.arange(5),
+        1.5,
+        0.02,
+        "lift",
+    )
+
+
+def test_that_a_pile_comes_back_from_its_file(tmp_path: Path) -> None:
+    pile = _pile()
+    (tmp_path / "p.npz").write_bytes(pile_bytes(pile))
+    back = read_pile(tmp_path / "p.npz")
+    assert back.points == pytest.approx(pile.points, rel=1e-6)
+    assert np.array_equal(back.diameters, pile.diameters)
+    assert (back.time, back.wall, back.phase) == (1.5, 0.02, "lift")
+    assert np.array_equal(back.class_index, pile.class_index)
+
+
+def test_that_another_file_is_refused_in_one_sentence(tmp_path: Path) -> None:
+    path = tmp_path / "p.npz"
+    with pytest.raises(FileError, match="cannot be read"):
+        read_pile(path)
+    path.write_bytes(b"nothing of ours")
+    with pytest.raises(FileError, match="no particles"):
+        read_pile(path)
+    path.write_bytes(pile_bytes(_pile())[:200])
+    with pytest.raises(FileError, match="no particles"):
+        read_pile(path)
+    np.savez(path, other=np.zeros(3))
+    with pytest.raises(FileError, match="no particles"):
+        read_pile(path)
+    np.savez(path, points_m=np.array([object()]))
+    with pytest.raises(FileError, match="no particles"):
+        read_pile(path)
