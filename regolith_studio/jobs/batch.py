@@ -2,7 +2,6 @@
 
 import queue
 from collections.abc import Callable, Generator, Iterable
-from itertools import count
 from typing import Any
 
 from regolith_studio.errors import Cancelled, RegolithError
@@ -21,26 +20,48 @@ def in_order(runner: Runner, jobs: Iterable[Job], window: int = 2) -> Generator[
     window
         Jobs that are submitted but not yet answered for: bounds the memory.
     """
+    early: dict[int, Ending] = {}
+    expected = 0
+    for answer in as_they_end(runner, jobs, window, held=lambda: len(early)):
+        if answer is None:
+            yield None
+            continue
+        number, ending = answer
+        early[number] = ending
+        while expected in early:
+            yield early.pop(expected)
+            expected += 1
+
+
+def as_they_end(
+    runner: Runner, jobs: Iterable[Job], window: int = 2, held: Callable[[], int] = lambda: 0
+) -> Generator[tuple[int, Ending] | None, None, None]:
+    """Number and ending of each of `jobs` as they end; ``None`` while the next one is being waited for.
+
+    Parameters
+    ----------
+    window
+        Jobs that are submitted at the same time.
+    held
+        Endings that the caller keeps back; they count as if they were still under way.
+    """
     answers: queue.SimpleQueue[tuple[int, Ending]] = queue.SimpleQueue()
     waiting = enumerate(jobs)
     open_handles: dict[int, Handle] = {}
-    early: dict[int, Ending] = {}
     try:
-        for expected in count():
-            while len(open_handles) + len(early) < window and (entry := next(waiting, None)):
+        while True:
+            while len(open_handles) + held() < window and (entry := next(waiting, None)):
                 number, job = entry
                 open_handles[number] = runner.submit(job, _noting(answers, number))
-            if expected not in open_handles and expected not in early:
+            if not open_handles:
                 return
-            while expected not in early:
-                try:
-                    number, ending = answers.get(timeout=_PATIENCE)
-                except queue.Empty:
-                    yield None
-                    continue
-                del open_handles[number]
-                early[number] = ending
-            yield early.pop(expected)
+            try:
+                number, ending = answers.get(timeout=_PATIENCE)
+            except queue.Empty:
+                yield None
+                continue
+            del open_handles[number]
+            yield number, ending
     finally:
         for handle in open_handles.values():
             handle.cancel()

@@ -4,7 +4,7 @@ from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
-from regolith_studio.jobs.batch import call, in_order, value_of
+from regolith_studio.jobs.batch import as_they_end, call, in_order, value_of
 from regolith_studio.jobs.events import Ending, Job, Progress, Step
 from regolith_studio.jobs.runners.drive import told
 from regolith_studio.jobs.runners.process_pool import ProcessPoolRunner, cores
@@ -26,11 +26,15 @@ class Crew:
 
     def endings(self, jobs: Iterable[Job]) -> Generator[Ending | None, None, None]:
         """Endings of `jobs` in their order; ``None`` whenever the caller may want to stop."""
-        if self.workers == 1:
+        if self._alone:
+            return (None if answer is None else answer[1] for answer in _one_by_one(jobs))
+        return in_order(self._hired(), jobs, window=2 * self.workers)
+
+    def as_they_end(self, jobs: Iterable[Job]) -> Generator[tuple[int, Ending] | None, None, None]:
+        """Number and ending of each of `jobs`, the quick ones first; ``None`` as for :meth:`endings`."""
+        if self._alone:
             return _one_by_one(jobs)
-        if self._runner is None:
-            self._runner = ProcessPoolRunner(self.workers)
-        return in_order(self._runner, jobs, window=2 * self.workers)
+        return as_they_end(self._hired(), jobs, window=2 * self.workers)
 
     def map(self, function: Callable[[Any], Any], items: Iterable[Any]) -> Iterator[Any]:
         """As the built-in ``map``, in order and lazily, for a picklable function.
@@ -49,6 +53,15 @@ class Crew:
                 endings.append(ending)
             yield Progress(len(endings), len(jobs), names[len(endings) - 1] if endings else "")
         return endings
+
+    @property
+    def _alone(self) -> bool:
+        return self.workers == 1 and self._runner is None
+
+    def _hired(self) -> Runner:
+        if self._runner is None:
+            self._runner = ProcessPoolRunner(self.workers)
+        return self._runner
 
     def close(self) -> None:
         """End the processes, if there are any."""
@@ -70,13 +83,13 @@ def hired(workers: int | Crew) -> Iterator[Crew]:
         crew.close()
 
 
-def _one_by_one(jobs: Iterable[Job]) -> Generator[Ending | None, None, None]:
-    for job in jobs:
+def _one_by_one(jobs: Iterable[Job]) -> Generator[tuple[int, Ending] | None, None, None]:
+    for number, job in enumerate(jobs):
         story = told(job)
         while True:
             try:
                 next(story)
             except StopIteration as end:
-                yield end.value
+                yield number, end.value
                 break
             yield None
