@@ -1,0 +1,100 @@
+"""Connected bodies of a volume that is seen slab by slab: numbers joined across slabs by union-find."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import cc3d
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+from scipy.sparse import csgraph
+
+from regolith_studio.geometry.arrays import IntArray
+from regolith_studio.imaging.bodies import connected_bodies
+from regolith_studio.imaging.boxes import Box, box_between
+
+_statistics: Any = cc3d.statistics
+
+
+@dataclass(frozen=True, eq=False)
+class Bodies:
+    """What is known of the bodies once the last slab is seen.
+
+    Parameters
+    ----------
+    body_of
+        Body of each provisional number, 1 to n; entry 0 is 0.
+    sizes
+        Voxels of each body, shape (n,).
+    low, high
+        First and last-but-one voxel of its box along x, y, z, shape (n, 3).
+    """
+
+    body_of: IntArray
+    sizes: IntArray
+    low: IntArray
+    high: IntArray
+
+    def box(self, body: int) -> Box:
+        """Box of a body, numbered from 1."""
+        return box_between(self.low[body - 1].tolist(), self.high[body - 1].tolist())
+
+
+class BodyCounter:
+    """Numbers the bodies of one slab after the other."""
+
+    def __init__(self) -> None:
+        self._count = 0
+        self._links: list[IntArray] = []
+        self._sizes: list[IntArray] = []
+        self._low: list[IntArray] = []
+        self._high: list[IntArray] = []
+        self._face: NDArray[np.int32] | None = None
+
+    def numbered(self, mask: NDArray[np.bool_], first: int) -> NDArray[np.int32]:
+        """Provisional numbers of the next slab's bodies, which differ from those of all slabs before.
+
+        Parameters
+        ----------
+        mask
+            Shape (nx, ny, thickness).
+        first
+            z of its first slice.
+        """
+        bodies, count = connected_bodies(mask)
+        self._remember(bodies, count, first)
+        numbers = bodies.astype(np.int32)
+        numbers[bodies > 0] += self._count
+        if self._face is not None:
+            touching = (self._face > 0) & (numbers[:, :, 0] > 0)
+            pairs = np.column_stack([self._face[touching], numbers[:, :, 0][touching]])
+            self._links.append(np.unique(pairs, axis=0).astype(np.int64))
+        self._face = numbers[:, :, -1].copy()
+        self._count += count
+        return numbers
+
+    def finish(self) -> Bodies:
+        """The bodies, in the order in which they were first met."""
+        links = np.concatenate([np.empty((0, 2), dtype=np.int64), *self._links])
+        shape = (self._count + 1, self._count + 1)
+        graph = sparse.coo_array((np.ones(len(links), dtype=np.int8), tuple(links.T)), shape=shape)
+        n_bodies, found = csgraph.connected_components(graph, directed=False)
+        body_of: IntArray = found.astype(np.int64)
+        sizes = np.zeros(n_bodies, dtype=np.int64)
+        low = np.full((n_bodies, 3), np.iinfo(np.int64).max)
+        high = np.zeros((n_bodies, 3), dtype=np.int64)
+        if self._count:
+            np.add.at(sizes, body_of[1:], np.concatenate(self._sizes))
+            np.minimum.at(low, body_of[1:], np.concatenate(self._low))
+            np.maximum.at(high, body_of[1:], np.concatenate(self._high))
+        return Bodies(body_of, sizes[1:], low[1:], high[1:])
+
+    def _remember(self, bodies: NDArray[Any], count: int, first: int) -> None:
+        if count == 0:
+            return
+        seen = _statistics(bodies)
+        boxes = seen["bounding_boxes"][1:]
+        shift = np.array([0, 0, first])
+        self._sizes.append(np.asarray(seen["voxel_counts"][1:], dtype=np.int64))
+        self._low.append(np.array([[side.start for side in box] for box in boxes]) + shift)
+        self._high.append(np.array([[side.stop for side in box] for box in boxes]) + shift)

@@ -1,0 +1,240 @@
+"""From grey values to labels: denoise, threshold, clean, find bodies, part touching grains.
+
+Everything happens slab by slab or body by body, so that the volume never has to be in memory
+whole: give a :class:`~regolith_studio.imaging.slabs.Scratch` in a folder for that.
+"""
+
+from collections.abc import Generator
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from regolith_studio.errors import InputError
+from regolith_studio.geometry.arrays import FloatArray, IntArray
+from regolith_studio.imaging.boxes import Box
+from regolith_studio.imaging.segmentation.cleaning import CleaningSettings, cleaned
+from regolith_studio.imaging.segmentation.components import Bodies, BodyCounter
+from regolith_studio.imaging.segmentation.denoising import DenoiseSettings, denoised, noise_of
+from regolith_studio.imaging.segmentation.splitting import SplittingSettings
+from regolith_studio.imaging.segmentation.thresholding import (
+    Histogram,
+    ThresholdSettings,
+    bins_between,
+    finite,
+    grain_voxels,
+    histogram,
+    level_of,
+    span,
+)
+from regolith_studio.imaging.segmentation.tiles import BodySplitter, TileSettings
+from regolith_studio.imaging.slabs import ArraySlabs, Scratch, SlabSource, read_with_margin, slab_ranges
+from regolith_studio.imaging.volume import Volume
+
+
+@dataclass(frozen=True)
+class SegmentationSettings:
+    """The recipe from grey values to labels."""
+
+    denoise: DenoiseSettings = field(default_factory=DenoiseSettings)
+    threshold: ThresholdSettings = field(default_factory=ThresholdSettings)
+    cleaning: CleaningSettings = field(default_factory=CleaningSettings)
+    splitting: SplittingSettings = field(default_factory=SplittingSettings)
+    tiles: TileSettings = field(default_factory=TileSettings)
+
+
+@dataclass(frozen=True)
+class SegmentationProgress:
+    """A step is done: `done` of `total` of the work that `stage` names."""
+
+    stage: str
+    done: int
+    total: int
+
+
+@dataclass(frozen=True, eq=False)
+class Segmentation:
+    """What came out of a volume of grey values.
+
+    Parameters
+    ----------
+    labels
+        0 between grains, 1 to n in them.
+    sizes
+        Voxels of each grain, shape (n,).
+    level
+        Grey value at which grains begin.
+    seen
+        Histogram of the denoised values.
+    n_bodies
+        Connected bodies before they were parted, the small ones left out.
+    n_small
+        Bodies and grains that were dropped for their size.
+    """
+
+    labels: Volume
+    sizes: IntArray
+    level: float
+    seen: Histogram
+    n_bodies: int
+    n_small: int
+
+    @property
+    def n_grains(self) -> int:
+        """Number of grains."""
+        return len(self.sizes)
+
+    @property
+    def summary(self) -> str:
+        """One sentence for the user."""
+        return (
+            f"{self.n_grains} grains from {self.n_bodies} connected bodies at grey level {self.level:g}; "
+            f"{self.n_small} too small."
+        )
+
+
+Steps = Generator[SegmentationProgress, None, Segmentation]
+
+
+def segment(volume: Volume, settings: SegmentationSettings | None = None) -> Segmentation:
+    """Run :func:`segmentation_steps` on a volume in memory to its end."""
+    steps = segmentation_steps(ArraySlabs(volume.array), volume.voxel_size, volume.name, settings)
+    while True:
+        try:
+            next(steps)
+        except StopIteration as end:
+            result: Segmentation = end.value
+            return result
+
+
+def segmentation_steps(
+    source: SlabSource,
+    voxel_size: FloatArray,
+    name: str,
+    settings: SegmentationSettings | None = None,
+    scratch: Scratch | None = None,
+) -> Steps:
+    """Find the grains in grey values, telling after each step how far it is.
+
+    Parameters
+    ----------
+    source
+        The grey values, or the probabilities of voxels to be grain.
+    voxel_size
+        Edges of a voxel, in micrometres, shape (3,).
+    scratch
+        Where arrays as large as the volume lie, the result among them; in memory by default.
+
+    Raises
+    ------
+    InputError
+        If the volume is too uniform for an automatic threshold, or no grain is found.
+    """
+    settings, scratch = settings or SegmentationSettings(), scratch or Scratch()
+    values, seen = yield from _denoised(source, settings, scratch)
+    level = level_of(seen, settings.threshold, source.dtype)
+    numbers: NDArray[np.int32] = scratch.zeros(source.shape, np.int32)
+    bodies = yield from _numbered(values, level, settings, numbers)
+    least = settings.cleaning.min_voxels
+    splitter = BodySplitter(
+        numbers, bodies, voxel_size, settings.splitting, settings.cleaning.fill_pores, settings.tiles
+    )
+    for done, total in splitter.steps(least):
+        yield SegmentationProgress("Parting touching grains", done, total)
+    sizes = yield from _renumbered(numbers, splitter.n_grains, least)
+    if not len(sizes):
+        raise InputError(
+            f"No grain of {least} voxels or more was found in {name} at grey level {level:g}; "
+            "is the threshold right, and are grains brighter than what is between them?"
+        )
+    small = int((bodies.sizes < least).sum()) + splitter.n_grains - len(sizes)
+    labels = Volume(numbers, voxel_size, "labels", f"{name}, labels")
+    return Segmentation(labels, sizes, level, seen, int((bodies.sizes >= least).sum()), small)
+
+
+def preview(
+    volume: Volume, box: Box, settings: SegmentationSettings | None = None, level: float | None = None
+) -> Segmentation:
+    """The segmentation of a small part of a volume, as if there were nothing else.
+
+    Parameters
+    ----------
+    level
+        Taken instead of the one that the settings would find in this part.
+    """
+    settings = settings or SegmentationSettings()
+    if level is not None:
+        manual = ThresholdSettings("manual", level, dark=settings.threshold.dark)
+        settings = SegmentationSettings(settings.denoise, manual, settings.cleaning, settings.splitting)
+    part = Volume(np.array(volume.array[box]), volume.voxel_size, volume.kind, volume.name)
+    return segment(part, settings)
+
+
+_Values = Generator[SegmentationProgress, None, tuple[SlabSource, Histogram]]
+
+
+def _denoised(source: SlabSource, settings: SegmentationSettings, scratch: Scratch) -> _Values:
+    """Grey values without noise, and their histogram; probabilities are taken as they are."""
+    how = settings.denoise
+    ranges = slab_ranges(source.shape)
+    edges, noise = _first_look(source)
+    keep = how.method == "none" or settings.threshold.method == "probability"
+    values = None if keep else scratch.zeros(source.shape, source.dtype)
+    seen = Histogram(np.zeros(len(edges) - 1, dtype=np.int64), edges)
+    for done, (first, stop) in enumerate(ranges, start=1):
+        if values is None:
+            slab = source.read(first, stop)
+        else:
+            thick, inner = read_with_margin(source, first, stop, how.margin)
+            slab = denoised(thick, how, noise)[:, :, inner]
+            values[:, :, first:stop] = slab
+        seen = seen + histogram(slab, edges)
+        yield SegmentationProgress("Denoising", done, len(ranges))
+    return source if values is None else ArraySlabs(values), seen
+
+
+def _first_look(source: SlabSource) -> tuple[FloatArray, float]:
+    """Edges of the histogram's bins, and the noise of the middle slice."""
+    slabs = (finite(source.read(first, stop)) for first, stop in slab_ranges(source.shape))
+    spans = np.array([span(slab) for slab in slabs if slab.size])
+    middle = source.shape[2] // 2
+    lowest, highest = span(spans)
+    return bins_between(lowest, highest, source.dtype), noise_of(source.read(middle, middle + 1))
+
+
+def _numbered(
+    values: SlabSource, level: float, settings: SegmentationSettings, numbers: NDArray[np.int32]
+) -> Generator[SegmentationProgress, None, Bodies]:
+    """Write the provisional numbers of the bodies into `numbers`."""
+    counter, ranges = BodyCounter(), slab_ranges(values.shape)
+    for done, (first, stop) in enumerate(ranges, start=1):
+        thick, inner = read_with_margin(values, first, stop, settings.cleaning.margin)
+        mask = cleaned(grain_voxels(thick, level, settings.threshold), settings.cleaning)
+        numbers[:, :, first:stop] = counter.numbered(mask[:, :, inner], first)
+        yield SegmentationProgress("Finding bodies", done, len(ranges))
+    return counter.finish()
+
+
+def _renumbered(
+    numbers: NDArray[np.int32], n_grains: int, least: int
+) -> Generator[SegmentationProgress, None, IntArray]:
+    """Turn -k into labels 1 to n without the small grains and all else into 0; returns their sizes."""
+    counts = np.zeros(n_grains + 1, dtype=np.int64)
+    ranges = slab_ranges(_shape(numbers))
+    for first, stop in ranges:
+        grains = np.maximum(-numbers[:, :, first:stop], 0)
+        counts += np.bincount(grains.ravel(order="K"), minlength=n_grains + 1)
+    kept = counts >= max(least, 1)
+    kept[0] = False
+    label = np.where(kept, np.cumsum(kept), 0).astype(np.int32)
+    for done, (first, stop) in enumerate(ranges, start=1):
+        slab = numbers[:, :, first:stop]
+        slab[...] = label[np.maximum(-slab, 0)]
+        yield SegmentationProgress("Numbering grains", done, len(ranges))
+    return counts[kept]
+
+
+def _shape(array: NDArray[Any]) -> tuple[int, int, int]:
+    nx, ny, nz = array.shape
+    return nx, ny, nz

@@ -1,0 +1,177 @@
+"""Where grains end: a level on the histogram of grey values."""
+
+from dataclasses import dataclass
+from typing import Any, Literal, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+from skimage import filters
+
+from regolith_studio.errors import InputError
+from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats, locked_integers
+
+ThresholdMethod = Literal["otsu", "multi-otsu", "manual", "probability"]
+THRESHOLD_METHODS: tuple[ThresholdMethod, ...] = get_args(ThresholdMethod)
+N_BINS = 256
+
+_otsu: Any = filters.threshold_otsu
+_multi_otsu: Any = filters.threshold_multiotsu
+
+
+@dataclass(frozen=True)
+class ThresholdSettings:
+    """Which voxels are grains.
+
+    Parameters
+    ----------
+    method
+        ``otsu`` parts the histogram in two, ``multi-otsu`` in `classes` (pores, resin and minerals of
+        different brightness), ``manual`` takes `value`, and ``probability`` reads the volume as the
+        probability of a voxel to be grain, as ilastik exports it: 0 to 1, or over the range of its type.
+    value
+        Level of ``manual`` in grey values, of ``probability`` from 0 to 1.
+    classes, boundary
+        Of ``multi-otsu``: parts of the histogram, 3 to 5, and which boundary between them is taken,
+        counted from the dark end from 1.
+    dark
+        Whether grains are what lies below the level.
+    """
+
+    method: ThresholdMethod = "otsu"
+    value: float = 0.5
+    classes: int = 3
+    boundary: int = 1
+    dark: bool = False
+
+    def __post_init__(self) -> None:
+        if self.method not in THRESHOLD_METHODS:
+            raise InputError(f"Threshold by one of {', '.join(THRESHOLD_METHODS)}, not {self.method!r}.")
+        if not np.isfinite(self.value):
+            raise InputError(f"The threshold is a finite number, got {self.value}.")
+        if self.method == "probability" and not 0.0 < self.value < 1.0:
+            raise InputError(f"The threshold of a probability lies between 0 and 1, got {self.value}.")
+        if self.classes not in (3, 4, 5) or self.boundary not in range(1, self.classes):
+            raise InputError(
+                f"Multi-Otsu takes 3 to 5 classes and a boundary from 1 to one less than that, got "
+                f"{self.classes} and {self.boundary}."
+            )
+
+
+@dataclass(frozen=True, eq=False)
+class Histogram:
+    """How often grey values occur.
+
+    Parameters
+    ----------
+    counts
+        Shape (n,).
+    edges
+        Of the bins, ascending, shape (n + 1,).
+    """
+
+    counts: IntArray
+    edges: FloatArray
+
+    def __post_init__(self) -> None:
+        counts = locked_integers(self.counts, (None,), "counts")
+        object.__setattr__(self, "counts", counts)
+        object.__setattr__(self, "edges", locked_floats(self.edges, (len(counts) + 1,), "edges"))
+
+    @property
+    def centres(self) -> FloatArray:
+        """Middle of each bin."""
+        return (self.edges[1:] + self.edges[:-1]) / 2
+
+    def __add__(self, other: "Histogram") -> "Histogram":
+        if not np.array_equal(self.edges, other.edges):
+            raise ValueError("only histograms of the same bins can be added")
+        return Histogram(self.counts + other.counts, self.edges)
+
+
+def bins_between(lowest: float, highest: float, dtype: np.dtype[Any]) -> FloatArray:
+    """Edges of at most 256 bins; those of whole numbers end halfway between two of them."""
+    if dtype.kind == "f":
+        return np.linspace(lowest, highest if highest > lowest else lowest + 1.0, N_BINS + 1)
+    first, last = int(lowest), int(highest)
+    width = -(-(last - first + 1) // N_BINS)
+    n_bins = -(-(last - first + 1) // width)
+    return first - 0.5 + width * np.arange(n_bins + 1, dtype=np.float64)
+
+
+def histogram(values: NDArray[Any], edges: FloatArray | None = None) -> Histogram:
+    """How often the grey values occur; values that are no numbers are left out.
+
+    Parameters
+    ----------
+    edges
+        Of equally wide bins; by default :func:`bins_between` the lowest and the highest value.
+
+    Raises
+    ------
+    InputError
+        If there are no edges and no value is a finite number.
+    """
+    seen = finite(values)
+    if edges is None:
+        edges = bins_between(*span(seen), values.dtype)
+    counts, _ = np.histogram(seen, bins=len(edges) - 1, range=(edges[0], edges[-1]))
+    return Histogram(counts, edges)
+
+
+def finite(values: NDArray[Any]) -> NDArray[Any]:
+    """The values that are finite numbers, in a row."""
+    flat = values.ravel(order="K")
+    return flat[np.isfinite(flat)] if values.dtype.kind == "f" else flat
+
+
+def span(values: NDArray[Any]) -> tuple[float, float]:
+    """Lowest and highest value.
+
+    Raises
+    ------
+    InputError
+        If there is none.
+    """
+    if values.size == 0:
+        raise InputError("The volume holds no finite grey value.")
+    return float(values.min()), float(values.max())
+
+
+def level_of(seen: Histogram, settings: ThresholdSettings, dtype: np.dtype[Any]) -> float:
+    """The grey value at which grains begin.
+
+    Parameters
+    ----------
+    dtype
+        Of the volume: tells the range of a probability in whole numbers.
+
+    Raises
+    ------
+    InputError
+        If the volume is too uniform to be parted.
+    """
+    match settings.method:
+        case "manual":
+            return settings.value
+        case "probability":
+            return settings.value * (1.0 if dtype.kind in "fb" else float(np.iinfo(dtype).max))
+        case "otsu":
+            needed = 2
+        case _:
+            needed = settings.classes
+    filled = int(np.count_nonzero(seen.counts))
+    if filled < needed:
+        raise InputError(f"The volume has only {filled} grey values, too few for an automatic threshold.")
+    centres = seen.centres
+    if settings.method == "otsu":
+        found = float(_otsu(hist=(seen.counts, centres)))
+    else:
+        found = float(
+            _multi_otsu(classes=settings.classes, hist=(seen.counts, centres))[settings.boundary - 1]
+        )
+    return float(seen.edges[np.searchsorted(seen.edges, found, side="right")])
+
+
+def grain_voxels(values: NDArray[Any], level: float, settings: ThresholdSettings) -> NDArray[np.bool_]:
+    """Whether each voxel is grain: at or above the level, or below it where grains are dark."""
+    return np.asarray(values < level if settings.dark else values >= level)

@@ -1,0 +1,109 @@
+"""Volumes that are read slab by slab, so that they never have to be in memory whole.
+
+A slab is a run of slices along z. Whatever reads one, a file or an array, is a :class:`SlabSource`;
+what is written slab by slab lies in a :class:`Scratch`, in memory or in files that vanish with it.
+"""
+
+import shutil
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+SLAB_VOXELS = 2**24
+"""Voxels that are worked on at a time, unless a few slices are more."""
+_THINNEST = 8
+
+
+class SlabSource(Protocol):
+    """Anything that gives slices of a volume.
+
+    `shape` is (nx, ny, nz) and `dtype` that of the voxels; ``read(first, stop)`` gives the slices
+    ``first <= z < stop``, shape (nx, ny, stop - first).
+    """
+
+    @property
+    def shape(self) -> tuple[int, int, int]: ...
+
+    @property
+    def dtype(self) -> np.dtype[Any]: ...
+
+    def read(self, first: int, stop: int, /) -> NDArray[Any]: ...
+
+
+@dataclass(frozen=True, eq=False)
+class ArraySlabs:
+    """Slabs of an array in memory, or of a memory map; shape (nx, ny, nz)."""
+
+    array: NDArray[Any]
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """Voxels along x, y and z."""
+        nx, ny, nz = self.array.shape
+        return nx, ny, nz
+
+    @property
+    def dtype(self) -> np.dtype[Any]:
+        """Type of the voxels."""
+        return self.array.dtype
+
+    def read(self, first: int, stop: int, /) -> NDArray[Any]:
+        """The slices ``first <= z < stop``."""
+        return self.array[:, :, first:stop]
+
+
+def slab_ranges(shape: tuple[int, int, int], voxels: int = SLAB_VOXELS) -> list[tuple[int, int]]:
+    """First and last-but-one slice of each slab of about `voxels` voxels, at least eight slices thick."""
+    nx, ny, nz = shape
+    thickness = max(voxels // (nx * ny), _THINNEST)
+    return [(first, min(first + thickness, nz)) for first in range(0, nz, thickness)]
+
+
+def read_with_margin(source: SlabSource, first: int, stop: int, margin: int) -> tuple[NDArray[Any], slice]:
+    """A slab with `margin` slices more on either side where there are any, and where the slab is in it."""
+    low, high = max(first - margin, 0), min(stop + margin, source.shape[2])
+    return source.read(low, high), slice(first - low, stop - low)
+
+
+class Scratch:
+    """Arrays for the time of one calculation: in memory, or in files of a temporary folder.
+
+    Parameters
+    ----------
+    folder
+        Where the temporary folder is made; ``None`` keeps everything in memory.
+    """
+
+    def __init__(self, folder: Path | None = None) -> None:
+        self._folder = None if folder is None else Path(tempfile.mkdtemp(dir=folder, prefix="regolith-"))
+        self._count = 0
+
+    def __enter__(self) -> "Scratch":
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def zeros(self, shape: tuple[int, int, int], dtype: DTypeLike) -> NDArray[Any]:
+        """Zeros of shape (nx, ny, nz) whose slices along z are contiguous."""
+        slices_first = shape[::-1]
+        if self._folder is None:
+            return np.zeros(slices_first, dtype).T
+        self._count += 1
+        path = self._folder / f"{self._count}.raw"
+        return np.memmap(path, dtype=np.dtype(dtype), mode="w+", shape=slices_first).T
+
+    def close(self) -> None:
+        """Remove the files; arrays that are still in use keep what they show where the system allows it."""
+        if self._folder is not None:
+            shutil.rmtree(self._folder, ignore_errors=True)

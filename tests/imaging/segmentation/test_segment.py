@@ -1,0 +1,237 @@
+"""The whole way from grey values to labels, on scans whose truth is known."""
+
+import numpy as np
+import pytest
+from scipy import ndimage
+
+from regolith_studio.errors import InputError
+from regolith_studio.imaging import slabs
+from regolith_studio.imaging.bodies import largest_body, pores_filled
+from regolith_studio.imaging.sample_volumes import sample_volume
+from regolith_studio.imaging.segmentation.cleaning import CleaningSettings
+from regolith_studio.imaging.segmentation.components import BodyCounter
+from regolith_studio.imaging.segmentation.denoising import DENOISE_METHODS, DenoiseSettings
+from regolith_studio.imaging.segmentation.segment import (
+    SegmentationSettings,
+    preview,
+    segment,
+    segmentation_steps,
+)
+from regolith_studio.imaging.segmentation.splitting import SplittingSettings
+from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
+from regolith_studio.imaging.segmentation.tiles import TileSettings
+from regolith_studio.imaging.slabs import ArraySlabs, Scratch
+from regolith_studio.imaging.volume import Volume
+
+PLAIN = SegmentationSettings(
+    DenoiseSettings("none"), cleaning=CleaningSettings(min_voxels=1, fill_pores=False)
+)
+
+
+def overlaps(truth: np.ndarray, found: np.ndarray) -> np.ndarray:
+    """Intersection over union of each true grain with the grain found that shares most with it."""
+    table = np.zeros((truth.max() + 1, found.max() + 1), dtype=np.int64)
+    np.add.at(table, (truth.ravel(), found.ravel()), 1)
+    shared = table[1:, 1:]
+    union = table[1:].sum(axis=1)[:, None] + table[:, 1:].sum(axis=0)[None] - shared
+    return (shared / union).max(axis=1)
+
+
+def grey(mask: np.ndarray, name: str = "test") -> Volume:
+    return Volume(np.where(mask, 180, 40).astype(np.uint8), (1.0, 1.0, 1.0), "grey", name)
+
+
+@pytest.mark.parametrize(
+    "method",
+    [
+        pytest.param(method, marks=[pytest.mark.slow] if method == "non-local-means" else [])
+        for method in DENOISE_METHODS
+    ],
+)
+def test_that_the_shipped_scan_gives_all_its_60_grains(method) -> None:
+    truth = sample_volume("labels").array
+    found = segment(sample_volume("grey"), SegmentationSettings(DenoiseSettings(method)))
+    scores = overlaps(truth, found.labels.array)
+    assert found.n_grains == 60
+    assert scores.min() > 0.7
+    assert scores.mean() > 0.9
+    assert found.sizes.sum() == pytest.approx(np.count_nonzero(truth), rel=0.02)
+    assert np.array_equal(np.bincount(found.labels.array.ravel())[1:], found.sizes)
+    assert "60 grains" in found.summary
+
+
+def dense_balls(shape: int = 96, seed: int = 0) -> tuple[np.ndarray, np.ndarray]:
+    """Balls that touch and overlap a little; each voxel belongs to the ball it is deepest in."""
+    generator = np.random.default_rng(seed)
+    points = np.stack(np.meshgrid(*[np.arange(shape)] * 3, indexing="ij"), axis=-1)
+    centres, radii = np.empty((0, 3)), np.empty(0)
+    for radius in np.sort(generator.uniform(6.0, 15.0, 4000))[::-1]:
+        centre = generator.uniform(0, shape, 3)
+        gaps = np.linalg.norm(centres - centre, axis=1) - radii - radius
+        if (gaps > -1.5).all():
+            centres, radii = np.vstack([centres, centre]), np.append(radii, radius)
+    deepest = np.full(points.shape[:3], 0.0)
+    truth = np.zeros(points.shape[:3], dtype=int)
+    for number, (centre, radius) in enumerate(zip(centres, radii, strict=True), start=1):
+        depth = radius - np.linalg.norm(points - centre, axis=-1)
+        truth[depth > deepest] = number
+        deepest = np.maximum(deepest, depth)
+    return truth, radii
+
+
+def test_that_touching_balls_of_many_sizes_are_parted_whether_in_tiles_or_not() -> None:
+    truth, radii = dense_balls()
+    assert ndimage.label(truth > 0)[1] < len(radii) / 4
+    whole = segment(grey(truth > 0), PLAIN)
+    tiled = segment(
+        grey(truth > 0),
+        SegmentationSettings(
+            PLAIN.denoise, PLAIN.threshold, PLAIN.cleaning, tiles=TileSettings(1000, core=40, margin=16)
+        ),
+    )
+    for found in (whole, tiled):
+        large = np.bincount(truth.ravel())[1:] > 500
+        scores = overlaps(truth, found.labels.array)
+        assert (scores[large] > 0.8).mean() > 0.97
+        assert found.sizes.sum() == np.count_nonzero(truth)
+    assert overlaps(whole.labels.array, tiled.labels.array).mean() > 0.99
+
+
+def test_that_one_rough_grain_is_not_split() -> None:
+    labels = sample_volume("labels").array
+    inner = [box for box in ndimage.find_objects(labels) if min(side.start for side in box) > 0][:20]
+    for box in inner:
+        crop = np.pad(labels[box], 3)
+        number = np.bincount(crop[crop > 0]).argmax()
+        assert segment(grey(crop == number), PLAIN).n_grains == 1
+
+
+def test_that_h_trades_grains_apart_for_grains_together() -> None:
+    volume = sample_volume("grey")
+    counts = [
+        segment(
+            volume, SegmentationSettings(DenoiseSettings("none"), splitting=SplittingSettings(True, h, 0.0))
+        ).n_grains
+        for h in (0.2, 0.8, 30.0)
+    ]
+    assert counts[0] > counts[1] > counts[2]
+
+
+@pytest.fixture
+def thin_slabs(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(slabs.slab_ranges, "__defaults__", (1,))
+
+
+@pytest.mark.usefixtures("thin_slabs")
+def test_that_slabs_on_disk_give_the_same_grains_as_memory(tmp_path) -> None:
+    volume = sample_volume("grey")
+    settings = SegmentationSettings(DenoiseSettings("gaussian"), cleaning=CleaningSettings(1, 1))
+    stages = []
+    with Scratch(tmp_path) as scratch:
+        steps = segmentation_steps(ArraySlabs(volume.array), volume.voxel_size, "t", settings, scratch)
+        while True:
+            try:
+                stages.append(next(steps))
+            except StopIteration as end:
+                found = end.value
+                break
+        assert isinstance(found.labels.array.base, np.ndarray)
+        assert len(list(tmp_path.rglob("*.raw"))) == 2
+        counts = np.array(found.labels.array)
+    assert not list(tmp_path.iterdir())
+    assert len([stage for stage in stages if stage.stage == "Denoising"]) == 18
+    slabs.slab_ranges.__defaults__ = (slabs.SLAB_VOXELS,)
+    whole = segment(volume, settings)
+    assert whole.level == found.level
+    assert overlaps(whole.labels.array, counts).min() == 1.0
+
+
+def test_that_bodies_are_those_of_scipy_whatever_the_slabs() -> None:
+    noise = ndimage.gaussian_filter(np.random.default_rng(1).standard_normal((30, 31, 32)), 1.2)
+    mask = noise > 0
+    expected, count = ndimage.label(mask)
+    for thickness in (1, 5, 32):
+        counter = BodyCounter()
+        parts = [
+            counter.numbered(mask[:, :, z : z + thickness], z) for z in range(0, mask.shape[2], thickness)
+        ]
+        bodies = counter.finish()
+        found = bodies.body_of[np.concatenate(parts, axis=2)]
+        assert len(bodies.sizes) == count
+        pairs = np.unique(np.column_stack([expected.ravel(), found.ravel()]), axis=0)
+        assert len(pairs) == count + 1
+        for body in range(1, count + 1):
+            (box,) = ndimage.find_objects((found == body).astype(int))
+            assert bodies.box(body) == box
+        assert np.array_equal(bodies.sizes, np.bincount(found.ravel())[1:])
+
+
+def test_that_anisotropic_voxels_find_the_same_grains() -> None:
+    volume = sample_volume("grey")
+    flat = Volume(volume.array[:, :, ::2], (2.3, 2.3, 4.6), "grey", "flat")
+    found = segment(flat, SegmentationSettings(DenoiseSettings("gaussian")))
+    assert found.n_grains == pytest.approx(60, abs=2)
+    assert overlaps(sample_volume("labels").array[:, :, ::2], found.labels.array).mean() > 0.85
+
+
+def test_that_a_probability_map_takes_the_place_of_the_threshold() -> None:
+    truth = sample_volume("labels").array > 0
+    likely = np.where(truth, 0.9, 0.2).astype(np.float32)
+    settings = SegmentationSettings(threshold=ThresholdSettings("probability", 0.5))
+    found = segment(Volume(likely, (1, 1, 1), "grey", "p"), settings)
+    assert found.n_grains == 60
+    assert np.array_equal(found.labels.array > 0, truth)
+    by_bytes = segment(Volume((likely * 255).astype(np.uint8), (1, 1, 1), "grey", "p"), settings)
+    assert np.array_equal(by_bytes.labels.array, found.labels.array)
+
+
+def test_that_dark_grains_are_found_too() -> None:
+    volume = sample_volume("grey")
+    negative = Volume(255 - volume.array, volume.voxel_size, "grey", "negative")
+    found = segment(negative, SegmentationSettings(DenoiseSettings("gaussian"), ThresholdSettings(dark=True)))
+    assert found.n_grains == 60
+
+
+def test_that_pores_are_filled_or_left_and_small_bodies_dropped() -> None:
+    mask = np.zeros((30, 30, 30), dtype=bool)
+    mask[5:20, 5:20, 5:20] = True
+    mask[11:14, 11:14, 11:14] = False
+    mask[24:26, 24:26, 24:26] = True
+    found = segment(grey(mask), SegmentationSettings(DenoiseSettings("none")))
+    assert (found.sizes.tolist(), found.n_small) == ([15**3], 1)
+    left = SegmentationSettings(
+        DenoiseSettings("none"),
+        cleaning=CleaningSettings(fill_pores=False, min_voxels=1),
+        splitting=SplittingSettings(enabled=False),
+    )
+    assert segment(grey(mask), left).sizes.tolist() == [15**3 - 27, 8]
+
+
+def test_that_a_volume_without_grains_is_refused_with_a_hint() -> None:
+    mask = np.zeros((20, 20, 20), dtype=bool)
+    mask[3:5, 3:5, 3:5] = True
+    with pytest.raises(InputError, match="No grain of 64 voxels"):
+        segment(grey(mask), SegmentationSettings(DenoiseSettings("none")))
+
+
+def test_that_a_preview_agrees_with_the_whole_at_the_same_level() -> None:
+    volume = sample_volume("grey")
+    whole = segment(volume, SegmentationSettings(DenoiseSettings("gaussian")))
+    box = (slice(20, 100), slice(30, 110), slice(25, 105))
+    part = preview(volume, box, SegmentationSettings(DenoiseSettings("gaussian")), whole.level)
+    core = tuple(slice(2, -2) for _ in range(3))
+    same = (part.labels.array > 0)[core] == (whole.labels.array[box] > 0)[core]
+    assert same.mean() > 0.999
+    assert part.labels.shape == (80, 80, 80)
+
+
+def test_that_the_largest_body_and_closed_pores_are_those_of_scipy() -> None:
+    noise = ndimage.gaussian_filter(np.random.default_rng(4).standard_normal((24, 25, 26)), 1.5)
+    mask = noise > -0.02
+    body, count = largest_body(mask)
+    bodies, expected = ndimage.label(mask)
+    assert count == expected
+    assert np.array_equal(body, bodies == np.bincount(bodies.ravel())[1:].argmax() + 1)
+    assert np.array_equal(pores_filled(body), ndimage.binary_fill_holes(body))
+    full = np.ones((3, 3, 3), dtype=bool)
+    assert pores_filled(full) is full
