@@ -13,7 +13,9 @@ from regolith_studio.cli import (
     extract,
     fit,
     gallery,
+    generate,
     recipe,
+    repose,
     study,
     warm_up,
     window,
@@ -48,6 +50,7 @@ app.command("open")(window.open_files)
 app.command("describe")(describe.describe)
 app.command("fit")(fit.fit)
 app.command("gallery")(gallery.gallery)
+app.command("generate")(generate.generate)
 app.command("coarsen")(coarsen.coarsen)
 app.command("extract")(extract.extract)
 app.command("run")(recipe.run)
@@ -56,3 +59,4 @@ app.command("check")(check.check)
 app.command("warm-up")(warm_up.warm_up)
 app.add_typer(study.app, name="study")
 app.add_typer(dataset.app, name="dataset")
+app.add_typer(repose.app, name="repose")

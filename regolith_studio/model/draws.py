@@ -1,11 +1,12 @@
 """Virtual particles: coefficients that a model drew, and the closed surfaces they bound."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isqrt
 from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats, locked_integers
@@ -89,6 +90,12 @@ class Draws:
             radii = values if self.scale == "radius" else np.exp(values)
             found[first : first + 1000] = np.cbrt(3 * enclosed_volumes(radii, grid) / (4 * np.pi))
         return found
+
+    def chosen(self, indices: ArrayLike) -> "Draws":
+        """Some of the particles, by index."""
+        picks = np.asarray(indices, dtype=np.int64)
+        parents, components = np.asarray(self.parents)[picks], np.asarray(self.components)[picks]
+        return replace(self, coefficients=self.coefficients[picks], parents=parents, components=components)
 
     def particle(self, index: int, l_max: int | None = None) -> ShCoefficients:
         """Coefficients of the radius of one particle, up to `l_max` (by default that of the draws).

@@ -16,7 +16,6 @@ from regolith_studio.model.models import MODELS
 from regolith_studio.model.protocol import FittedModel
 
 FORMAT = "regolith-studio model"
-LARGEST_FILE = 2**31
 
 
 def write_model(
@@ -50,27 +49,13 @@ def write_model(
     return text, numbers
 
 
-def read_model(path: Path) -> FittedModel:
-    """The model whose JSON file (or stem) is `path`; its NPZ file lies beside it.
+def model_from(document: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]], sha256: str) -> FittedModel:
+    """The model from what its two files held; reading them is the business of ``readers.shape_files``.
 
-    Raises
-    ------
-    FileError
-        If a file is missing, broken, or not the one that was written with the other.
-    """
-    text = path if path.suffix == ".json" else Path(f"{path}.json")
-    try:
-        document = json.loads(_bytes_of(text))
-        packed = _bytes_of(text.with_suffix(".npz"))
-    except (json.JSONDecodeError, UnicodeDecodeError, RecursionError) as error:
-        raise FileError(f"{text.name} is not JSON: {error}.") from error
-    if not isinstance(document, dict) or document.get("format") != FORMAT:
-        raise FileError(f"{text.name} does not say that it is a model of shapes.")
-    return model_from(document, packed)
-
-
-def model_from(document: Mapping[str, Any], packed: bytes) -> FittedModel:
-    """The model from what its two files held.
+    Parameters
+    ----------
+    sha256
+        Of the NPZ file's bytes.
 
     Raises
     ------
@@ -79,26 +64,12 @@ def model_from(document: Mapping[str, Any], packed: bytes) -> FittedModel:
     """
     try:
         expected, key, values = document["arrays"]["sha256"], document["model"], document["values"]
-        if hashlib.sha256(packed).hexdigest() != expected:
+        if sha256 != expected:
             raise FileError("The two files of the model do not belong together.")
         if key not in MODELS:
             raise FileError(f"There is no model called {key!r}, only {', '.join(MODELS)}.")
-        return MODELS[key].restored(values, _arrays(packed))
+        return MODELS[key].restored(values, arrays)
+    except FileError:
+        raise
     except (KeyError, TypeError, ValueError, AttributeError, InputError) as error:
-        if isinstance(error, FileError):
-            raise
         raise FileError(f"The model is broken: {error}.") from error
-
-
-def _arrays(packed: bytes) -> dict[str, NDArray[Any]]:
-    with np.load(io.BytesIO(packed), allow_pickle=False) as stored:
-        return {name: stored[name] for name in stored.files}
-
-
-def _bytes_of(path: Path) -> bytes:
-    try:
-        if path.stat().st_size > LARGEST_FILE:
-            raise FileError(f"{path.name} is larger than a model can be.")
-        return path.read_bytes()
-    except OSError as error:
-        raise FileError(f"{path.name} cannot be read: {error.strerror}.") from error

@@ -113,13 +113,25 @@ def read_card(path: Path) -> MaterialCard:
         If the file cannot be read or is no card.
     """
     try:
-        if path.stat().st_size > LARGEST_CARD:
-            raise FileError(f"{path.name} is larger than a material card can be.")
-        return MaterialCard.model_validate_json(path.read_bytes())
+        return card_from(path.read_bytes(), path.name)
     except OSError as error:
         raise FileError(f"{path.name} cannot be read: {error.strerror}.") from error
+
+
+def card_from(content: bytes, name: str) -> MaterialCard:
+    """A card from the bytes of the file called `name`.
+
+    Raises
+    ------
+    FileError
+        If it is no card.
+    """
+    if len(content) > LARGEST_CARD:
+        raise FileError(f"{name} is larger than a material card can be.")
+    try:
+        return MaterialCard.model_validate_json(content)
     except ValidationError as error:
-        raise FileError(f"{path.name} is no material card: {_first(error)}.") from error
+        raise FileError(f"{name} is no material card: {_first(error)}.") from error
 
 
 def write_card(card: MaterialCard, path: Path) -> Path:

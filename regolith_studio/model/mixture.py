@@ -1,9 +1,9 @@
-"""Mixtures of Gaussian fields in ln r, by expectation and maximisation, and how many parts the data ask for.
+"""Mixtures of Gaussian fields, by expectation and maximisation, and how many parts the data ask for.
 
-Of a particle only ln r_eq and the power P_l of each degree enter: directions within a degree are even in an
-isotropic field. With r = 2 l + 1 orders, ::
+Of a particle only its size x_i (ln r_eq, or c_00 for fields in r) and the power P_l of each degree enter:
+directions within a degree are even in an isotropic field. ::
 
-    ln p(i | k) = ln N(ln r_i; mu_k, s_k^2) - 1/2 sum over l of (r ln A_lk + P_il / A_lk) + constant
+    ln p(i | k) = ln N(x_i; mu_k, s_k^2) - 1/2 sum over l of ((2 l + 1) ln A_lk + P_il / A_lk) + constant
 """
 
 from dataclasses import dataclass
@@ -12,13 +12,37 @@ import numpy as np
 from scipy.cluster.vq import kmeans2
 from scipy.special import logsumexp
 
+from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray
 
 MOST_STEPS = 300
 TOLERANCE = 1e-7
 LEAST_SHARE = 1e-3
 LEAST_DEVIATION = 1e-3
-"""Of ln r_eq within a component."""
+"""Of the size within a component; sizes are logarithms, or shares of their mean."""
+
+
+@dataclass(frozen=True)
+class MixtureSettings:
+    """Parameters
+    ----------
+    l_max
+        Degree of the particles.
+    n_components
+        Number of parts, or ``None`` for the best by the criterion.
+    most_components
+        Highest number tried.
+    n_starts
+        Starts for each number; the most likely one is kept.
+    seed
+        Of the starts.
+    """
+
+    l_max: int = 10
+    n_components: int | None = None
+    most_components: int = 8
+    n_starts: int = 2
+    seed: int = 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,9 +54,9 @@ class Mixture:
     weights
         Shares by number, descending, shape (k,).
     means, deviations
-        Of ln r_eq, shape (k,).
+        Of the size, shape (k,).
     spectra
-        A_l of ln r, shape (k, l_max + 1), A_0 = 0.
+        A_l, shape (k, l_max + 1), A_0 = 0: the size stands for it.
     log_likelihood
         Of the sample, without its constant.
     """
@@ -53,35 +77,84 @@ class Mixture:
         """Bayes' information criterion of Schwarz (1978) for `n` particles; lower is better."""
         return self.n_parameters * float(np.log(n)) - 2 * self.log_likelihood
 
-    def responsibilities(self, logs: FloatArray, powers: FloatArray) -> FloatArray:
+    def responsibilities(self, sizes: FloatArray, powers: FloatArray) -> FloatArray:
         """Probability of each part for each particle, shape (n, k)."""
-        joint = self._joint(logs, powers)
+        joint = self._joint(sizes, powers)
         return np.asarray(np.exp(joint - logsumexp(joint, axis=1, keepdims=True)))
 
-    def _joint(self, logs: FloatArray, powers: FloatArray) -> FloatArray:
+    def _joint(self, sizes: FloatArray, powers: FloatArray) -> FloatArray:
         orders = 2 * np.arange(1, self.spectra.shape[1]) + 1
         variances = self.spectra[:, 1:]
         shape = powers[:, 1:] @ (1 / variances).T + (np.log(variances) @ orders)[None]
-        size = ((logs[:, None] - self.means) / self.deviations) ** 2 + 2 * np.log(self.deviations)
-        return np.asarray(np.log(self.weights) - 0.5 * (shape + size))
+        far = ((sizes[:, None] - self.means) / self.deviations) ** 2 + 2 * np.log(self.deviations)
+        return np.asarray(np.log(self.weights) - 0.5 * (shape + far))
 
 
-def fit_mixture(logs: FloatArray, powers: FloatArray, k: int, rng: np.random.Generator) -> Mixture:
-    """The mixture of `k` parts from one start by k-means++ on ln r_eq and the ln P_l.
+def chosen_mixture(
+    sizes: FloatArray, powers: FloatArray, settings: MixtureSettings
+) -> tuple[Mixture, tuple[float, ...]]:
+    """The mixture with the number of parts that was asked for, or the lowest criterion; and the criterion.
 
     Parameters
     ----------
-    logs
-        ln r_eq, shape (n,).
+    sizes, powers
+        As for :func:`fit_mixture`.
+
+    Returns
+    -------
+    The mixture, and the criterion for 1, 2, ... parts; nothing if the number was given.
+
+    Raises
+    ------
+    InputError
+        If there are fewer than four particles for each part, or there is nothing to tell parts by.
+    """
+    if settings.l_max < 1:
+        raise InputError(
+            f"A mixture tells parts by their spectra and needs l_max of at least 1, got {settings.l_max}."
+        )
+    fits = [_best_start(sizes, powers, k, settings) for k in _numbers(len(sizes), settings)]
+    criterion = [fit.bic(len(sizes)) for fit in fits]
+    best = fits[int(np.argmin(criterion))]
+    return best, tuple(criterion) if settings.n_components is None else ()
+
+
+def _numbers(n: int, settings: MixtureSettings) -> list[int]:
+    most = max(1, n // 4)
+    if settings.n_components is None:
+        return list(range(1, max(1, min(settings.most_components, most)) + 1))
+    if not 1 <= settings.n_components <= most:
+        raise InputError(
+            f"{n} particles are enough for 1 to {most} parts, got {settings.n_components}: four particles "
+            "are needed for each."
+        )
+    return [settings.n_components]
+
+
+def _best_start(sizes: FloatArray, powers: FloatArray, k: int, settings: MixtureSettings) -> Mixture:
+    starts = 1 if k == 1 else settings.n_starts
+    generators = [
+        np.random.default_rng(np.random.SeedSequence(settings.seed, spawn_key=(k, i))) for i in range(starts)
+    ]
+    return max((fit_mixture(sizes, powers, k, rng) for rng in generators), key=lambda fit: fit.log_likelihood)
+
+
+def fit_mixture(sizes: FloatArray, powers: FloatArray, k: int, rng: np.random.Generator) -> Mixture:
+    """The mixture of `k` parts from one start by k-means++ on the sizes and the ln P_l.
+
+    Parameters
+    ----------
+    sizes
+        ln r_eq, or c_00 over its mean, shape (n,).
     powers
         Sum of squares at each degree, shape (n, l_max + 1).
     """
     floor = np.maximum(powers.mean(axis=0) * 1e-9, 1e-300)
-    shares = _start(logs, np.log(np.maximum(powers[:, 1:], floor[1:])), k, rng)
+    shares = _start(sizes, np.log(np.maximum(powers[:, 1:], floor[1:])), k, rng)
     before = -np.inf
     for _ in range(MOST_STEPS):
-        mixture = _maximised(logs, powers, shares, floor)
-        joint = mixture._joint(logs, powers)
+        mixture = _maximised(sizes, powers, shares, floor)
+        joint = mixture._joint(sizes, powers)
         total = logsumexp(joint, axis=1, keepdims=True)
         shares, now = np.exp(joint - total), float(total.sum())
         if now - before < TOLERANCE * abs(now):
@@ -97,20 +170,20 @@ def fit_mixture(logs: FloatArray, powers: FloatArray, k: int, rng: np.random.Gen
     )
 
 
-def _start(logs: FloatArray, heights: FloatArray, k: int, rng: np.random.Generator) -> FloatArray:
+def _start(sizes: FloatArray, heights: FloatArray, k: int, rng: np.random.Generator) -> FloatArray:
     """Shares of 0 and 1, softened so that no part is empty, shape (n, k)."""
-    features = np.column_stack([logs, heights[:, : min(6, heights.shape[1])]])
+    features = np.column_stack([sizes, heights[:, : min(6, heights.shape[1])]])
     features = (features - features.mean(axis=0)) / np.maximum(features.std(axis=0), 1e-9)
     labels = (
-        kmeans2(features, k, minit="++", rng=rng, missing="warn")[1] if k > 1 else np.zeros(len(logs), int)
+        kmeans2(features, k, minit="++", rng=rng, missing="warn")[1] if k > 1 else np.zeros(len(sizes), int)
     )
     return np.asarray(0.98 * np.eye(k)[labels] + 0.02 / k)
 
 
-def _maximised(logs: FloatArray, powers: FloatArray, shares: FloatArray, floor: FloatArray) -> Mixture:
+def _maximised(sizes: FloatArray, powers: FloatArray, shares: FloatArray, floor: FloatArray) -> Mixture:
     members = np.maximum(shares.sum(axis=0), LEAST_SHARE)
-    means = shares.T @ logs / members
-    variances = (shares * (logs[:, None] - means) ** 2).sum(axis=0) / members
+    means = shares.T @ sizes / members
+    variances = (shares * (sizes[:, None] - means) ** 2).sum(axis=0) / members
     orders = 2 * np.arange(powers.shape[1]) + 1
     spectra = np.maximum(shares.T @ powers / members[:, None], floor) / orders
     spectra[:, 0] = 0.0

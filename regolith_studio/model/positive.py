@@ -1,4 +1,4 @@
-"""Is a radius positive everywhere, not only at the nodes of a grid?"""
+"""Is a radius positive everywhere, not only at the nodes of a grid, and a particle of the right size?"""
 
 from functools import cache
 from math import isqrt
@@ -8,7 +8,7 @@ import numpy as np
 from regolith_studio.geometry.arrays import BoolArray, FloatArray
 from regolith_studio.geometry.directions import icosphere
 from regolith_studio.harmonics.legendre import harmonics
-from regolith_studio.model.sphere_grid import sphere_grid
+from regolith_studio.model.sphere_grid import enclosed_volumes, sphere_grid
 
 SAFE_SHARE = 0.15
 """Lowest radius on the coarse grid, as a share of the mean, above which no closer look is taken."""
@@ -30,6 +30,17 @@ def positive_rows(coefficients: FloatArray) -> BoolArray:
     if len(close):
         positive[close] = (coefficients[close] @ _fine_basis(l_max)).min(axis=1) > 0
     return positive
+
+
+def acceptable(bounds: tuple[float, float] | None, coefficients: FloatArray) -> BoolArray:
+    """Whether each radius function is positive, and its equivalent radius inside `bounds`, shape (n,)."""
+    good = positive_rows(coefficients)
+    if bounds is not None:
+        l_max = isqrt(coefficients.shape[1]) - 1
+        grid = sphere_grid(3 * l_max // 2 + 1, l_max)
+        sizes = np.cbrt(3 * np.abs(enclosed_volumes(coefficients @ grid.basis, grid)) / (4 * np.pi))
+        good &= (sizes >= bounds[0]) & (sizes <= bounds[1])
+    return good
 
 
 @cache

@@ -7,10 +7,10 @@ from regolith_studio.errors import InputError
 from regolith_studio.harmonics.coefficients import degrees
 from regolith_studio.model.draws import Draws
 from regolith_studio.model.log_shapes import directed, log_shapes, sized
+from regolith_studio.model.mixture import MixtureSettings
 from regolith_studio.model.models.log_field import MODEL as LOG_FIELD
 from regolith_studio.model.models.log_field import LogField, LogFieldSettings
 from regolith_studio.model.models.mixture_field import MODEL as MIXTURE
-from regolith_studio.model.models.mixture_field import MixtureFieldSettings
 from regolith_studio.model.sample import Sample
 from regolith_studio.model.size_law import LogNormalSizes
 
@@ -89,7 +89,7 @@ def test_that_sizes_far_outside_the_sample_are_drawn() -> None:
 def test_that_two_constituents_are_told_apart_by_the_criterion() -> None:
     round_ones, angular = log_sample(120, 0.03, 2.0, 0), log_sample(60, 0.15, 2.2, 1)
     sample = Sample(np.concatenate([round_ones.coefficients, angular.coefficients]))
-    mixture = MIXTURE.fit(sample, MixtureFieldSettings(l_max=3, most_components=4))
+    mixture = MIXTURE.fit(sample, MixtureSettings(l_max=3, most_components=4))
     assert mixture.n_components == 2
     assert len(mixture.bic) == 4
     np.testing.assert_allclose(mixture.sizes.weights, [2 / 3, 1 / 3], atol=0.05)
@@ -104,11 +104,11 @@ def test_that_two_constituents_are_told_apart_by_the_criterion() -> None:
 
 def test_that_one_part_is_the_pooled_field() -> None:
     sample = log_sample(100, 0.1, 3.0, 0)
-    mixture = MIXTURE.fit(sample, MixtureFieldSettings(l_max=4, n_components=1))
+    mixture = MIXTURE.fit(sample, MixtureSettings(l_max=4, n_components=1))
     field = LOG_FIELD.fit(sample, LogFieldSettings(4, "pooled", "log_normal", size_dependent=False))
     np.testing.assert_allclose(mixture.spectra[0], field.spectrum, rtol=1e-6, atol=1e-15)
 
 
 def test_that_more_parts_than_the_particles_can_carry_are_refused() -> None:
     with pytest.raises(InputError, match="20 particles are enough for 1 to 5 parts, got 6"):
-        MIXTURE.fit(log_sample(20, 0.1, 1.0, 0), MixtureFieldSettings(l_max=3, n_components=6))
+        MIXTURE.fit(log_sample(20, 0.1, 1.0, 0), MixtureSettings(l_max=3, n_components=6))

@@ -1,20 +1,20 @@
 """What holds for every model."""
 
 import pickle
-import time
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from regolith_studio.errors import FileError, InputError
+from regolith_studio.errors import InputError
 from regolith_studio.geometry.health import inspect
 from regolith_studio.model.draws import virtual_mesh
-from regolith_studio.model.files import read_model, write_model
+from regolith_studio.model.files import write_model
 from regolith_studio.model.models import DEFAULT_MODEL, MODELS
 from regolith_studio.model.protocol import FittedModel
 from regolith_studio.model.sample import Sample
+from regolith_studio.readers.shape_files import read_shape_source
 
 L_MAX = 4
 keys = pytest.mark.parametrize("key", sorted(MODELS))
@@ -27,7 +27,13 @@ def fitted(rough_sample: Callable[..., Sample]) -> dict[str, FittedModel]:
 
 
 def test_that_the_models_are_found_by_themselves() -> None:
-    assert set(MODELS) == {"gaussian_field", "log_field", "mixture_field", "sample_matched"}
+    assert set(MODELS) == {
+        "gaussian_field",
+        "gaussian_mixture",
+        "log_field",
+        "mixture_field",
+        "sample_matched",
+    }
     assert DEFAULT_MODEL in MODELS
     assert all(MODELS[key].key == key for key in MODELS)
 
@@ -82,7 +88,8 @@ def test_that_a_model_read_back_draws_the_same_bytes(
     key: str, fitted: dict[str, FittedModel], tmp_path: Path
 ) -> None:
     paths = write_model(tmp_path / "a" / key, fitted[key], {"sample": "synthetic"})
-    again = read_model(paths[0])
+    again = read_shape_source(str(paths[0])).content
+    assert isinstance(again, type(fitted[key]))
     assert again.draw(20, 5).coefficients.tobytes() == fitted[key].draw(20, 5).coefficients.tobytes()
     copies = write_model(tmp_path / "b" / key, again, {"sample": "synthetic"})
     assert [path.read_bytes() for path in paths] == [path.read_bytes() for path in copies]
@@ -117,37 +124,9 @@ def test_that_particles_of_one_size_are_drawn_at_that_size(
 
 
 @keys
-def test_that_many_real_particles_are_drawn_in_seconds(key: str, cement: Sample) -> None:
-    """A hundred thousand take 1.4 to 6 s of one core; the bound leaves room for a busy machine."""
-    model = MODELS[key].fit(cement)
-    model.draw(10, 0)
-    begin = time.thread_time()
-    draws = model.draw(5000, 0)
-    assert 20 * (time.thread_time() - begin) < 30
+def test_that_only_gaussian_fields_of_the_radius_throw_draws_of_real_particles_away(
+    key: str, cement: Sample
+) -> None:
+    draws = MODELS[key].fit(cement).draw(3000, 0)
     assert np.isfinite(draws.coefficients).all()
-    assert (draws.rejected > 0) == (key == "gaussian_field")
-
-
-@keys
-def test_that_files_of_different_models_are_not_mixed(
-    key: str, fitted: dict[str, FittedModel], tmp_path: Path
-) -> None:
-    text, numbers = write_model(tmp_path / key, fitted[key])
-    numbers.write_bytes(numbers.read_bytes()[:-1])
-    with pytest.raises(FileError, match="do not belong together"):
-        read_model(text)
-
-
-@pytest.mark.parametrize(
-    ("content", "words"),
-    [("", "is not JSON"), ("[1]", "does not say"), ('{"format": "regolith-studio model"}', "is broken")],
-)
-def test_that_a_file_that_is_no_model_is_refused_in_one_sentence(
-    content: str, words: str, tmp_path: Path
-) -> None:
-    (tmp_path / "x.json").write_text(content)
-    np.savez(tmp_path / "x.npz")
-    with pytest.raises(FileError, match=words):
-        read_model(tmp_path / "x")
-    with pytest.raises(FileError, match="cannot be read"):
-        read_model(tmp_path / "y")
+    assert (draws.rejected > 0) == key.startswith("gaussian")

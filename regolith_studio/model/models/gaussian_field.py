@@ -13,15 +13,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from regolith_studio.errors import InputError
-from regolith_studio.geometry.arrays import BoolArray, FloatArray, locked_floats
+from regolith_studio.geometry.arrays import FloatArray, locked_floats
 from regolith_studio.harmonics.coefficients import degrees
 from regolith_studio.model.chunks import accepted, chunks, joined
 from regolith_studio.model.draws import Draws
-from regolith_studio.model.positive import positive_rows
+from regolith_studio.model.positive import acceptable
 from regolith_studio.model.protocol import SizeRange
 from regolith_studio.model.sample import Sample
 from regolith_studio.model.size_law import checked_bounds
-from regolith_studio.model.sphere_grid import enclosed_volumes, sphere_grid
 
 KEY = "gaussian_field"
 
@@ -92,7 +91,7 @@ class GaussianField:
         bounds = checked_bounds(size_range)
         parts = []
         for rng, wanted in chunks(n, seed):
-            rows, rejected = accepted(partial(self._propose, rng), partial(_acceptable, bounds), wanted)
+            rows, rejected = accepted(partial(self._propose, rng), partial(acceptable, bounds), wanted)
             parts.append(Draws(rows, "radius", KEY, seed, self.unit, rejected))
         return joined(parts, Draws(np.empty((0, (self.l_max + 1) ** 2)), "radius", KEY, seed, self.unit))
 
@@ -105,16 +104,6 @@ class GaussianField:
     def stored(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
         """Plain values for JSON, no arrays."""
         return {"mean": self.mean, "spectrum": self.spectrum.tolist(), "unit": self.unit}, {}
-
-
-def _acceptable(bounds: SizeRange | None, rows: FloatArray) -> BoolArray:
-    good = positive_rows(rows)
-    if bounds is not None:
-        l_max = round(rows.shape[1] ** 0.5) - 1
-        grid = sphere_grid(3 * l_max // 2 + 1, l_max)
-        sizes = np.cbrt(3 * np.abs(enclosed_volumes(rows @ grid.basis, grid)) / (4 * np.pi))
-        good &= (sizes >= bounds[0]) & (sizes <= bounds[1])
-    return good
 
 
 class GaussianFieldModel:

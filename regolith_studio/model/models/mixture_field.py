@@ -18,35 +18,12 @@ from regolith_studio.harmonics.coefficients import degrees
 from regolith_studio.model.chunks import CHUNK, chunks, joined
 from regolith_studio.model.draws import Draws
 from regolith_studio.model.log_shapes import log_shapes, sized
-from regolith_studio.model.mixture import Mixture, fit_mixture
+from regolith_studio.model.mixture import MixtureSettings, chosen_mixture
 from regolith_studio.model.protocol import SizeRange
 from regolith_studio.model.sample import Sample
 from regolith_studio.model.size_law import LogNormalSizes, checked_bounds
 
 KEY = "mixture_field"
-
-
-@dataclass(frozen=True)
-class MixtureFieldSettings:
-    """Parameters
-    ----------
-    l_max
-        Degree of ln r.
-    n_components
-        Number of parts, or ``None`` for the best by the criterion.
-    most_components
-        Highest number tried.
-    n_starts
-        Starts for each number; the most likely one is kept.
-    seed
-        Of the starts.
-    """
-
-    l_max: int = 10
-    n_components: int | None = None
-    most_components: int = 8
-    n_starts: int = 2
-    seed: int = 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +63,7 @@ class MixtureField:
         names = tuple(self.names) or tuple(f"part {i + 1}" for i in range(k))
         object.__setattr__(self, "names", names)
         if len(names) != k:
-            raise ValueError(f"{k} parts cannot have {len(names)} names")
+            raise InputError(f"A mixture of {k} parts needs {k} names, got {len(names)}.")
 
     def __reduce__(self) -> tuple[Callable[..., "MixtureField"], tuple[Any, ...]]:
         fields = (self.sizes, self.spectra, self.unit, self.bic, self.names, self.labels)
@@ -141,9 +118,9 @@ class MixtureFieldModel:
     key = KEY
     label = "Mixture of fields"
     summary = "Constituents with sizes and spectra of their own; their number by Bayes' criterion."
-    Settings = MixtureFieldSettings
+    Settings = MixtureSettings
 
-    def fit(self, sample: Sample, settings: MixtureFieldSettings | None = None) -> MixtureField:
+    def fit(self, sample: Sample, settings: MixtureSettings | None = None) -> MixtureField:
         """The mixture of a sample.
 
         Raises
@@ -152,31 +129,13 @@ class MixtureFieldModel:
             If there are fewer than four particles for each part, the sample is not expanded so far, or fewer
             than two particles have a positive radius.
         """
-        chosen = settings or MixtureFieldSettings()
-        if chosen.l_max < 1:
-            raise InputError(
-                f"A mixture tells parts by their spectra and needs l_max of at least 1, got {chosen.l_max}."
-            )
+        chosen = settings or MixtureSettings()
         shapes = log_shapes(sample.truncated(chosen.l_max))
         logs, powers = np.log(shapes.equivalent_radii), shapes.powers
-        numbers = self._numbers(len(logs), chosen)
-        fits = [_best_start(logs, powers, k, chosen) for k in numbers]
-        bic = [fit.bic(len(logs)) for fit in fits]
-        best = fits[int(np.argmin(bic))]
+        best, curve = chosen_mixture(logs, powers, chosen)
         labels = best.responsibilities(logs, powers).argmax(axis=1)
-        curve = tuple(bic) if chosen.n_components is None else ()
         sizes = LogNormalSizes(best.weights, best.means, best.deviations)
         return MixtureField(sizes, best.spectra, sample.unit, curve, labels=labels)
-
-    def _numbers(self, n: int, chosen: MixtureFieldSettings) -> list[int]:
-        if chosen.n_components is None:
-            return list(range(1, max(1, min(chosen.most_components, n // 4)) + 1))
-        if not 1 <= chosen.n_components <= max(1, n // 4):
-            raise InputError(
-                f"{n} particles are enough for 1 to {max(1, n // 4)} parts, got {chosen.n_components}: four "
-                "particles are needed for each."
-            )
-        return [chosen.n_components]
 
     def restored(self, values: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> MixtureField:
         """The mixture from what it stored."""
@@ -188,14 +147,6 @@ class MixtureFieldModel:
             tuple(values["names"]),
             arrays.get("labels"),
         )
-
-
-def _best_start(logs: FloatArray, powers: FloatArray, k: int, chosen: MixtureFieldSettings) -> Mixture:
-    starts = 1 if k == 1 else chosen.n_starts
-    generators = [
-        np.random.default_rng(np.random.SeedSequence(chosen.seed, spawn_key=(k, i))) for i in range(starts)
-    ]
-    return max((fit_mixture(logs, powers, k, rng) for rng in generators), key=lambda fit: fit.log_likelihood)
 
 
 MODEL = MixtureFieldModel()

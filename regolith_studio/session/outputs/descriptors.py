@@ -1,7 +1,7 @@
 """Descriptors and health of particles as JSON and as a table."""
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Protocol
 
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.geometry.particle import Particle
@@ -36,7 +36,19 @@ def short_table(particles: Sequence[Particle], facts: Sequence[Examined]) -> Tab
     return Table("", (Column("name"), *columns, Column("sound")), tuple(rows))
 
 
-def descriptor_table(particles: Sequence[Particle], facts: Sequence[Examined]) -> Table:
+class Named(Protocol):
+    """Anything that a row of a table can be about."""
+
+    @property
+    def name(self) -> str:
+        """Unique in the table."""
+
+    @property
+    def group(self) -> str:
+        """That it belongs to; may be empty."""
+
+
+def descriptor_table(particles: Sequence[Named], facts: Sequence[Examined]) -> Table:
     """One row a particle, one column a descriptor with its unit."""
     keys = [key for key in CATALOGUE if any(key in (each.descriptors or ()) for each in facts)]
     columns = [Column("name"), Column("group")]

@@ -1,0 +1,155 @@
+"""``generate``: virtual particles from a fitted sample, a fitted model or a material card."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from regolith_studio.cli.options import Folder, Jobs, Json, Level, Seed, Settings, Unit, as_bad_use, values
+
+if TYPE_CHECKING:
+    from regolith_studio.jobs.generating import GenerateOrder
+    from regolith_studio.readers.shape_files import ShapeSource
+
+Sources = Annotated[
+    list[str],
+    typer.Argument(
+        metavar="FIT|CARD|MODEL|MESH...",
+        help="A fit or model (.json), a material card (file, or name of a shipped one), or mesh files.",
+    ),
+]
+Number = Annotated[int, typer.Option("--number", "-n", help="Particles to draw.", metavar="N")]
+Model = Annotated[
+    str,
+    typer.Option(
+        "--model",
+        help="gaussian_field gaussian_mixture log_field mixture_field sample_matched (by itself the last).",
+        metavar="NAME",
+        show_default=False,
+    ),
+]
+Degree = Annotated[
+    int | None,
+    typer.Option("--l-max", help="Degree of the particles.", metavar="L", show_default="10, or the source's"),
+]
+SizeRange = Annotated[
+    tuple[float, float] | None,
+    typer.Option(
+        "--size-range", help="Equivalent radii in micrometres.", metavar="MIN MAX", show_default="all"
+    ),
+]
+Format = Annotated[
+    str, typer.Option("--format", help="stl: a mesh each; npz: coefficients of all.", metavar="F")
+]
+Names = Annotated[
+    str,
+    typer.Option(
+        "--names", help="Names of a mixture's parts, the most numerous first: basalt,glass.", metavar="LIST"
+    ),
+]
+ModelFile = Annotated[
+    Path | None,
+    typer.Option("--save-model", help="Also write MODEL.json and MODEL.npz.", metavar="MODEL"),
+]
+
+
+def generate(
+    sources: Sources,
+    output: Folder,
+    n: Number = 100,
+    model: Model = "",
+    set_: Settings = None,
+    l_max: Degree = None,
+    size_range: SizeRange = None,
+    format_: Format = "stl",
+    level: Level = 4,
+    names: Names = "",
+    save_model: ModelFile = None,
+    unit: Unit = "um",
+    json: Json = False,
+    jobs: Jobs = 1,
+    seed: Seed = 0,
+) -> None:
+    """Draw virtual particles with the shapes and sizes of a sample (section 2.3)."""
+    from regolith_studio.cli.terminal import complain, follow, print_json
+    from regolith_studio.jobs.generating import GenerateOrder, draw, fit_model, groups_of
+    from regolith_studio.session.choices import Choices
+    from regolith_studio.session.outputs.staging import staged_folder
+    from regolith_studio.session.outputs.virtual import Generated, write_document
+
+    with as_bad_use():
+        Choices(level=level)
+        order = GenerateOrder(model, tuple(values(set_, "setting").items()), l_max, n, seed, size_range)
+        if format_ not in ("stl", "npz"):
+            raise typer.BadParameter(f"The format must be stl or npz, got {format_!r}.")
+    source = shape_source(sources, unit, order, jobs)
+    complain(source.notes)
+    fitted = _named(follow(fit_model(source, order)), names)
+    draws = follow(draw(fitted, order))
+    made = Generated(source, order, fitted, draws, groups_of(draws, fitted))
+    with staged_folder(output) as stage:
+        extra = _write(stage, made, format_, level, jobs)
+        document = write_document(stage, made, extra)
+    if save_model is not None:
+        _save(save_model, made)
+    if json:
+        print_json(document | {"folder": str(output)})
+    else:
+        thrown = f", {draws.rejected} draws thrown away" if draws.rejected else ""
+        typer.echo(f"{len(draws)} particles by {fitted.key} in {output}{thrown}")
+
+
+def shape_source(
+    sources: list[str], unit: str, order: "GenerateOrder | None" = None, jobs: int = 1
+) -> "ShapeSource":
+    """What the arguments of a command name: one fit, card or model, or meshes, which are expanded.
+
+    Raises
+    ------
+    FileError
+        If nothing can be read.
+    """
+    from regolith_studio.cli.inputs import read_inputs
+    from regolith_studio.cli.terminal import follow
+    from regolith_studio.jobs.generating import expansion_of, sample_of_meshes
+    from regolith_studio.readers.shape_files import is_shape_source, read_shape_source
+
+    named = [source for source in sources if is_shape_source(source)]
+    if named and len(sources) > 1:
+        raise typer.BadParameter(f"Give one fit, card or model, or meshes only; {named[0]} is not a mesh.")
+    if named:
+        return read_shape_source(named[0])
+    loaded = read_inputs([Path(source) for source in sources], unit)
+    found: ShapeSource = follow(sample_of_meshes(loaded.particles, expansion_of(order), jobs))
+    return found
+
+
+def _named(fitted: Any, names: str) -> Any:
+    """The model with its parts named, if names were given."""
+    if not names:
+        return fitted
+    wanted = [name.strip() for name in names.split(",")]
+    if not hasattr(fitted, "renamed"):
+        raise typer.BadParameter(f"Only a mixture has parts with names, and the model is {fitted.key}.")
+    with as_bad_use():
+        return fitted.renamed(wanted)
+
+
+def _write(stage: Path, made: Any, format_: str, level: int, jobs: int) -> dict[str, Any]:
+    from regolith_studio.cli.terminal import follow
+    from regolith_studio.jobs.generating import write_meshes
+    from regolith_studio.session.outputs import virtual
+
+    if format_ == "npz":
+        virtual.write_coefficients(stage, made)
+        return {"files": [virtual.ARRAYS, virtual.TABLE]}
+    facts = follow(write_meshes(made.draws, made.groups, level, stage, jobs))
+    virtual.write_table_of_meshes(stage, made, facts)
+    return {"level": level, "files": ["*.stl", virtual.TABLE]}
+
+
+def _save(stem: Path, made: Any) -> None:
+    from regolith_studio.model.files import write_model
+
+    bare = stem.with_suffix("") if stem.suffix in (".json", ".npz") else stem
+    write_model(bare, made.model, {"source": made.source.name, "sha256": made.source.sha256 or None})

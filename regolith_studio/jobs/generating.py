@@ -1,0 +1,236 @@
+"""Virtual particles (sections 2.3 and 3.1): from a source to a fitted model, to draws, to meshes."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from regolith_studio.errors import InputError
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.harmonics.fit import HarmonicFit
+from regolith_studio.harmonics.surface import DEFAULT_LEVEL
+from regolith_studio.imaging.stl import stl_bytes
+from regolith_studio.jobs.batch import value_of
+from regolith_studio.jobs.crew import Crew, hired
+from regolith_studio.jobs.events import Job, Progress, Started, Steps
+from regolith_studio.jobs.examining import Examined, examine
+from regolith_studio.jobs.fitting import FIT_DEGREE, FitOrder, fit_sample
+from regolith_studio.model.draws import Draws, virtual_mesh
+from regolith_studio.model.materials import MaterialCard
+from regolith_studio.model.models import DEFAULT_MODEL, MODELS
+from regolith_studio.model.protocol import FittedModel, SizeRange
+from regolith_studio.model.sample import Sample
+from regolith_studio.model.settings import model_settings
+from regolith_studio.model.size_law import checked_bounds
+from regolith_studio.readers.shape_files import ShapeSource, radius_of
+
+STL_HEADER = "Regolith Studio, virtual particle, micrometres"
+CARD_MODEL = "log_field"
+PAPER_DEGREE = 10
+BATCH = 20
+"""Particles that one process makes at a time."""
+
+
+@dataclass(frozen=True)
+class GenerateOrder:
+    """Which model is to draw which particles.
+
+    Parameters
+    ----------
+    model
+        Key of ``MODELS``; empty for what the source brings, or the default one.
+    settings
+        Of the model that differ from its own, as pairs.
+    l_max
+        Degree of the particles; ``None`` for that of the source, and at most 10, as in section 3.1.
+    n
+        How many.
+    seed
+        Of all draws.
+    size_range
+        Smallest and largest equivalent radius, micrometres.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range or a name unknown.
+    """
+
+    model: str = ""
+    settings: tuple[tuple[str, Any], ...] = ()
+    l_max: int | None = None
+    n: int = 100
+    seed: int = 0
+    size_range: SizeRange | None = None
+
+    def __post_init__(self) -> None:
+        if self.n < 1:
+            raise InputError(f"At least one particle must be drawn, got {self.n}.")
+        if self.seed < 0:
+            raise InputError(f"A seed must not be negative, got {self.seed}.")
+        if self.l_max is not None and not 1 <= self.l_max <= FIT_DEGREE:
+            raise InputError(f"l_max must lie between 1 and {FIT_DEGREE}, got {self.l_max}.")
+        checked_bounds(self.size_range)
+        if self.model or self.settings:
+            model_settings(self.model or DEFAULT_MODEL, dict(self.settings))
+
+
+def expansion_of(order: GenerateOrder | None = None) -> FitOrder:
+    """How meshes are expanded for an order: to twice its degree, which ``sample_matched`` likes."""
+    degree = PAPER_DEGREE if order is None or order.l_max is None else order.l_max
+    return FitOrder(min(FIT_DEGREE, 2 * degree))
+
+
+def sample_of_meshes(particles: Sequence[Particle], order: FitOrder, workers: int | Crew = 1) -> Steps:
+    """Expand particles for a model; returns a :class:`ShapeSource`, its notes name those left out.
+
+    Raises
+    ------
+    InputError
+        If fewer than two can be expanded.
+    """
+    fits = yield from fit_sample(particles, order, workers)
+    return source_of_fits(particles, fits)
+
+
+def source_of_fits(particles: Sequence[Particle], fits: Sequence[HarmonicFit | str]) -> ShapeSource:
+    """The sample of what ``fit_sample`` returned for `particles`; failed ones become notes."""
+    good = [
+        (p.name, radius_of(fit)) for p, fit in zip(particles, fits, strict=True) if not isinstance(fit, str)
+    ]
+    notes = tuple(f"{p.name}: {fit}" for p, fit in zip(particles, fits, strict=True) if isinstance(fit, str))
+    groups = sorted({particle.group for particle in particles if particle.group})
+    sample = Sample.of([coefficients for _, coefficients in good], [name for name, _ in good])
+    return ShapeSource(sample, ", ".join(groups) or "meshes", notes=notes)
+
+
+def fit_model(source: ShapeSource, order: GenerateOrder) -> Steps:
+    """The fitted model that an order asks for of a source; returns a ``FittedModel``.
+
+    Raises
+    ------
+    InputError
+        If source and order do not go together, or the model cannot be fitted.
+    """
+    content = source.content
+    yield Started("Fitting the model")
+    if isinstance(content, MaterialCard):
+        return _of_card(content, order)
+    if not isinstance(content, Sample):
+        return _as_it_is(content, order)
+    key = order.model or DEFAULT_MODEL
+    degree = min(PAPER_DEGREE, content.l_max) if order.l_max is None else order.l_max
+    settings = replace(model_settings(key, dict(order.settings)), l_max=degree)
+    return MODELS[key].fit(content, settings)
+
+
+def draw(model: FittedModel, order: GenerateOrder) -> Steps:
+    """The particles of an order, chunk by chunk; returns :class:`Draws`."""
+    yield Started("Drawing", order.n)
+    draws = model.draw(order.n, order.seed, order.size_range)
+    yield Progress(order.n, order.n)
+    return draws
+
+
+def _of_card(card: MaterialCard, order: GenerateOrder) -> FittedModel:
+    if order.model not in ("", CARD_MODEL) or order.settings:
+        raise InputError(
+            f"The card {card.name} holds no particles, so that no other model can be fitted to it: it brings "
+            f"{CARD_MODEL} with settings of its own."
+        )
+    return card.model(min(PAPER_DEGREE, card.l_max) if order.l_max is None else order.l_max)
+
+
+def _as_it_is(model: FittedModel, order: GenerateOrder) -> FittedModel:
+    if order.model not in ("", model.key) or order.settings or order.l_max not in (None, model.l_max):
+        raise InputError(
+            f"The file holds a fitted model ({model.key}, l_max = {model.l_max}); for another one begin with "
+            "the fit of the sample."
+        )
+    return model
+
+
+def particle_names(n: int, first: int = 0) -> tuple[str, ...]:
+    """virtual-000001, virtual-000002 and so on, whatever their number."""
+    return tuple(f"virtual-{first + i + 1:06d}" for i in range(n))
+
+
+def groups_of(draws: Draws, model: FittedModel) -> tuple[str, ...]:
+    """Name of the mixture's part that each particle was drawn from; empty where a model has no parts."""
+    names = getattr(model, "names", ())
+    return tuple(names[c] for c in np.asarray(draws.components)) if names else ("",) * len(draws)
+
+
+def particles_of(
+    draws: Draws, groups: Sequence[str] = (), level: int = DEFAULT_LEVEL, first: int = 0
+) -> tuple[Particle, ...]:
+    """The drawn particles as closed meshes on ``icosphere(level)``.
+
+    Parameters
+    ----------
+    groups
+        One for each particle; none by default.
+    first
+        Number of the first one, for its name.
+    """
+    names = particle_names(len(draws), first)
+    return tuple(
+        Particle(name, virtual_mesh(draws, i, level), groups[i] if groups else "", notes=(_origin(draws),))
+        for i, name in enumerate(names)
+    )
+
+
+def _origin(draws: Draws) -> str:
+    return f"Drawn by {draws.model} with seed {draws.seed}."
+
+
+def make_particles(draws: Draws, groups: Sequence[str] = (), level: int = DEFAULT_LEVEL) -> Steps:
+    """As :func:`particles_of` with progress; returns a tuple of :class:`Particle`."""
+    yield Started("Making meshes", len(draws))
+    made: list[Particle] = []
+    for first in range(0, len(draws), BATCH):
+        part = draws.chosen(range(first, min(first + BATCH, len(draws))))
+        made += particles_of(part, groups[first : first + BATCH], level, first)
+        yield Progress(len(made), len(draws), made[-1].name)
+    return tuple(made)
+
+
+def write_meshes(
+    draws: Draws, groups: Sequence[str], level: int, folder: Path, workers: int | Crew = 1
+) -> Steps:
+    """Write ``<name>.stl`` of each particle into `folder`; returns what is known of each, in order.
+
+    Each process makes, measures and writes particles of its own, so that memory does not grow with their
+    number. Returns a tuple of :class:`Examined`.
+    """
+    yield Started("Writing particles", len(draws))
+    jobs = (
+        Job(
+            _write_some,
+            (
+                draws.chosen(range(first, min(first + BATCH, len(draws)))),
+                tuple(groups[first : first + BATCH]),
+                level,
+                folder,
+                first,
+            ),
+        )
+        for first in range(0, len(draws), BATCH)
+    )
+    facts: list[Examined] = []
+    with hired(workers) as crew:
+        for ending in crew.endings(jobs):
+            facts += value_of(ending) if ending is not None else ()
+            yield Progress(len(facts), len(draws))
+    return tuple(facts)
+
+
+def _write_some(draws: Draws, groups: tuple[str, ...], level: int, folder: Path, first: int) -> Steps:
+    yield Started("Writing particles", len(draws))
+    facts = []
+    for particle in particles_of(draws, groups, level, first):
+        (folder / f"{particle.name}.stl").write_bytes(stl_bytes(particle.mesh, STL_HEADER))
+        facts.append(examine(particle))
+    return tuple(facts)

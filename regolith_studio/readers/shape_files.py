@@ -1,0 +1,138 @@
+"""Files that virtual particles can be drawn from: a fitted sample, a fitted model, a material card."""
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from regolith_studio.errors import FileError, InputError
+from regolith_studio.harmonics import files as fit_files
+from regolith_studio.harmonics.coefficients import ShCoefficients
+from regolith_studio.harmonics.fit import HarmonicFit
+from regolith_studio.harmonics.surface import radii
+from regolith_studio.model import files as model_files
+from regolith_studio.model.materials import MaterialCard, card_from, materials
+from regolith_studio.model.protocol import FittedModel
+from regolith_studio.model.sample import Sample
+from regolith_studio.model.sphere_grid import sphere_grid
+from regolith_studio.readers.npz import read_bytes, read_npz
+from regolith_studio.readers.sentences import sentence_about
+from regolith_studio.readers.units import unit_factor
+
+LARGEST_TEXT = 512 * 1024**2
+REFERENCE_DEGREE = 60
+"""Degree of the grid on which a radius is put together that was expanded over an ellipsoid's."""
+
+
+@dataclass(frozen=True)
+class ShapeSource:
+    """What particles can be drawn from.
+
+    Parameters
+    ----------
+    content
+        A sample (to fit a model to), a fitted model, or a card.
+    name
+        Short, for people and for provenance.
+    sha256
+        Of the file's bytes (of its JSON where there are two files); empty where there is no file.
+    notes
+        One sentence for each thing about the source to know.
+    """
+
+    content: Sample | FittedModel | MaterialCard
+    name: str
+    sha256: str = ""
+    notes: tuple[str, ...] = ()
+
+
+def is_shape_source(text: str) -> bool:
+    """Whether this names a shipped material, or a file that :func:`read_shape_source` may read."""
+    path = Path(text)
+    if path.is_dir():
+        return False
+    if path.suffix in (".json", ".npz") or path.exists():
+        return path.suffix in (".json", ".npz")
+    return Path(f"{text}.json").is_file() or text in materials()
+
+
+def read_shape_source(text: str) -> ShapeSource:
+    """The fit, model or card whose file, stem or name this is; files come first.
+
+    Raises
+    ------
+    FileError
+        With one sentence if there is nothing of that name, or it is broken.
+    """
+    path = _text_file(Path(text))
+    if not path.exists() and text in materials():
+        return ShapeSource(materials()[text], text)
+    content = read_bytes(path, LARGEST_TEXT)
+    found = hashlib.sha256(content).hexdigest()
+    document = _document(path, content)
+    kind = document.get("format")
+    try:
+        if kind == fit_files.FORMAT:
+            arrays, _ = read_npz(path.with_suffix(".npz"))
+            return _sample(path, document, arrays, found)
+        if kind == model_files.FORMAT:
+            arrays, digest = read_npz(path.with_suffix(".npz"))
+            return ShapeSource(model_files.model_from(document, arrays, digest), path.stem, found)
+        if "relative_amplitudes" in document:
+            return ShapeSource(_in_micrometres(card_from(content, path.name)), path.stem, found)
+    except FileError:
+        raise
+    except InputError as error:
+        raise FileError(sentence_about(path, f"cannot be used: {error}")) from None
+    raise FileError(sentence_about(path, "is no fit, no model of shapes and no material card."))
+
+
+def radius_of(fit: HarmonicFit) -> ShCoefficients:
+    """Coefficients of the radius itself, also of a fit that was expanded over an ellipsoid's radius."""
+    if fit.reference is None:
+        return fit.coefficients
+    grid = sphere_grid(max(REFERENCE_DEGREE, 2 * fit.l_max), fit.l_max)
+    return ShCoefficients(grid.expanded(radii(fit, grid.directions)[None])[0])
+
+
+def _text_file(path: Path) -> Path:
+    if path.suffix == ".json":
+        return path
+    return path.with_suffix(".json") if path.suffix == ".npz" else Path(f"{path}.json")
+
+
+def _document(path: Path, content: bytes) -> Mapping[str, Any]:
+    try:
+        document = json.loads(content)
+    except (ValueError, RecursionError):
+        raise FileError(sentence_about(path, "is not JSON.")) from None
+    if not isinstance(document, dict):
+        raise FileError(sentence_about(path, "is no fit, no model of shapes and no material card."))
+    return document
+
+
+def _sample(
+    path: Path, document: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]], digest: str
+) -> ShapeSource:
+    try:
+        fits = fit_files.fits_from(document, arrays)
+        unit = str(document["unit"])
+        factor = unit_factor(unit)
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        raise FileError(sentence_about(path, f"is a broken fit: {error!r}.")) from None
+    if not fits:
+        raise FileError(sentence_about(path, "holds no particle."))
+    rows = np.stack([radius_of(fit).values for fit in fits.values()]) * factor
+    expanded = sum(fit.reference is not None for fit in fits.values())
+    note = f"{expanded} of {len(fits)} fits are over an ellipsoid; their radii were expanded again."
+    return ShapeSource(Sample(rows, tuple(fits)), path.stem, digest, (note,) if expanded else ())
+
+
+def _in_micrometres(card: MaterialCard) -> MaterialCard:
+    factor = unit_factor(card.unit)
+    return card.model_copy(update={"median_radius": card.median_radius * factor, "unit": "um"})

@@ -1,0 +1,124 @@
+"""Virtual particles as files: meshes or coefficients, ``particles.csv``, and where they come from."""
+
+import io
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from regolith_studio import __version__
+from regolith_studio.harmonics.coefficients import CONVENTION
+from regolith_studio.jobs.examining import Examined
+from regolith_studio.jobs.generating import GenerateOrder, particle_names
+from regolith_studio.model.draws import Draws
+from regolith_studio.model.protocol import FittedModel
+from regolith_studio.model.sample import Sample
+from regolith_studio.readers.shape_files import ShapeSource
+from regolith_studio.session.outputs.descriptors import descriptor_table
+from regolith_studio.session.outputs.staging import json_bytes, write_bytes
+from regolith_studio.studies.tables import Cell, Column, Table, csv_text
+
+FORMAT = "regolith-studio virtual particles"
+ARRAYS = "particles.npz"
+TABLE = "particles.csv"
+DOCUMENT = "generation.json"
+
+
+@dataclass(frozen=True)
+class _Named:
+    name: str
+    group: str
+
+
+@dataclass(frozen=True, eq=False)
+class Generated:
+    """Drawn particles with everything that is said about them in files.
+
+    Parameters
+    ----------
+    source, order, model, draws
+        What was asked of what, and what came of it.
+    groups
+        Name of the part of the mixture each came from, or empty.
+    """
+
+    source: ShapeSource
+    order: GenerateOrder
+    model: FittedModel
+    draws: Draws
+    groups: tuple[str, ...]
+
+
+def write_table_of_meshes(folder: Path, made: Generated, facts: Sequence[Examined]) -> None:
+    """Write ``particles.csv`` of particles whose meshes lie in `folder`: all descriptors, and the origin."""
+    named = [_Named(*each) for each in zip(particle_names(len(made.draws)), made.groups, strict=True)]
+    _write_table(folder, descriptor_table(named, facts), made.draws)
+
+
+def write_coefficients(folder: Path, made: Generated) -> None:
+    """Write ``particles.npz`` (coefficients of all particles) and ``particles.csv`` (name, group, size)."""
+    names, radii = particle_names(len(made.draws)), made.draws.equivalent_radii()
+    arrays = {
+        "names": np.array(names),
+        "coefficients": made.draws.coefficients,
+        "equivalent_radius": radii,
+        "parents": np.asarray(made.draws.parents),
+        "components": np.asarray(made.draws.components),
+    }
+    packed = io.BytesIO()
+    np.savez(packed, **arrays)  # type: ignore[arg-type]
+    write_bytes(folder / ARRAYS, packed.getvalue())
+    columns = (Column("name"), Column("group"), Column("equivalent_radius", "um"))
+    rows = tuple(zip(names, made.groups, radii.tolist(), strict=True))
+    _write_table(folder, Table("Virtual particles", columns, rows), made.draws)
+
+
+def write_document(folder: Path, made: Generated, extra: dict[str, Any]) -> dict[str, Any]:
+    """Write ``generation.json`` and return what it holds."""
+    document = generation_document(made) | extra
+    write_bytes(folder / DOCUMENT, json_bytes(document))
+    return document
+
+
+def generation_document(made: Generated) -> dict[str, Any]:
+    """Source, model, settings, seed, and how many draws were thrown away."""
+    draws, content = made.draws, made.source.content
+    return {
+        "format": FORMAT,
+        "version": 1,
+        "program": f"regolith-studio {__version__}",
+        "source": {
+            "name": made.source.name,
+            "sha256": made.source.sha256 or None,
+            "n_particles": len(content) if isinstance(content, Sample) else None,
+            "notes": list(made.source.notes),
+        },
+        "model": made.model.key,
+        "settings": dict(made.order.settings),
+        "l_max": draws.l_max,
+        "n_particles": len(draws),
+        "seed": draws.seed,
+        "unit": draws.unit,
+        "size_range": list(made.order.size_range) if made.order.size_range else None,
+        "rejected": draws.rejected,
+        "acceptance": draws.acceptance,
+        "coefficients": f"of {'the radius' if draws.scale == 'radius' else 'ln radius'}; {CONVENTION}",
+        "components": _components(made),
+    }
+
+
+def _components(made: Generated) -> list[dict[str, Any]]:
+    names = getattr(made.model, "names", ())
+    counts = np.bincount(np.asarray(made.draws.components), minlength=len(names))
+    return [{"name": name, "drawn": int(count)} for name, count in zip(names, counts, strict=False)]
+
+
+def _write_table(folder: Path, table: Table, draws: Draws) -> None:
+    """The table with the number of the measured particle that each draw began with, where there is one."""
+    parents: list[Cell] = [int(p) if p >= 0 else None for p in np.asarray(draws.parents)]
+    if any(parent is not None for parent in parents):
+        rows = tuple((*row, parent) for row, parent in zip(table.rows, parents, strict=True))
+        table = Table(table.title, (*table.columns, Column("parent")), rows, table.notes)
+    write_bytes(folder / TABLE, csv_text(table).encode("utf-8"))

@@ -1,0 +1,176 @@
+"""``generate`` and ``study population``: what they write, and that a stranger can read it."""
+
+import csv
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+
+from regolith_studio.geometry.directions import icosphere
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.imaging.stl import stl_bytes
+
+
+def rows_of(path: Path) -> list[dict[str, str]]:
+    with path.open(newline="", encoding="utf-8") as stream:
+        return list(csv.DictReader(stream))
+
+
+@pytest.fixture(scope="module")
+def ellipsoids(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with 24 ellipsoids of different sizes, elongations and directions."""
+    folder = tmp_path_factory.mktemp("ellipsoids")
+    rng = np.random.default_rng(0)
+    sphere = icosphere(3)
+    for number in range(24):
+        axes = 20 * np.exp(0.3 * rng.normal()) * np.array([1.0, *np.exp(0.2 * rng.normal(size=2))])
+        turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+        turn *= np.linalg.det(turn)
+        body = Mesh(sphere.vertices * axes @ turn.T, sphere.faces)
+        (folder / f"grain-{number:02d}.stl").write_bytes(stl_bytes(body, "test"))
+    return folder
+
+
+@pytest.fixture
+def fit(command, ellipsoids: Path, tmp_path: Path) -> Path:
+    assert command("fit", ellipsoids, "-o", tmp_path / "fit", "--l-max", 8).code == 0
+    return tmp_path / "fit"
+
+
+def test_that_each_virtual_particle_is_a_closed_mesh_inside_the_range(
+    command, fit: Path, tmp_path: Path
+) -> None:
+    said = command(
+        "generate", fit, "-n", 5, "-o", tmp_path / "v", "--l-max", 4, "--size-range", 15, 25, "--json"
+    )
+    assert said.code == 0, said.err
+    assert said.json == json.loads((tmp_path / "v" / "generation.json").read_text()) | {
+        "folder": str(tmp_path / "v")
+    }
+    assert said.json["model"] == "sample_matched"
+    rows = rows_of(tmp_path / "v" / "particles.csv")
+    assert [row["name"] for row in rows] == [f"virtual-00000{i}" for i in range(1, 6)]
+    for row in rows:
+        body = trimesh.load_mesh(tmp_path / "v" / f"{row['name']}.stl")
+        assert body.is_watertight
+        assert body.volume == pytest.approx(float(row["volume [um^3]"]), rel=1e-5)
+        radius = float(np.cbrt(3 * body.volume / (4 * np.pi)))
+        assert radius == pytest.approx(float(row["equivalent_radius [um]"]), rel=1e-5)
+        assert 15 * (1 - 1e-5) <= radius <= 25 * (1 + 1e-5)
+        assert row["sound"] == "true"
+
+
+def test_that_workers_and_repetition_do_not_change_a_byte(command, fit: Path, tmp_path: Path) -> None:
+    for place, jobs in (("one", 1), ("two", 2), ("again", 1)):
+        said = command("generate", fit, "-n", 23, "-o", tmp_path / place, "--level", 2, "--jobs", jobs)
+        assert said.code == 0, said.err
+    names = sorted(path.name for path in (tmp_path / "one").iterdir())
+    assert len(names) == 25
+    for place in ("two", "again"):
+        for name in names:
+            assert (tmp_path / place / name).read_bytes() == (tmp_path / "one" / name).read_bytes(), name
+    command("generate", fit, "-n", 2, "-o", tmp_path / "few", "--level", 2)
+    first = "virtual-000001.stl"
+    assert (tmp_path / "few" / first).read_bytes() == (tmp_path / "one" / first).read_bytes()
+
+
+def test_that_coefficients_of_many_particles_go_into_one_archive(command, tmp_path: Path) -> None:
+    said = command("generate", "ma165", "-n", 2000, "-o", tmp_path / "v", "--format", "npz", "--seed", 3)
+    assert said.code == 0, said.err
+    assert sorted(path.name for path in (tmp_path / "v").iterdir()) == [
+        "generation.json",
+        "particles.csv",
+        "particles.npz",
+    ]
+    rows = rows_of(tmp_path / "v" / "particles.csv")
+    with np.load(tmp_path / "v" / "particles.npz") as arrays:
+        assert arrays["coefficients"].shape == (2000, 121)
+        assert arrays["names"].tolist() == [row["name"] for row in rows]
+        radii = arrays["equivalent_radius"]
+    assert radii.tolist() == pytest.approx([float(row["equivalent_radius [um]"]) for row in rows])
+    document = json.loads((tmp_path / "v" / "generation.json").read_text())
+    assert document["seed"] == 3
+    assert "ln radius" in document["coefficients"]
+
+
+def test_that_meshes_can_be_given_in_place_of_their_fit(command, ellipsoids: Path, tmp_path: Path) -> None:
+    wanted = ("-n", 3, "-o", tmp_path / "v", "--model", "gaussian_field", "--l-max", 3, "--level", 2)
+    said = command("generate", ellipsoids, *wanted, "--json")
+    assert said.code == 0, said.err
+    assert said.json["source"]["n_particles"] == 24
+    assert said.json["l_max"] == 3
+
+
+def test_that_a_saved_model_draws_the_same_particles_again(command, fit: Path, tmp_path: Path) -> None:
+    wanted = ("-n", 4, "--format", "npz", "--l-max", 4)
+    made = command("generate", fit, "-o", tmp_path / "a", *wanted, "--save-model", tmp_path / "m.json")
+    assert made.code == 0, made.err
+    assert sorted(path.name for path in tmp_path.glob("m.*")) == ["m.json", "m.npz"]
+    assert command("generate", tmp_path / "m", "-o", tmp_path / "b", *wanted).code == 0
+    assert (tmp_path / "a/particles.npz").read_bytes() == (tmp_path / "b/particles.npz").read_bytes()
+    said = command("generate", tmp_path / "m", "-o", tmp_path / "c", "--model", "log_field")
+    assert said.code == 1
+    assert "begin with the fit of the sample" in said.err
+
+
+def test_that_the_parts_of_a_mixture_can_be_named(command, fit: Path, tmp_path: Path) -> None:
+    wanted = ("--model", "mixture_field", "--set", "n_components=2", "--format", "npz", "--l-max", 3)
+    said = command("generate", fit, "-n", 40, "-o", tmp_path / "v", *wanted, "--names", "basalt, glass")
+    assert said.code == 0, said.err
+    groups = [row["group"] for row in rows_of(tmp_path / "v" / "particles.csv")]
+    assert set(groups) <= {"basalt", "glass"}
+    document = json.loads((tmp_path / "v" / "generation.json").read_text())
+    assert {part["name"]: part["drawn"] for part in document["components"]} == {
+        name: groups.count(name) for name in ("basalt", "glass")
+    }
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "words"),
+    [
+        (("--model", "wavelets"), 2, "no model called 'wavelets'"),
+        (("--set", "charm=1"), 2, "has no setting 'charm'"),
+        (("--set", "turn=much", "--model", "sample_matched"), 2, "cannot be 'much'"),
+        (("-n", 0), 2, "At least one particle"),
+        (("--size-range", 3, 2), 2, "range of sizes"),
+        (("--l-max", 40), 2, "between 1 and 30"),
+        (("--format", "obj"), 2, "must be stl or npz"),
+        (("--names", "a,b"), 2, "Only a mixture"),
+        (("--model", "mixture_field", "--names", "a,b,c,d,e,f,g,h,i,j", "--l-max", 3), 2, "names, got 10"),
+        (("--l-max", 9), 1, "expanded to l_max = 8"),
+        (("--level", 99), 2, "level"),
+    ],
+)
+def test_that_what_cannot_be_drawn_is_one_sentence(
+    command, fit: Path, tmp_path: Path, arguments: tuple[object, ...], code: int, words: str
+) -> None:
+    said = command("generate", fit, "-o", tmp_path / "v", *arguments)
+    assert said.code == code
+    assert words in said.err
+    assert "Traceback" not in said.err
+    assert not (tmp_path / "v").exists()
+
+
+@pytest.mark.parametrize(
+    ("sources", "words"),
+    [
+        (["nothing.json"], "nothing.json cannot be opened"),
+        (["no-such-material"], "no-such-material"),
+        (["ma165", "cement116"], "Give one fit, card or model"),
+    ],
+)
+def test_that_a_source_that_is_none_is_one_sentence(
+    command, tmp_path: Path, sources: list[str], words: str
+) -> None:
+    said = command("generate", *sources, "-o", tmp_path / "v")
+    assert said.code in (1, 2)
+    assert words in said.err
+    assert not list(tmp_path.iterdir())
+
+
+def test_that_one_particle_makes_no_model(command, ellipsoids: Path, tmp_path: Path) -> None:
+    said = command("generate", ellipsoids / "grain-00.stl", "-o", tmp_path / "v")
+    assert said.code == 1
+    assert "at least 2 different particles, got 1" in said.err
