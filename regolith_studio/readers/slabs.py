@@ -18,6 +18,8 @@ from regolith_studio.readers.volume_header import RawLayout
 
 SLAB = 64 * 1024**2
 """Bytes that the child hands over at a time, or one slice where that has more."""
+LARGEST_LAYER = 256 * 1024**2
+"""Bytes that may be handed over at once where a file is packed in chunks of so many slices."""
 OPEN_SECONDS, OPEN_BYTES_A_SECOND = 2.0, 2e7
 SLAB_SECONDS, SLAB_BYTES_A_SECOND, SKIPPED_BYTES_A_SECOND = 2.0, 1e7, 3e7
 LEAST_MEMORY = 512 * 1024**2
@@ -93,10 +95,16 @@ class OpenedFile:
         )
 
     def pieces(self, z0: int, z1: int) -> Iterator[tuple[int, int]]:
-        """Ranges of slices that make at most `SLAB` bytes each."""
+        """Ranges of slices that make at most `SLAB` bytes each, ending where layers of chunks do."""
+        layer = int(self.answer["layer"])
         step = max(1, SLAB // self.slice_bytes)
-        for start in range(z0, z1, step):
-            yield start, min(z1, start + step)
+        if 1 < layer <= LARGEST_LAYER // self.slice_bytes:
+            step = max(layer, step - step % layer)
+        start = z0
+        while start < z1:
+            end = min(z1, start - start % layer + step if layer <= step else start + step)
+            yield start, end
+            start = end
 
     def read(self, z0: int, z1: int, into: NDArray[Any] | None = None) -> NDArray[Any]:
         """Slices z0 to z1, shape (z1 - z0, ny, nx).
@@ -123,7 +131,6 @@ class OpenedFile:
         if self.answer["in_order"]:
             seconds += z0 * self.slice_bytes / SKIPPED_BYTES_A_SECOND
         request = {**self.request, "memory": LEAST_MEMORY + 6 * size}
-        self.guard.ask("volume-prepare", self.path, START_SECONDS)
         message = self.guard.ask("volume-slices", self.path, seconds, z0=z0, z1=z1, **request)
         voxels = message.arrays[0]
         if voxels.shape != (z1 - z0, *self.shape[1:]) or voxels.dtype != self.dtype:

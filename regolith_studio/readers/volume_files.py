@@ -7,7 +7,7 @@ from pathlib import Path
 from regolith_studio.errors import FileError
 from regolith_studio.readers.guard import checked_size
 from regolith_studio.readers.sentences import shown_name
-from regolith_studio.readers.volume_formats import volume_suffixes
+from regolith_studio.readers.volume_formats import volume_formats, volume_suffixes
 
 SLICE_SUFFIXES = (".tif", ".tiff", ".png", ".bmp")
 LEAST_SLICES = 3
@@ -19,7 +19,8 @@ def volume_files(path: str | Path) -> tuple[Path, ...]:
     """The volumes that a path stands for, in the order of their names.
 
     A file is a volume. A folder with three or more images whose names differ in a number only is one
-    volume, given as the folder itself; any other folder stands for the volume files in it.
+    volume, given as the folder itself; any other folder stands for the volume files in it (raw ones
+    apart, which must be described one by one).
 
     Raises
     ------
@@ -32,7 +33,7 @@ def volume_files(path: str | Path) -> tuple[Path, ...]:
         return (path,)
     if slice_names(path):
         return (path,)
-    suffixes = tuple(sorted(volume_suffixes()))
+    suffixes = tuple(sorted(volume_suffixes() - set(volume_formats()["raw"].suffixes)))
     found = [file for file in _visible(path) if file.lower().endswith(suffixes)]
     if not found:
         raise FileError(

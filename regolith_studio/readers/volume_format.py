@@ -76,7 +76,10 @@ class VoxelHeader:
 
 
 class OpenVolume(Protocol):
-    """An opened file: its header, and its slices."""
+    """An opened file: its header, and its slices.
+
+    It may also say that it is best read ``in_order``, or in ``layer`` slices at a time.
+    """
 
     @property
     def header(self) -> VoxelHeader:

@@ -76,6 +76,7 @@ def opened_volume(path: Path, request: dict[str, Any]) -> tuple[OpenVolume, Volu
         With the second half of a sentence.
     """
     row, _ = volume_format_of(path)
+    row.prepare()
     with np.errstate(all="ignore"):
         volume = row.open(path, request)
     checked_header(volume.header)
@@ -137,6 +138,7 @@ def _as_json(volume: OpenVolume, row: VolumeFormat, notes: tuple[str, ...]) -> d
         "dataset": header.dataset,
         "plain": volume.plain() if isinstance(volume, PlainVoxels) else None,
         "in_order": bool(getattr(volume, "in_order", False)),
+        "layer": int(getattr(volume, "layer", 1)),
     }
 
 

@@ -1,0 +1,201 @@
+"""The arrays in an HDF5 file that can be volumes: found without following a link out of the file."""
+
+import json
+import re
+from dataclasses import dataclass
+from math import prod
+from typing import Any
+
+import numpy as np
+
+from regolith_studio.errors import FileError
+from regolith_studio.readers.sentences import printable
+from regolith_studio.readers.volume_format import LONGEST_EDGE, VOXEL_TYPES, Sizes, sizes_or_none
+
+MOST_OBJECTS = 10_000
+MOST_CHANNELS = 32
+LONGEST_ATTRIBUTE = 1 << 16
+_GUESSED = {3: "zyx", 4: "zyxc", 5: "tzyxc"}
+_ILASTIK = "exported_data"
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A volume in a file: a dataset, or one channel of it.
+
+    Parameters
+    ----------
+    name
+        As the chooser shows it: the dataset's path, with the channel in brackets where it has several.
+    path, channel
+        The dataset, and the index along its channel axis.
+    axes
+        A letter of ``tczyx`` for each axis of the dataset.
+    shape
+        Of the dataset, all axes.
+    """
+
+    name: str
+    path: str
+    channel: int
+    axes: str
+    shape: tuple[int, ...]
+    dtype: str
+
+    @property
+    def spatial(self) -> tuple[int, int, int]:
+        """Slices, rows, columns."""
+        nz, ny, nx = (self.shape[self.axes.index(axis)] if axis in self.axes else 1 for axis in "zyx")
+        return nz, ny, nx
+
+
+def candidates_in(file: Any) -> list[Candidate]:
+    """All volumes of an open ``h5py.File``, ilastik's own name first, then the largest.
+
+    Raises
+    ------
+    FileError
+        If the file holds more objects than any volume file does.
+    """
+    found = [candidate for path, dataset in _datasets(file) for candidate in _candidates(path, dataset)]
+    return sorted(found, key=lambda each: (each.path != _ILASTIK, -prod(each.shape), each.path, each.channel))
+
+
+def check_storage(dataset: Any) -> None:
+    """Refuse a dataset whose values lie in other files.
+
+    Raises
+    ------
+    FileError
+        If they do.
+    """
+    if dataset.external:
+        raise FileError("keeps these voxels in another file, which is not followed; copy them into one file.")
+    if dataset.is_virtual:
+        raise FileError("maps these voxels from other files, which is not followed; copy them into one file.")
+
+
+def element_size(dataset: Any, candidate: Candidate) -> Sizes | None:
+    """Voxel edges along x, y and z in micrometres: the attribute ``element_size_um``, slices first."""
+    values = _attribute(dataset, "element_size_um")
+    if values is None:
+        return None
+    try:
+        edges = np.asarray(values, dtype=np.float64).ravel()
+    except (TypeError, ValueError):
+        return None
+    if len(edges) == 3:
+        order = [axis for axis in candidate.axes if axis in "zyx"]
+        order = order if len(order) == 3 else ["z", "y", "x"]
+        return sizes_or_none([float(edges[order.index(axis)]) for axis in "xyz"])
+    return None
+
+
+def _datasets(file: Any) -> list[tuple[str, Any]]:
+    """Datasets reached by hard links only, each once."""
+    import h5py
+
+    found: list[tuple[str, Any]] = []
+    waiting: list[tuple[str, Any]] = [("", file)]
+    seen: set[Any] = set()
+    count = 0
+    while waiting:
+        path, group = waiting.pop()
+        for name in group:
+            count += 1
+            if count > MOST_OBJECTS:
+                raise FileError(
+                    f"holds more than {MOST_OBJECTS:,} objects: it is damaged or no file of volumes."
+                )
+            if not isinstance(group.get(name, getlink=True), h5py.HardLink):
+                continue
+            each = group[name]
+            address = h5py.h5o.get_info(each.id).addr
+            if address in seen:
+                continue
+            seen.add(address)
+            inner = f"{path}/{name}" if path else name
+            if isinstance(each, h5py.Group):
+                waiting.append((inner, each))
+            elif isinstance(each, h5py.Dataset):
+                found.append((inner, each))
+    return found
+
+
+def _candidates(path: str, dataset: Any) -> list[Candidate]:
+    shape = dataset.shape
+    if not shape or min(shape) < 1 or max(shape) > LONGEST_EDGE or not _is_number(dataset):
+        return []
+    axes = _axes(dataset, len(shape))
+    if axes is None:
+        return []
+    edges = dict(zip(axes, shape, strict=True))
+    if (
+        edges.get("t", 1) != 1
+        or not {"x", "y"} <= set(axes)
+        or edges.get("z", 1) * edges["x"] * edges["y"] < 2
+    ):
+        return []
+    channels = edges.get("c", 1)
+    if channels > MOST_CHANNELS or (len(shape) - (channels > 1) < 3 and "z" not in axes):
+        return []
+    names = [path] if channels == 1 else [f"{path}[{channel}]" for channel in range(channels)]
+    return [Candidate(name, path, k, axes, tuple(shape), dataset.dtype.name) for k, name in enumerate(names)]
+
+
+def _is_number(dataset: Any) -> bool:
+    try:
+        kind = dataset.dtype
+    except (TypeError, ValueError, OSError):
+        return False
+    return f"{kind.kind}{kind.itemsize}" in VOXEL_TYPES
+
+
+def _axes(dataset: Any, dimensions: int) -> str | None:
+    """A letter for each axis: vigra's tags, an attribute ``axes``, dimension labels, or the usual order."""
+    for stated in (_tags(dataset), _letters(_attribute(dataset, "axes")), _labels(dataset)):
+        if len(stated) == dimensions and len(set(stated)) == dimensions and set(stated) <= set("tczyx"):
+            return stated
+    return _GUESSED.get(dimensions)
+
+
+def _tags(dataset: Any) -> str:
+    text = _attribute(dataset, "axistags")
+    if isinstance(text, bytes):
+        text = text.decode("utf-8", "replace")
+    if not isinstance(text, str):
+        return ""
+    try:
+        return "".join(str(axis["key"]) for axis in json.loads(text)["axes"])
+    except (ValueError, KeyError, TypeError, RecursionError):
+        return ""
+
+
+def _letters(value: Any) -> str:
+    if isinstance(value, np.ndarray):
+        value = "".join(map(str, value.ravel().tolist()))
+    if isinstance(value, bytes):
+        value = value.decode("utf-8", "replace")
+    return re.sub(r"[^a-z]", "", value.lower()) if isinstance(value, str) else ""
+
+
+def _labels(dataset: Any) -> str:
+    if "DIMENSION_LABELS" not in dataset.attrs:
+        return ""
+    return "".join(str(dimension.label) for dimension in dataset.dims).lower()
+
+
+def _attribute(dataset: Any, name: str) -> Any:
+    """A small attribute's value, or None."""
+    if name not in dataset.attrs:
+        return None
+    stored = dataset.attrs.get_id(name)
+    if stored.get_storage_size() > LONGEST_ATTRIBUTE:
+        return None
+    return dataset.attrs[name]
+
+
+def shown_names(candidates: list[Candidate]) -> str:
+    """The first few names for a sentence."""
+    names = ", ".join(printable(each.name)[:40] for each in candidates[:4])
+    return f"{names}, …" if len(candidates) > 4 else names

@@ -1,0 +1,220 @@
+"""NRRD: attached and detached headers; raw and gzip encodings (teem's format, versions 1 to 5)."""
+
+import math
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from regolith_studio.errors import FileError
+from regolith_studio.readers.deflated_voxels import DeflatedVoxels
+from regolith_studio.readers.detached import beside
+from regolith_studio.readers.plain_voxels import PlainVoxels
+from regolith_studio.readers.sentences import printable
+from regolith_studio.readers.units import unit_named
+from regolith_studio.readers.volume_format import (
+    OpenVolume,
+    Sizes,
+    VolumeFormat,
+    VoxelHeader,
+    sizes_or_none,
+    three_dimensions,
+    voxel_type,
+)
+
+LONGEST_HEADER = 1 << 16
+_TYPES = {
+    "i1": ("signed char", "int8", "int8_t"),
+    "u1": ("uchar", "unsigned char", "uint8", "uint8_t"),
+    "i2": ("short", "short int", "signed short", "signed short int", "int16", "int16_t"),
+    "u2": ("ushort", "unsigned short", "unsigned short int", "uint16", "uint16_t"),
+    "i4": ("int", "signed int", "int32", "int32_t"),
+    "u4": ("uint", "unsigned int", "uint32", "uint32_t"),
+    "i8": (
+        "longlong",
+        "long long",
+        "long long int",
+        "signed long long",
+        "signed long long int",
+        "int64",
+        "int64_t",
+    ),
+    "u8": ("ulonglong", "unsigned long long", "unsigned long long int", "uint64", "uint64_t"),
+    "f4": ("float",),
+    "f8": ("double",),
+}
+_TYPE = {name: kind for kind, names in _TYPES.items() for name in names}
+_VECTOR = re.compile(r"\(([^()]*)\)|none", re.IGNORECASE)
+_SKEWED = "The axes of the volume are not at right angles to each other; they were taken as if they were."
+_MIRRORED = "The axes of the volume are left-handed: particles come in as their mirror images."
+
+
+def open_nrrd(path: Path, _options: Mapping[str, Any]) -> OpenVolume:
+    """A three-dimensional array of plain numbers.
+
+    Raises
+    ------
+    FileError
+        If the header breaks the rules, the encoding is another one, or the data lie elsewhere.
+    """
+    with path.open("rb") as file:
+        head = file.read(LONGEST_HEADER)
+    fields, body = _fields(head)
+    stored = _stored_type(fields)
+    sizes = _whole_numbers(fields, "sizes")
+    if len(sizes) != _whole_numbers(fields, "dimension", 1)[0]:
+        raise FileError("is a broken NRRD: its dimension and its sizes do not agree.")
+    size, unit, notes = _voxel_size(fields, sizes)
+    header = VoxelHeader(three_dimensions(tuple(sizes[::-1])), voxel_type(stored), size, unit, None, notes)
+    source, start = _data_file(path, fields, body)
+    return _opened(source, start, fields, header, stored)
+
+
+def _opened(
+    source: Path, start: int, fields: dict[str, str], header: VoxelHeader, stored: np.dtype[Any]
+) -> OpenVolume:
+    encoding = fields.get("encoding", "").lower()
+    skip = (
+        int(fields.get("byte skip", "0")) if re.fullmatch(r"-?\d{1,15}", fields.get("byte skip", "0")) else -2
+    )
+    if _lines_to_skip(fields) or skip < -1:
+        raise FileError("skips lines or bytes before its voxels in a way that is not read here.")
+    if encoding == "raw":
+        if skip == -1:
+            start, skip = source.stat().st_size - math.prod(header.shape) * stored.itemsize, 0
+            if start < 0:
+                raise FileError("is cut short: it holds fewer voxels than its header says.")
+        return PlainVoxels(source, start + skip, header, stored)
+    if encoding in ("gz", "gzip"):
+        if skip == -1:
+            raise FileError("counts its bytes from the end of a compressed stream, which cannot be.")
+        return DeflatedVoxels(source, start, skip, header, stored)
+    shown = printable(encoding)[:20] or "no encoding"
+    raise FileError(f"is an NRRD in {shown}; those in raw and gzip are read.")
+
+
+def _fields(head: bytes) -> tuple[dict[str, str], int | None]:
+    """The fields by name, and where the voxels begin (None for a header without them)."""
+    end = re.search(rb"\r?\n\r?\n", head)
+    if end is None and len(head) == LONGEST_HEADER:
+        raise FileError("is a broken NRRD: its header does not end.")
+    lines = head[: end.start() if end else len(head)].decode("utf-8", "replace").splitlines()
+    if not lines or not re.fullmatch(r"NRRD000[1-5]", lines[0]):
+        raise FileError("is no NRRD of the versions 1 to 5.")
+    fields: dict[str, str] = {}
+    for number, line in enumerate(lines[1:], start=2):
+        if line.startswith("#") or ":=" in line or not line.strip():
+            continue
+        name, colon, value = line.partition(":")
+        if not colon:
+            raise FileError(f"is a broken NRRD: line {number} of its header is no field.")
+        name = {
+            "centers": "centerings",
+            "datafile": "data file",
+            "byteskip": "byte skip",
+            "lineskip": "line skip",
+        }.get(name.strip().lower(), name.strip().lower())
+        if name in fields:
+            raise FileError(f"is a broken NRRD: its header has the field “{printable(name)[:30]}” twice.")
+        fields[name] = value.strip()
+    return fields, end.end() if end else None
+
+
+def _stored_type(fields: dict[str, str]) -> np.dtype[Any]:
+    name = _needed(fields, "type").lower()
+    if name not in _TYPE:
+        raise FileError(f"holds “{printable(name)[:30]}” values; voxels are whole numbers or floats.")
+    stored = np.dtype(_TYPE[name])
+    endian = fields.get("endian", "").lower()
+    if stored.itemsize > 1 and endian not in ("little", "big"):
+        raise FileError("is a broken NRRD: it does not say which byte order it has.")
+    return stored.newbyteorder(">" if endian == "big" else "<")
+
+
+def _data_file(path: Path, fields: dict[str, str], body: int | None) -> tuple[Path, int]:
+    if "data file" not in fields:
+        if body is None:
+            raise FileError("is cut short: it has a header and no voxels.")
+        return path, body
+    name = fields["data file"]
+    if name.upper().startswith("LIST") or "%" in name:
+        raise FileError("spreads its voxels over several files, which is not read here.")
+    return beside(path, name.removeprefix("./")), 0
+
+
+def _voxel_size(fields: dict[str, str], sizes: list[int]) -> tuple[Sizes | None, str | None, tuple[str, ...]]:
+    """Edges of those axes that have more than one voxel, unless all of three have a direction."""
+    kept = [axis for axis, edge in enumerate(sizes) if edge > 1 or len(sizes) == 3]
+    notes: tuple[str, ...] = ()
+    if "space directions" in fields:
+        vectors = [_vector(match) for match in _VECTOR.finditer(fields["space directions"])]
+        edges = [math.hypot(*vector) if vector else math.nan for vector in vectors]
+        notes = _about(np.array([v for v in vectors if len(v) == 3]))
+    else:
+        edges = [_float(word) for word in fields.get("spacings", "").split()]
+    if len(edges) != len(sizes) or len(kept) != 3:
+        return None, None, ()
+    size = sizes_or_none([edges[axis] for axis in kept])
+    return size, _unit(fields, kept) if size else None, notes if size else ()
+
+
+def _about(vectors: np.ndarray) -> tuple[str, ...]:
+    if vectors.shape != (3, 3) or not np.isfinite(vectors).all():
+        return ()
+    lengths = np.linalg.norm(vectors, axis=1)
+    if not lengths.all():
+        return ()
+    unit = vectors / lengths[:, None]
+    skewed = np.abs(unit @ unit.T - np.eye(3)).max() > 1e-3
+    return (*((_SKEWED,) if skewed else ()), *((_MIRRORED,) if np.linalg.det(unit) < 0 else ()))
+
+
+def _unit(fields: dict[str, str], kept: list[int]) -> str | None:
+    named = re.findall(r'"([^"]*)"', fields.get("space units", "")) or re.findall(
+        r'"([^"]*)"', fields.get("units", "")
+    )
+    if len(named) > max(kept):
+        named = [named[axis] for axis in kept]
+    units = {unit_named(name) for name in named}
+    return units.pop() if len(units) == 1 else None
+
+
+def _vector(match: re.Match[str]) -> list[float]:
+    return [_float(word) for word in match[1].split(",")] if match[1] is not None else []
+
+
+def _float(word: str) -> float:
+    try:
+        return float(word)
+    except ValueError:
+        return math.nan
+
+
+def _whole_numbers(fields: dict[str, str], name: str, count: int | None = None) -> list[int]:
+    words = _needed(fields, name).split()
+    if (
+        not words
+        or (count and len(words) != count)
+        or not all(re.fullmatch(r"\d{1,18}", word) for word in words)
+    ):
+        raise FileError(
+            f"is a broken NRRD: its field “{name}” is not {'a' if count else 'of'} whole number(s)."
+        )
+    return [int(word) for word in words]
+
+
+def _lines_to_skip(fields: dict[str, str]) -> bool:
+    return fields.get("line skip", "0") != "0"
+
+
+def _needed(fields: dict[str, str], name: str) -> str:
+    if not fields.get(name):
+        raise FileError(f"is a broken NRRD: its header has no field “{name}”.")
+    return fields[name]
+
+
+FORMAT = VolumeFormat(
+    "nrrd", "an NRRD", (".nrrd", ".nhdr"), lambda head: head.startswith(b"NRRD000"), open_nrrd
+)

@@ -1,0 +1,184 @@
+"""HDF5 as ilastik and others write it, in any order of axes; nothing outside the file is read."""
+
+import json
+
+import h5py
+import numpy as np
+import pytest
+
+from regolith_studio.errors import FileError
+from regolith_studio.readers.volumes import datasets_in, describe_volume, open_slabs, read_volume
+
+SLICES = np.random.default_rng(8).integers(0, 60_000, (9, 11, 13)).astype(np.uint16)
+
+
+@pytest.fixture
+def path(tmp_path):
+    return tmp_path / "volume.h5"
+
+
+def tags(axes):
+    """Axis tags as vigra writes them."""
+    return json.dumps({"axes": [{"key": key, "typeFlags": 2, "resolution": 0} for key in axes]})
+
+
+def arranged(axes):
+    """The slices with their axes in another order, and axes of one element for time and channel."""
+    kept = [axis for axis in axes if axis in "zyx"]
+    array = SLICES.transpose(["zyx".index(axis) for axis in kept])
+    for place, axis in enumerate(axes):
+        if axis in "tc":
+            array = np.expand_dims(array, place)
+    return array
+
+
+@pytest.mark.parametrize("axes", ["zyx", "xyz", "yzx", "tzyxc", "zyxc", "cxzy", "txyzc"])
+@pytest.mark.parametrize("stated", ["axistags", "axes", "labels"])
+def test_that_axes_come_from_what_the_file_says(axes, stated, path) -> None:
+    with h5py.File(path, "w") as file:
+        data = file.create_dataset("exported_data", data=arranged(axes), chunks=True, compression="gzip")
+        if stated == "axistags":
+            data.attrs["axistags"] = tags(axes)
+        elif stated == "axes":
+            data.attrs["axes"] = axes
+        else:
+            for dimension, axis in zip(data.dims, axes, strict=True):
+                dimension.label = axis
+    assert np.array_equal(read_volume(path, voxel_size=1.0).array.T, SLICES)
+    assert np.array_equal(open_slabs(path, voxel_size=1.0).read(4, 6).T, SLICES[4:6])
+
+
+@pytest.mark.parametrize("shape", [(9, 11, 13), (9, 11, 13, 1), (1, 9, 11, 13, 1)])
+def test_that_untagged_axes_are_slices_first_and_channels_last(shape, path) -> None:
+    with h5py.File(path, "w") as file:
+        file["data"] = SLICES.reshape(shape)
+    assert np.array_equal(read_volume(path, voxel_size=1.0).array.T, SLICES)
+
+
+@pytest.mark.parametrize("dtype", ["u1", ">u2", "<i4", ">f4", "f8", "?"])
+def test_that_types_and_byte_orders_are_kept(dtype, path) -> None:
+    with h5py.File(path, "w") as file:
+        file["data"] = (SLICES % 100).astype(dtype)
+    assert np.array_equal(
+        read_volume(path, voxel_size=1.0, kind="grey").array.T, (SLICES % 100).astype(dtype)
+    )
+
+
+@pytest.mark.parametrize(
+    "options", [{"shuffle": True}, {"fletcher32": True}, {"compression": "lzf"}, {"scaleoffset": 0}]
+)
+def test_that_filters_of_the_library_are_undone(options, path) -> None:
+    with h5py.File(path, "w") as file:
+        file.create_dataset("data", data=SLICES, chunks=(4, 5, 6), **options)
+    assert np.array_equal(read_volume(path, voxel_size=1.0).array.T, SLICES)
+
+
+def test_that_several_volumes_are_offered_and_the_likeliest_read(path) -> None:
+    with h5py.File(path, "w") as file:
+        file["large"] = np.zeros((20, 20, 20), np.uint8)
+        file["exported_data"] = SLICES
+        file["deep/er/labels"] = SLICES.astype(np.uint8)
+        file["table"] = np.zeros((5, 2))
+        file["text"] = "no volume"
+    names = [entry.name for entry in datasets_in(path)]
+    assert names == ["exported_data", "large", "deep/er/labels"]
+    header = describe_volume(path)
+    assert header.dataset == "exported_data"
+    assert header.notes == ("The file holds 3 volumes; exported_data was read.",)
+    other = read_volume(path, dataset="/deep/er/labels", voxel_size=1.0, kind="labels")
+    assert other.name == "volume.h5/deep/er/labels"
+    assert np.array_equal(other.array.T, SLICES.astype(np.uint8))
+
+
+def test_that_the_channels_of_a_probability_map_are_volumes_each(path) -> None:
+    """ilastik's pixel classification exports one channel a class."""
+    maps = np.random.default_rng(1).random((9, 11, 13, 2)).astype(np.float32)
+    with h5py.File(path, "w") as file:
+        file.create_dataset("exported_data", data=maps).attrs["axistags"] = tags("zyxc")
+    assert [entry.name for entry in datasets_in(path)] == ["exported_data[0]", "exported_data[1]"]
+    found = read_volume(path, dataset="exported_data[1]", voxel_size=1.0)
+    assert found.kind == "grey"
+    assert np.array_equal(found.array.T, maps[..., 1])
+
+
+def test_that_the_element_size_of_fiji_is_the_voxel_size(path) -> None:
+    with h5py.File(path, "w") as file:
+        file.create_dataset("data", data=SLICES).attrs["element_size_um"] = (3.0, 2.0, 1.0)
+    assert describe_volume(path).voxel_size == (1.0, 2.0, 3.0)
+    assert read_volume(path).voxel_size == pytest.approx([1.0, 2.0, 3.0])
+
+
+def test_that_an_unknown_volume_is_refused_with_the_names_there_are(path) -> None:
+    with h5py.File(path, "w") as file:
+        file["one"], file["two"] = SLICES, SLICES
+    with pytest.raises(FileError, match="has no volume “three”; it holds one, two"):
+        read_volume(path, dataset="three", voxel_size=1.0)
+
+
+def secret(folder):
+    """A file beside it that must never be read."""
+    with h5py.File(folder / "secret.h5", "w") as file:
+        file["data"] = SLICES
+    SLICES.tofile(folder / "secret.raw")
+
+
+def test_that_external_and_soft_links_are_not_followed(path, tmp_path) -> None:
+    secret(tmp_path)
+    with h5py.File(path, "w") as file:
+        file["outside"] = h5py.ExternalLink(str(tmp_path / "secret.h5"), "/data")
+        file["soft"] = h5py.SoftLink("/outside")
+    with pytest.raises(FileError, match="holds no volume"):
+        read_volume(path, voxel_size=1.0)
+    with h5py.File(path, "a") as file:
+        file["inside"] = SLICES + 1
+    assert [entry.name for entry in datasets_in(path)] == ["inside"]
+    with pytest.raises(FileError, match="has no volume “outside”"):
+        read_volume(path, dataset="outside", voxel_size=1.0)
+
+
+def test_that_external_storage_is_refused(path, tmp_path) -> None:
+    secret(tmp_path)
+    with h5py.File(path, "w") as file:
+        parts = [(str(tmp_path / "secret.raw"), 0, SLICES.nbytes)]
+        file.create_dataset("data", SLICES.shape, SLICES.dtype, external=parts)
+    with pytest.raises(FileError, match="keeps these voxels in another file"):
+        read_volume(path, voxel_size=1.0)
+
+
+def test_that_a_virtual_dataset_is_refused(path, tmp_path) -> None:
+    secret(tmp_path)
+    layout = h5py.VirtualLayout(SLICES.shape, SLICES.dtype)
+    layout[:] = h5py.VirtualSource(tmp_path / "secret.h5", "data", SLICES.shape)
+    with h5py.File(path, "w") as file:
+        file.create_virtual_dataset("data", layout)
+    with pytest.raises(FileError, match="maps these voxels from other files"):
+        read_volume(path, voxel_size=1.0)
+
+
+def test_that_a_group_inside_itself_is_visited_once(path) -> None:
+    with h5py.File(path, "w") as file:
+        group = file.create_group("a/b")
+        group["loop"] = file["a"]
+        group["data"] = SLICES
+    assert [entry.name for entry in datasets_in(path)] == ["a/b/data"]
+
+
+def test_that_chunks_too_large_for_the_memory_are_refused(path) -> None:
+    with h5py.File(path, "w") as file:
+        file.create_dataset("data", (1024, 1024, 1024), "u1", chunks=(1024, 1024, 1024))
+    with pytest.raises(FileError, match="chunks of more than"):
+        read_volume(path, voxel_size=1.0)
+
+
+def test_that_slabs_end_where_chunks_do(path, monkeypatch) -> None:
+    """A chunk is unpacked once if no slab ends inside it."""
+    from regolith_studio.readers import slabs
+
+    with h5py.File(path, "w") as file:
+        file.create_dataset("data", data=SLICES, chunks=(4, 11, 13), compression="gzip")
+    opened = slabs.opened_file(path)
+    monkeypatch.setattr(slabs, "SLAB", 5 * opened.slice_bytes)
+    assert list(opened.pieces(0, 9)) == [(0, 4), (4, 8), (8, 9)]
+    assert list(opened.pieces(2, 9)) == [(2, 4), (4, 8), (8, 9)]
+    monkeypatch.setattr(slabs, "SLAB", opened.slice_bytes)
+    assert list(opened.pieces(0, 9)) == [(0, 4), (4, 8), (8, 9)]
