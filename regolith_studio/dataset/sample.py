@@ -1,8 +1,9 @@
-"""Draws particles from a dataset, as section 2.5 says: a class by its weight, then a size."""
+"""Draws particles from a dataset: a class by its weight, a size (section 2.5), and an orientation."""
 
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.errors import InputError
@@ -19,10 +20,14 @@ class DrawnParticles:
         Which representative, shape (n,).
     diameter
         Equivalent diameter in micrometres, shape (n,).
+    orientation
+        Unit quaternions (w, x, y, z) that turn the shape's axes into the particle's, even over all
+        rotations, shape (n, 4).
     """
 
     class_index: IntArray
     diameter: FloatArray
+    orientation: FloatArray
 
     @property
     def scale(self) -> FloatArray:
@@ -47,4 +52,17 @@ def sample_dataset(dataset: Dataset, n: int, seed: int) -> DrawnParticles:
     for index, representative in enumerate(dataset.representatives):
         mine = chosen == index
         diameters[mine] = representative.sizes.weighted("number").quantile(shares[mine])
-    return DrawnParticles(chosen.astype(np.int64), diameters)
+    turned = random_quaternions(n, np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(1,))))
+    return DrawnParticles(chosen.astype(np.int64), diameters, turned)
+
+
+def random_quaternions(n: int, generator: np.random.Generator) -> FloatArray:
+    """Even over all rotations: normal vectors in four dimensions on the unit sphere, w >= 0, shape (n, 4)."""
+    values = generator.standard_normal((n, 4))
+    values /= np.linalg.norm(values, axis=1, keepdims=True)
+    return np.asarray(values * np.where(values[:, :1] < 0.0, -1.0, 1.0))
+
+
+def rotation_matrices(quaternions: FloatArray) -> FloatArray:
+    """Rotation matrices of unit quaternions (w, x, y, z), shape (n, 3, 3); columns are the turned axes."""
+    return np.asarray(Rotation.from_quat(quaternions[:, [1, 2, 3, 0]]).as_matrix())

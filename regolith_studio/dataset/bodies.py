@@ -1,0 +1,94 @@
+"""Particles drawn from a dataset and laid out apart from each other, for formats that list single bodies."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from regolith_studio.dataset.dataset import Dataset
+from regolith_studio.dataset.exporting import ExportOptions
+from regolith_studio.dataset.sample import rotation_matrices, sample_dataset
+from regolith_studio.dataset.simulation_case import MICROMETRE
+from regolith_studio.errors import InputError
+from regolith_studio.geometry.arrays import FloatArray, IntArray
+
+APART = 1.02
+"""Spacing of the lattice in units of the largest circumscribed diameter."""
+
+
+@dataclass(frozen=True, eq=False)
+class Bodies:
+    """Particles in SI units, coarse graining applied, none touching another.
+
+    Parameters
+    ----------
+    class_index
+        Which representative, shape (n,).
+    diameter
+        Equivalent diameter in metres, shape (n,).
+    position
+        Of the centroids in metres, z up from 0, shape (n, 3).
+    orientation
+        Quaternions (w, x, y, z), shape (n, 4).
+    """
+
+    class_index: IntArray
+    diameter: FloatArray
+    position: FloatArray
+    orientation: FloatArray
+
+    def __len__(self) -> int:
+        return len(self.diameter)
+
+    @property
+    def scale(self) -> FloatArray:
+        """Factor from the unit-volume shape to metres, shape (n,)."""
+        return np.asarray(self.diameter * (np.pi / 6) ** (1 / 3))
+
+    def rotation_of(self, index: int) -> FloatArray:
+        """Matrix from the shape's axes to the world's, shape (3, 3)."""
+        return np.asarray(rotation_matrices(self.orientation[index : index + 1])[0])
+
+
+def lay_out(dataset: Dataset, options: ExportOptions, within: float | None = None) -> Bodies:
+    """Draw ``options.n_particles`` and put them on a cubic lattice.
+
+    Parameters
+    ----------
+    within
+        Inner diameter in metres of an upright cylinder about the z axis that all must lie in; a square
+        column if not given.
+
+    Raises
+    ------
+    InputError
+        If a particle is too large for the cylinder.
+    """
+    drawn = sample_dataset(dataset, options.n_particles, options.seed)
+    reach = np.array([np.linalg.norm(one.shape.vertices, axis=1).max() for one in dataset.representatives])
+    metres = options.coarse_graining_factor * MICROMETRE
+    spacing = APART * 2 * float((reach[drawn.class_index] * drawn.scale).max()) * metres
+    layer = _layer(spacing, within, len(drawn.diameter))
+    place = np.arange(len(drawn.diameter))
+    height = spacing * (0.5 + place // len(layer))
+    return Bodies(
+        class_index=drawn.class_index,
+        diameter=drawn.diameter * metres,
+        position=np.column_stack([layer[place % len(layer)], height]),
+        orientation=drawn.orientation,
+    )
+
+
+def _layer(spacing: float, within: float | None, count: int) -> FloatArray:
+    """Places of one layer about the axis, shape (k, 2), the same for every layer."""
+    if within is None:
+        side = max(1, round(count ** (1 / 3)))
+        line = (np.arange(side) - (side - 1) / 2) * spacing
+        return np.stack(np.meshgrid(line, line, indexing="ij"), axis=-1).reshape(-1, 2)
+    free = (within - spacing) / 2
+    if free < 0.0:
+        raise InputError(
+            f"A particle of {spacing * 1e3:.3g} mm does not fit into a cylinder of {within * 1e3:.3g} mm."
+        )
+    steps = np.arange(-int(free / spacing), int(free / spacing) + 1) * spacing
+    grid = np.stack(np.meshgrid(steps, steps, indexing="ij"), axis=-1).reshape(-1, 2)
+    return np.asarray(grid[np.linalg.norm(grid, axis=1) <= free * (1 + 1e-12)])

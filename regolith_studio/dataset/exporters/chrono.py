@@ -1,0 +1,79 @@
+"""Project Chrono and its DEM-Engine: triangle meshes as OBJ, mass properties and sizes as JSON."""
+
+import numpy as np
+
+from regolith_studio.dataset.dataset import Dataset
+from regolith_studio.dataset.export_tables import shape_names, sizes_csv
+from regolith_studio.dataset.exporting import NOTES, Exporter, ExportOptions
+from regolith_studio.dataset.simulation_case import MICROMETRE
+from regolith_studio.dataset.size_classes import size_classes
+from regolith_studio.dataset.strict_json import tidy_json
+from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+
+_NOTE = b"""meshes/*.obj are closed, outward, of volume 1, centroid at the origin, principal axes x, y, z.
+A particle of scale s (particles.json, metres) at density rho has mass rho s^3 and principal moments
+rho s^5 moments. DEM-Engine: mesh = solver.LoadMeshType("meshes/shape_00.obj", material);
+mesh.SetMass(..), mesh.SetMOI(..), mesh.Scale(s). Chrono: ChTriangleMeshConnected::CreateFromWavefrontFile.
+The OBJ files are read back by an independent reader in this program's tests; Chrono itself was not run."""
+
+
+def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
+    keys = shape_names(dataset)
+    shapes = [one.shape for one in dataset.representatives]
+    files = {f"meshes/{key}.obj": _obj(key, shape) for key, shape in zip(keys, shapes, strict=True)}
+    to_metres = options.coarse_graining_factor * MICROMETRE * (np.pi / 6) ** (1 / 3)
+    records = []
+    for index, (key, one) in enumerate(zip(keys, dataset.representatives, strict=True)):
+        sizes = size_classes(one.sizes)
+        records.append(
+            {
+                "key": key,
+                "name": one.name,
+                "mesh": f"meshes/{key}.obj",
+                "volume": one.shape.volume,
+                "moments": one.shape.mesh.inertia.diagonal().tolist(),
+                "circumscribed_radius": float(np.linalg.norm(one.shape.vertices, axis=1).max()),
+                "weight_number": float(dataset.class_weights("number")[index]),
+                "scales_m": (sizes.diameters * to_metres).tolist(),
+                "scale_number_shares": sizes.number.tolist(),
+            }
+        )
+    contact = options.contact
+    content = {
+        "length_unit": "m",
+        "coarse_graining_factor": options.coarse_graining_factor,
+        "material": {
+            "density_kg_m3": contact.density,
+            "E_Pa": contact.young_modulus,
+            "nu": contact.poisson_ratio,
+            "CoR": contact.restitution,
+            "mu": contact.dynamic_friction,
+        },
+        "shapes": records,
+    }
+    tables = {"particles.json": tidy_json(content).encode("utf-8"), "sizes.csv": sizes_csv(dataset)}
+    return files | tables | {NOTES: _NOTE}
+
+
+def _obj(key: str, shape: ConvexPolyhedron) -> bytes:
+    """Triangles, so that every reader takes them; indices from 1."""
+    lines = [f"# regolith-studio, volume 1, {shape.n_faces} facets", f"o {key}"]
+    lines += ["v " + " ".join(map(repr, corner)) for corner in shape.vertices.tolist()]
+    lines += ["f " + " ".join(str(index + 1) for index in face) for face in shape.mesh.faces.tolist()]
+    return ("\n".join(lines) + "\n").encode("ascii")
+
+
+EXPORTER = Exporter(
+    key="chrono",
+    label="Chrono, DEM-Engine (OBJ, JSON)",
+    units="shapes of volume 1; scales in metres, coarse graining applied; SI material",
+    carries=(
+        "shapes as triangles",
+        "mass and inertia",
+        "class weights, sizes",
+        "elastic constants, friction",
+    ),
+    loses=("polygonal facets: they are cut into triangles", "surface energy (JKR)"),
+    load_command="read particles.json, then LoadMeshType('{folder}/meshes/shape_00.obj')",
+    files=_files,
+)

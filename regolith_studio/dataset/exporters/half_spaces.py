@@ -1,0 +1,48 @@
+"""Half-spaces as numbers: the shapes exactly, for any program."""
+
+import numpy as np
+
+from regolith_studio.dataset.dataset import Dataset
+from regolith_studio.dataset.export_tables import csv_bytes, shape_names, sizes_csv
+from regolith_studio.dataset.exporting import NOTES, Exporter, ExportOptions
+from regolith_studio.dataset.strict_json import tidy_json
+
+_NOTE = b"""All x with <normal, x> <= offset; normals have length 1 and point out; every plane bears a facet.
+Floats are written so that they read back bit for bit. sizes.csv: classes, weights, sizes."""
+
+
+def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
+    del options
+    shapes, rows = [], []
+    for index, (key, one) in enumerate(zip(shape_names(dataset), dataset.representatives, strict=True)):
+        planes = one.shape.half_spaces
+        shapes.append(
+            {
+                "key": key,
+                "name": one.name,
+                "normals": planes.normals.tolist(),
+                "offsets": planes.offsets.tolist(),
+            }
+        )
+        rows += [
+            (index, one.name, *equation)
+            for equation in np.column_stack([planes.normals, planes.offsets]).tolist()
+        ]
+    text = tidy_json({"format": "half-spaces", "length_unit": "unit volume", "shapes": shapes})
+    return {
+        "half_spaces.json": text.encode("utf-8"),
+        "half_spaces.csv": csv_bytes(("class", "name", "nx", "ny", "nz", "offset"), rows),
+        "sizes.csv": sizes_csv(dataset),
+        NOTES: _NOTE,
+    }
+
+
+EXPORTER = Exporter(
+    key="half-spaces",
+    label="Half-spaces (JSON, CSV)",
+    units="shapes of volume 1 without a length unit; diameters in micrometres",
+    carries=("shapes exactly", "class weights by number and mass", "sizes"),
+    loses=("where the particles come from (dataset.json has it)",),
+    load_command="python -c \"import json; print(json.load(open('{folder}/half_spaces.json'))['shapes'])\"",
+    files=_files,
+)

@@ -1,0 +1,98 @@
+"""MuJoCo: an MJCF model of drawn particles, falling on a plate."""
+
+from xml.sax.saxutils import quoteattr
+
+import numpy as np
+
+from regolith_studio.dataset.bodies import lay_out
+from regolith_studio.dataset.dataset import Dataset
+from regolith_studio.dataset.export_tables import shape_names, sizes_csv
+from regolith_studio.dataset.exporting import NOTES, Exporter, ExportOptions
+from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+
+MILLIMETRES, GRAVITY = 1e3, 9.81e-3
+"""Per metre; and in mm/ms2."""
+
+_NOTE = b"""Lengths in mm, masses in mg, times in ms (forces in mN): in SI units MuJoCo refuses particles this
+small. Each mesh of the file is a shape of volume 1 with a scale; bodies of the same shape and size share
+one. Contacts of MuJoCo are soft constraints with Coulomb friction, not Hertz, Mindlin or JKR."""
+
+
+def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
+    bodies = lay_out(dataset, options)
+    keys, density = shape_names(dataset), options.contact.density * 1e-3
+    scales = bodies.scale * MILLIMETRES
+    assets: dict[tuple[int, float], str] = {}
+    lines = []
+    for index, (which, scale) in enumerate(zip(bodies.class_index.tolist(), scales.tolist(), strict=True)):
+        mesh = assets.setdefault((which, scale), f"{keys[which]}_{len(assets)}")
+        place, turn = bodies.position[index] * MILLIMETRES, bodies.orientation[index]
+        lines += [
+            f'    <body name="particle_{index}" pos="{_row(place)}" quat="{_row(turn)}">',
+            f'      <freejoint/><geom type="mesh" mesh="{mesh}" class="grain"/>',
+            "    </body>",
+        ]
+    meshes = [
+        f'    <mesh name="{mesh}" inertia="exact" scale="{scale!r} {scale!r} {scale!r}" '
+        f'vertex="{_vertices(dataset.representatives[which].shape)}" '
+        f'face="{_faces(dataset.representatives[which].shape)}"/>'
+        for (which, scale), mesh in assets.items()
+    ]
+    reach = float(np.abs(bodies.position).max() * MILLIMETRES) * 4
+    text = _model(dataset.name, options, density, reach, meshes, lines)
+    return {"particles.xml": text.encode("utf-8"), "sizes.csv": sizes_csv(dataset), NOTES: _NOTE}
+
+
+def _model(
+    name: str, options: ExportOptions, density: float, reach: float, meshes: list[str], bodies: list[str]
+) -> str:
+    contact = options.contact
+    return "\n".join(
+        [
+            f"<mujoco model={quoteattr(name)}>",
+            "  <!-- mm, mg, ms; z up -->",
+            f'  <option gravity="0 0 {-GRAVITY!r}" timestep="0.01" integrator="implicitfast"/>',
+            '  <compiler inertiafromgeom="true" boundmass="0" boundinertia="0"/>',
+            f'  <statistic extent="{reach!r}"/>',
+            "  <default>",
+            f'    <default class="grain"><geom density="{density!r}" condim="3" '
+            f'friction="{contact.dynamic_friction!r} 0 0"/></default>',
+            "  </default>",
+            "  <asset>",
+            *meshes,
+            "  </asset>",
+            "  <worldbody>",
+            f'    <geom name="plate" type="plane" size="{reach!r} {reach!r} 1" '
+            f'friction="{contact.wall_friction!r} 0 0"/>',
+            *bodies,
+            "  </worldbody>",
+            "</mujoco>",
+            "",
+        ]
+    )
+
+
+def _vertices(shape: ConvexPolyhedron) -> str:
+    return _row(shape.vertices.ravel())
+
+
+def _faces(shape: ConvexPolyhedron) -> str:
+    return " ".join(map(str, shape.mesh.faces.ravel().tolist()))
+
+
+def _row(values: np.ndarray) -> str:
+    return " ".join(map(repr, np.asarray(values).tolist()))
+
+
+EXPORTER = Exporter(
+    key="mujoco",
+    label="MuJoCo (MJCF)",
+    units="mm, mg, ms; coarse graining applied",
+    carries=("drawn particles: shape, size, orientation", "mass and inertia", "friction"),
+    loses=(
+        "weights and size distributions: only a sample is drawn (sizes.csv has them)",
+        "Hertz, Mindlin-Deresiewicz, JKR: MuJoCo's contacts are soft constraints",
+    ),
+    load_command="python -m mujoco.viewer --mjcf={folder}/particles.xml",
+    files=_files,
+)

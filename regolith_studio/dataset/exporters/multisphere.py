@@ -1,0 +1,46 @@
+"""Overlapping spheres: for programs that know nothing but spheres. Approximate."""
+
+import numpy as np
+
+from regolith_studio.dataset.dataset import Dataset
+from regolith_studio.dataset.export_tables import csv_bytes, shape_names, sizes_csv
+from regolith_studio.dataset.exporting import NOTES, Exporter, ExportOptions
+from regolith_studio.dataset.sphere_fit import fit_spheres, union_volume
+
+_NOTE = """One file a shape, a line a sphere: x y z r, in the frame of the shape (volume 1, centroid at the
+origin). The spheres lie inside the polyhedron, so their union is smaller:
+{rows}
+Programs that compute mass from the union or from overlapping spheres get other masses: set mass and
+inertia by hand (density x scale^3, moments in fit.csv). A particle of diameter d has every number times
+d (pi/6)^(1/3). fit.csv: spheres, volume of the union, moments of inertia of the polyhedron (density 1)."""
+
+
+def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
+    files, rows = {}, []
+    for key, one in zip(shape_names(dataset), dataset.representatives, strict=True):
+        spheres = fit_spheres(one.shape, options.n_spheres)
+        volume = union_volume(one.shape, spheres)
+        text = "".join(" ".join(map(repr, row)) + "\n" for row in spheres.tolist())
+        files[f"spheres/{key}.txt"] = text.encode("ascii")
+        rows.append((key, len(spheres), volume, *np.diag(one.shape.mesh.inertia).tolist()))
+    said = "\n".join(
+        f"  {row[0]}: {row[1]} spheres, {100 * (1 - row[2]):.1f} % of the volume missing" for row in rows
+    )
+    header = ("shape", "spheres", "union_volume", "moment_x", "moment_y", "moment_z")
+    return files | {
+        "fit.csv": csv_bytes(header, rows),
+        "sizes.csv": sizes_csv(dataset),
+        NOTES: _NOTE.format(rows=said).encode("utf-8"),
+    }
+
+
+EXPORTER = Exporter(
+    key="multi-sphere",
+    label="Multi-sphere (x y z r)",
+    units="spheres in the frame of a shape of volume 1; diameters in micrometres",
+    carries=("shapes approximately", "weights and sizes (sizes.csv)", "true moments of inertia (fit.csv)"),
+    loses=("flat facets and edges", "part of the volume", "contact parameters"),
+    load_command="fix clump multisphere ... file {folder}/spheres/shape_00.txt (as your program calls it)",
+    files=_files,
+    alters="spheres inside each polyhedron stand for it; facets become bumpy and some volume is missing.",
+)

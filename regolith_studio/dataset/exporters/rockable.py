@@ -1,0 +1,75 @@
+"""Rockable and exaDEM: sphero-polyhedra with polygonal facets in their eigenframe."""
+
+import numpy as np
+
+from regolith_studio.dataset.dataset import Dataset
+from regolith_studio.dataset.export_tables import shape_names, sizes_csv
+from regolith_studio.dataset.exporting import NOTES, Exporter, ExportOptions
+from regolith_studio.dataset.rounding import edges_of, rounded
+from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+
+_NOTE = """shapes.shp holds all shapes, of volume 1 before rounding; a particle's homothety is its
+scale d (pi/6)^(1/3), and the Minkowski radius scales with it. Facets stay in their planes: vertices lie
+inside by the radius. 'volume' is that of the rounded body (Steiner's formula), 'I/m' that of the sharp one.
+exaDEM admits 8 vertices a particle unless it is compiled for more: these shapes need {most}
+(cmake -DEXADEM_MAX_VERTICES={most} or as your version calls it).
+Rounding takes {least:.3g} to {worst:.3g} % of the volume. Neither program was run on these files; they are
+read back by an independent reader of the published syntax."""
+
+
+def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
+    blocks, lost, most = [], [], 0
+    for key, one in zip(shape_names(dataset), dataset.representatives, strict=True):
+        text, volume, vertices = _block(key, one.shape, options.rounding)
+        blocks.append(text)
+        lost.append(100 * (1 - volume))
+        most = max(most, vertices)
+    notes = _NOTE.format(most=most, least=min(lost), worst=max(lost))
+    return {
+        "shapes.shp": "".join(blocks).encode("ascii"),
+        "sizes.csv": sizes_csv(dataset),
+        NOTES: notes.encode("utf-8"),
+    }
+
+
+def _block(key: str, shape: ConvexPolyhedron, rounding: float) -> tuple[str, float, int]:
+    """Text of one shape, its volume, and the number of its vertices."""
+    body = rounded(shape, rounding)
+    core, radius = body.core, body.radius
+    low, high = core.vertices.min(axis=0), core.vertices.max(axis=0)
+    edges = edges_of(core)
+    lines = ["<", f"name {key}", f"radius {radius!r}", "preCompDone y"]
+    lines += [f"nv {core.n_vertices}", *(_row(corner) for corner in core.vertices)]
+    lines += [f"ne {len(edges)}", *(f"{first} {second}" for first, second in edges)]
+    lines += [f"nf {core.n_faces}"]
+    lines += [" ".join(map(str, (len(facet), *facet))) for facet in core.facets]
+    lines += [
+        f"obb.extent {_row((high - low) / 2 + radius)}",
+        "obb.e1 1 0 0",
+        "obb.e2 0 1 0",
+        "obb.e3 0 0 1",
+        f"obb.center {_row((high + low) / 2)}",
+        "position 0 0 0",
+        "orientation 1 0 0 0",
+        f"volume {body.volume!r}",
+        f"I/m {_row(shape.mesh.inertia.diagonal())}",
+        ">",
+        "",
+    ]
+    return "\n".join(lines), body.volume, core.n_vertices
+
+
+def _row(values: np.ndarray) -> str:
+    return " ".join(repr(float(value)) for value in values)
+
+
+EXPORTER = Exporter(
+    key="rockable",
+    label="Rockable, exaDEM (.shp)",
+    units="shapes of volume 1 (before rounding) without a length unit; diameters in micrometres",
+    carries=("polygonal facets, edges, vertices", "volume and inertia", "weights and sizes (sizes.csv)"),
+    loses=("contact parameters", "size distributions inside the .shp: give each particle its homothety"),
+    load_command="shapeFile {folder}/shapes.shp",
+    files=_files,
+    alters="both programs need rounded edges; facets stay in their planes, corners are lost.",
+)

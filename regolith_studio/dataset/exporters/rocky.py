@@ -1,0 +1,100 @@
+"""ANSYS Rocky: a script for its scripting interface that builds the lifting-cylinder case of section 2.6."""
+
+import numpy as np
+
+from regolith_studio.dataset.case_walls import box_mesh, tube_mesh
+from regolith_studio.dataset.dataset import Dataset
+from regolith_studio.dataset.export_tables import shape_names, sizes_csv
+from regolith_studio.dataset.exporting import NOTES, Exporter, ExportOptions, case_settings
+from regolith_studio.dataset.simulation_case import MICROMETRE, particle_count
+from regolith_studio.dataset.size_classes import size_classes
+from regolith_studio.dataset.strict_json import tidy_json
+from regolith_studio.imaging.stl import stl_bytes
+from regolith_studio.resources import resource
+
+_NOTE = """rocky_case.py reads case.json and builds the case: materials, damped Hertzian and
+Mindlin-Deresiewicz contacts, JKR, coarse graining, one particle input a shape, a tube
+that is lifted off a plate. About {count:,.0f} particles of {mass:.4g} g in all, coarse graining {factor:g}.
+Rocky counts sizes by mass: the percentages in case.json are cumulative mass percentages, converted
+from the dataset's, and each shape is filled in with its share of the mass. Sizes are equivalent diameters,
+so that the STL files need no unit. Restitution, wall friction and lifting speed are not given in the paper.
+Method names are those of the interface's public reference for 2024 R2 to 2026 R1; the script is tested
+against a recorder that knows these names, not against the licensed program. Compare one shape by
+GetExportToolkit().ExportParticleToStl before you trust a long run."""
+
+
+def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
+    keys = shape_names(dataset)
+    meshes = {
+        f"meshes/{key}.stl": stl_bytes(one.shape.mesh, f"regolith-studio unit-volume {key}")
+        for key, one in zip(keys, dataset.representatives, strict=True)
+    }
+    cylinder, factor = options.cylinder, options.coarse_graining_factor
+    count = particle_count(dataset, cylinder.total_mass, options.contact.density, factor)
+    notes = _NOTE.format(count=count, mass=cylinder.total_mass * 1e3, factor=factor)
+    return meshes | {
+        "rocky_case.py": resource("exports", "rocky_case.py").read_bytes(),
+        "case.json": tidy_json(_case(dataset, options, keys)).encode("utf-8"),
+        "walls/tube.stl": stl_bytes(
+            tube_mesh(cylinder.diameter, cylinder.height), "regolith-studio tube, metres"
+        ),
+        "walls/plate.stl": stl_bytes(box_mesh(_plate(options)), "regolith-studio plate, metres"),
+        "sizes.csv": sizes_csv(dataset),
+        NOTES: notes.encode("utf-8"),
+    }
+
+
+def _case(dataset: Dataset, options: ExportOptions, keys: list[str]) -> dict[str, object]:
+    cylinder = options.cylinder
+    shares = dataset.class_weights("volume")
+    particles = []
+    for key, one, share in zip(keys, dataset.representatives, shares, strict=True):
+        sizes = size_classes(one.sizes)
+        percent = 100 * np.cumsum(sizes.mass)
+        percent[-1] = 100.0
+        rows = np.column_stack([sizes.diameters * MICROMETRE, percent])[::-1]
+        particles.append(
+            {
+                "key": key,
+                "name": one.name,
+                "mesh": f"meshes/{key}.stl",
+                "mass": float(share * cylinder.total_mass),
+                "sizes": rows.tolist(),
+            }
+        )
+    inner = cylinder.diameter / np.sqrt(2.0)
+    reach = 3 * cylinder.diameter
+    return case_settings(options) | {
+        "project": "lifting_cylinder.rocky",
+        "length_unit": "m",
+        "duration": cylinder.duration,
+        "particles": particles,
+        "filling_box": {
+            "seed": [0.0, 0.0, cylinder.height / 2],
+            "center": [0.0, 0.0, cylinder.height / 2],
+            "dimensions": [inner, inner, 0.98 * cylinder.height],
+        },
+        "domain": [[-reach, -reach, -0.1 * cylinder.height], [reach, reach, 2.2 * cylinder.height]],
+    }
+
+
+def _plate(options: ExportOptions) -> np.ndarray:
+    reach = 3 * options.cylinder.diameter
+    return np.array([[-reach, -reach, -0.05 * options.cylinder.height], [reach, reach, 0.0]])
+
+
+EXPORTER = Exporter(
+    key="rocky",
+    label="ANSYS Rocky (script)",
+    units="SI; sizes are equivalent diameters in metres before coarse graining, which Rocky applies itself",
+    carries=(
+        "shapes",
+        "class weights as shares of the mass",
+        "sizes as cumulative percentages by mass",
+        "contact parameters: damped Hertzian, Mindlin-Deresiewicz, JKR",
+        "coarse graining, lifting cylinder",
+    ),
+    loses=("continuous size distributions: at most 16 sizes a shape",),
+    load_command="python {folder}/rocky_case.py (or open it in Rocky's script editor)",
+    files=_files,
+)

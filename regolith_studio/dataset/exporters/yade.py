@@ -1,0 +1,73 @@
+"""YADE: a script that drops drawn polyhedra into a cylinder and lifts it."""
+
+import numpy as np
+
+from regolith_studio.dataset.bodies import Bodies, lay_out
+from regolith_studio.dataset.dataset import Dataset
+from regolith_studio.dataset.export_tables import csv_bytes, shape_names, sizes_csv
+from regolith_studio.dataset.exporting import NOTES, Exporter, ExportOptions, case_settings
+from regolith_studio.dataset.strict_json import tidy_json
+from regolith_studio.resources import resource
+
+DEPTH = 1e-3
+"""Share of its size by which the largest particle sinks into another under the weight of a full tube."""
+
+_NOTE = """yade_case.py builds the case from case.json and particles.csv: {n} drawn particles above each
+other in the tube (which is stretched while it holds them), a plate, gravity, and the lift of the tube.
+YADE takes the convex hull of each shape's vertices, and finds centroid, volume and inertia by itself.
+Measured with YADE 2023.02a of Debian: volumes and masses agree with the dataset to 1e-12, principal
+moments to 0.2 %. Its law for polyhedra is volumetric (force by overlapping volume, no JKR): an angle of
+repose from it is qualitative. The stiffness is chosen so that the largest particle sinks in by a
+thousandth of its size under the weight of all; the time step follows from it."""
+
+COLUMNS = ("class", "scale", "diameter_m", "x", "y", "z", "qw", "qx", "qy", "qz")
+
+
+def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
+    bodies = lay_out(dataset, options, within=options.cylinder.diameter)
+    return {
+        "yade_case.py": resource("exports", "yade_case.py").read_bytes(),
+        "case.json": tidy_json(_case(dataset, options, bodies)).encode("utf-8"),
+        "particles.csv": csv_bytes(COLUMNS, _rows(bodies)),
+        "sizes.csv": sizes_csv(dataset),
+        NOTES: _NOTE.format(n=len(bodies)).encode("utf-8"),
+    }
+
+
+def _rows(bodies: Bodies) -> list[tuple[object, ...]]:
+    table = np.column_stack([bodies.scale, bodies.diameter, bodies.position, bodies.orientation])
+    return [(which, *row) for which, row in zip(bodies.class_index.tolist(), table.tolist(), strict=True)]
+
+
+def _case(dataset: Dataset, options: ExportOptions, bodies: Bodies) -> dict[str, object]:
+    masses = options.contact.density * bodies.scale**3
+    largest, smallest = float(bodies.scale.max()), float(bodies.scale.min())
+    stiffness = float(masses.sum()) * 9.81 / (DEPTH * largest**3)
+    top = float(bodies.position[:, 2].max()) + 2 * largest
+    time_step = 0.1 * np.sqrt(options.contact.density * smallest**3 / (stiffness * largest**2))
+    return case_settings(options) | {
+        "length_unit": "m",
+        "volumetric_stiffness": stiffness,
+        "time_step": float(time_step),
+        "damping": 0.4,
+        "largest_diameter": float(bodies.diameter.max()),
+        "tube_stretch": max(1.0, top / options.cylinder.height),
+        "shapes": [
+            {"key": key, "name": one.name, "vertices": one.shape.vertices.tolist()}
+            for key, one in zip(shape_names(dataset), dataset.representatives, strict=True)
+        ],
+    }
+
+
+EXPORTER = Exporter(
+    key="yade",
+    label="YADE (script)",
+    units="SI; coarse graining applied",
+    carries=("drawn particles: shape, size, orientation", "friction", "lifting cylinder"),
+    loses=(
+        "weights and size distributions: only a sample is drawn (sizes.csv has them)",
+        "Hertz, Mindlin-Deresiewicz, JKR, restitution: the law is volumetric",
+    ),
+    load_command="yade {folder}/yade_case.py",
+    files=_files,
+)

@@ -1,0 +1,260 @@
+"""What an exporter is, what it is told, and how its folder is written: as a whole, with a README."""
+
+import hashlib
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, field, fields, replace
+from pathlib import Path
+from typing import Any
+
+import regolith_studio
+from regolith_studio.dataset.dataset import Dataset
+from regolith_studio.dataset.disk import recovered, replace_folder
+from regolith_studio.dataset.reading import UNASKED
+from regolith_studio.dataset.simulation_case import ContactParameters, LiftingCylinder
+from regolith_studio.dataset.strict_json import strict_json, tidy_json
+from regolith_studio.errors import DatasetError, InputError
+
+FORMAT = "regolith-studio-export"
+RECORD, README = "export.json", "README.txt"
+
+
+@dataclass(frozen=True)
+class ExportOptions:
+    """What the exporters are told besides the dataset; each takes what its format has room for.
+
+    Parameters
+    ----------
+    contact, cylinder
+        Of the simulated case.
+    coarse_graining_factor
+        By which all diameters are enlarged (section 2.6); 10 in the paper.
+    n_particles
+        Particles drawn for formats that list single bodies.
+    seed
+        Of that draw.
+    rounding
+        Radius of rounded edges, as a share of the smallest distance between a shape's centre and a facet,
+        for formats that need some.
+    n_spheres
+        Spheres a shape, for formats that know nothing else.
+    """
+
+    contact: ContactParameters = field(default_factory=ContactParameters)
+    cylinder: LiftingCylinder = field(default_factory=LiftingCylinder)
+    coarse_graining_factor: float = 10.0
+    n_particles: int = 200
+    seed: int = 0
+    rounding: float = 0.02
+    n_spheres: int = 20
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.coarse_graining_factor <= 1e6:
+            raise InputError(
+                f"The coarse-graining factor must be positive, got {self.coarse_graining_factor}."
+            )
+        if not 1 <= self.n_particles <= 1_000_000:
+            raise InputError(f"Between 1 and 1,000,000 particles can be listed, got {self.n_particles}.")
+        if not 0.0 < self.rounding <= 0.5:
+            raise InputError(f"The rounding must be between 0 and 0.5, got {self.rounding}.")
+        if not 1 <= self.n_spheres <= 500:
+            raise InputError(f"Between 1 and 500 spheres can be fitted, got {self.n_spheres}.")
+
+    def replaced(self, **changes: Any) -> "ExportOptions":
+        """A copy with other values; fields of `contact` and `cylinder` by their own names.
+
+        Raises
+        ------
+        InputError
+            If there is no such setting, or a value cannot be used.
+        """
+        own: dict[str, Any] = {}
+        for name, value in changes.items():
+            part = next(
+                (part for part in ("contact", "cylinder") if name in _names(getattr(self, part))), None
+            )
+            if part is not None:
+                own[part] = replace(own.get(part, getattr(self, part)), **{name: value})
+            elif name in _names(self):
+                own[name] = value
+            else:
+                raise InputError(f"An export has no setting {name!r}.")
+        return replace(self, **own)
+
+
+@dataclass(frozen=True)
+class Exporter:
+    """One format; a module of ``exporters`` that defines ``EXPORTER`` is one.
+
+    Parameters
+    ----------
+    key, label
+        For options, and for people.
+    units
+        In which units the files are, in one line.
+    carries, loses
+        What of a dataset the format holds, and what it has no room for; said before the export and in the
+        README.
+    load_command
+        What to type to use the files; ``{folder}`` stands for where they are.
+    files
+        Every file by its relative path, the same bytes for the same input. The entry :data:`NOTES` is
+        no file: text for the README, such as what was measured.
+    alters
+        How shapes are changed, in one sentence; empty where they are kept. Such an export needs consent.
+    """
+
+    key: str
+    label: str
+    units: str
+    carries: tuple[str, ...]
+    loses: tuple[str, ...]
+    load_command: str
+    files: Callable[[Dataset, ExportOptions], dict[str, bytes]]
+    alters: str = ""
+
+
+NOTES = "NOTES"
+"""Key under which an exporter hands over text for the README, such as what it measured."""
+
+
+@dataclass(frozen=True)
+class Exported:
+    """An export on disk."""
+
+    key: str
+    folder: Path
+    files: tuple[str, ...]
+    load_command: str
+
+
+def case_settings(options: ExportOptions) -> dict[str, Any]:
+    """What a simulation script is told: contact parameters, cylinder, coarse graining; SI units."""
+    return {
+        "contact": asdict(options.contact),
+        "cylinder": asdict(options.cylinder),
+        "coarse_graining_factor": options.coarse_graining_factor,
+    }
+
+
+def write_export(
+    dataset: Dataset,
+    exporter: Exporter,
+    folder: Path | str,
+    options: ExportOptions | None = None,
+    *,
+    dataset_hash: str | None = None,
+    accept_loss: bool = False,
+) -> Exported:
+    """Write one format into `folder`, which then holds it and nothing else, or is as it was before.
+
+    Parameters
+    ----------
+    folder
+        New, empty, or holding an export of this program and nothing else.
+    dataset_hash
+        Of the dataset's folder, noted in the record.
+    accept_loss
+        Needed for formats that change the shapes.
+
+    Raises
+    ------
+    DatasetError
+        If the format changes shapes and that was not accepted, the folder holds anything else, or
+        something cannot be written.
+    """
+    chosen, target = options or ExportOptions(), Path(folder).resolve()
+    if exporter.alters and not accept_loss:
+        raise DatasetError(f"{exporter.label} cannot hold the shapes as they are: {exporter.alters}")
+    try:
+        recovered(target)
+        _check_replaceable(target)
+        content = _with_words(dataset, exporter, chosen, dataset_hash)
+        replace_folder(target, content)
+    except OSError as error:
+        raise DatasetError(
+            f"The export could not be written to {target}: {error.strerror or error}."
+        ) from error
+    return Exported(exporter.key, target, tuple(sorted(content)), exporter.load_command.format(folder=target))
+
+
+def _with_words(
+    dataset: Dataset, exporter: Exporter, options: ExportOptions, dataset_hash: str | None
+) -> dict[str, bytes]:
+    """The exporter's files with README and record."""
+    content = dict(exporter.files(dataset, options))
+    notes = content.pop(NOTES, b"").decode("utf-8")
+    readme = _readme(dataset, exporter, options, notes, sorted(content)).encode("utf-8")
+    record = {
+        "format": FORMAT,
+        "schema_version": 1,
+        "exporter": exporter.key,
+        "dataset": dataset.name,
+        "dataset_sha256": dataset_hash,
+        "software": f"regolith-studio {regolith_studio.__version__}",
+        "units": exporter.units,
+        "options": asdict(options),
+        "loses": list(exporter.loses),
+        "alters": exporter.alters,
+        "files": {name: hashlib.sha256(data).hexdigest() for name, data in content.items()}
+        | {README: hashlib.sha256(readme).hexdigest()},
+    }
+    return content | {README: readme, RECORD: tidy_json(record).encode("utf-8")}
+
+
+def _readme(
+    dataset: Dataset, exporter: Exporter, options: ExportOptions, notes: str, names: list[str]
+) -> str:
+    lines = [
+        f"{dataset.name} for {exporter.label}",
+        "",
+        f"Written by Regolith Studio {regolith_studio.__version__} from a dataset of {len(dataset)} shapes.",
+        "",
+        f"Units: {exporter.units}",
+        f"To use: {exporter.load_command.format(folder='.')}",
+        "",
+        "Carried:",
+        *(f"  - {one}" for one in exporter.carries),
+        "Not carried:",
+        *(f"  - {one}" for one in exporter.loses or ("nothing of the dataset is lost",)),
+    ]
+    if exporter.alters:
+        lines += ["Shapes are changed:", f"  - {exporter.alters}"]
+    lines += ["", *(notes.splitlines() or ["No further notes."])]
+    lines += ["", f"Coarse-graining factor: {options.coarse_graining_factor:g}", "Files:"]
+    shown = names if len(names) <= 12 else [*names[:11], f"... {len(names) - 11} more"]
+    return "\n".join([*lines, *(f"  {name}" for name in shown), f"  {RECORD}", ""])
+
+
+def _check_replaceable(target: Path) -> None:
+    if not target.exists():
+        return
+    if not target.is_dir():
+        raise DatasetError(f"{target} is a file; an export is written into a folder.")
+    found = {
+        path.relative_to(target).as_posix()
+        for path in target.rglob("*")
+        if path.is_file() and path.name not in UNASKED
+    }
+    if not found:
+        return
+    foreign = sorted(found - _own_files(target / RECORD) - {RECORD})
+    if RECORD not in found or foreign:
+        name = foreign[0] if foreign else RECORD
+        raise DatasetError(
+            f"{target} holds files that are not an export's ({name}); nothing was overwritten."
+        )
+
+
+def _names(settings: Any) -> set[str]:
+    return {each.name for each in fields(settings)}
+
+
+def _own_files(record: Path) -> set[str]:
+    try:
+        content = strict_json(record.read_text(encoding="utf-8"), str(record))
+    except (OSError, UnicodeDecodeError, DatasetError):
+        return set()
+    files = content.get("files") if isinstance(content, dict) else None
+    if not isinstance(files, Mapping) or content.get("format") != FORMAT:
+        return set()
+    return set(files)

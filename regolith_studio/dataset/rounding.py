@@ -1,0 +1,72 @@
+"""Polyhedra with rounded edges: facets moved in by a radius, then swept by a ball of it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.geometry.half_spaces import HalfSpaces
+
+
+@dataclass(frozen=True, eq=False)
+class RoundedPolyhedron:
+    """The Minkowski sum of a core and a ball; its flat parts lie where the facets lay.
+
+    Parameters
+    ----------
+    core
+        Convex polyhedron.
+    radius
+        Of the ball.
+    """
+
+    core: ConvexPolyhedron
+    radius: float
+
+    @property
+    def volume(self) -> float:
+        """Steiner's formula: V + A r + sum(l theta) r^2 / 2 + 4 pi r^3 / 3."""
+        r = self.radius
+        bent = float(edge_bends(self.core).sum())
+        return self.core.volume + self.core.surface_area * r + bent * r * r / 2 + 4 * np.pi / 3 * r**3
+
+
+def rounded(shape: ConvexPolyhedron, rounding: float) -> RoundedPolyhedron:
+    """Round the edges of `shape` with a radius of `rounding` times the smallest offset of a facet.
+
+    The radius is halved until no facet is lost when the planes move in by it.
+    """
+    planes = shape.half_spaces
+    radius = rounding * float(planes.offsets.min())
+    while True:
+        core = ConvexPolyhedron.from_half_spaces(HalfSpaces(planes.normals, planes.offsets - radius))
+        if core.n_faces == shape.n_faces or radius < 1e-9 * float(planes.offsets.min()):
+            return RoundedPolyhedron(core, radius)
+        radius /= 2
+
+
+def edges_of(shape: ConvexPolyhedron) -> list[tuple[int, int]]:
+    """The edges between facets, each once, as vertex indices."""
+    return list(_edges(shape))
+
+
+def edge_bends(shape: ConvexPolyhedron) -> FloatArray:
+    """Length of each edge times the angle between its facets' normals, shape (n_edges,)."""
+    normals, vertices = shape.half_spaces.normals, shape.vertices
+    bends = []
+    for (first, second), (one, other) in _edges(shape).items():
+        angle = np.arctan2(
+            np.linalg.norm(np.cross(normals[one], normals[other])), normals[one] @ normals[other]
+        )
+        bends.append(np.linalg.norm(vertices[first] - vertices[second]) * angle)
+    return np.array(bends)
+
+
+def _edges(shape: ConvexPolyhedron) -> dict[tuple[int, int], tuple[int, int]]:
+    """For each edge (lower vertex first) the two facets that it joins."""
+    sides: dict[tuple[int, int], list[int]] = {}
+    for facet, corners in enumerate(shape.facets):
+        for first, second in zip(corners, (*corners[1:], corners[0]), strict=True):
+            sides.setdefault((min(first, second), max(first, second)), []).append(facet)
+    return {edge: (facets[0], facets[-1]) for edge, facets in sorted(sides.items())}

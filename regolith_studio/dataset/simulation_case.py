@@ -1,0 +1,106 @@
+"""The lifting cylinder of section 2.6: contact parameters, cylinder, how many particles fill it. SI units."""
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from regolith_studio.dataset.dataset import Dataset
+from regolith_studio.errors import InputError
+
+MICROMETRE = 1e-6
+
+
+@dataclass(frozen=True)
+class ContactParameters:
+    """Material and contact of particles and walls; Table 1 where the paper gives a number.
+
+    Parameters
+    ----------
+    density
+        kg/m3.
+    young_modulus
+        Pa.
+    poisson_ratio, static_friction, dynamic_friction
+        Dimensionless.
+    surface_energy
+        J/m2, for JKR.
+    restitution
+        Dimensionless; not given in the paper.
+    wall_friction
+        Of particles on walls; not given in the paper.
+    """
+
+    density: float = 3075.0
+    young_modulus: float = 30e9
+    poisson_ratio: float = 0.2
+    static_friction: float = 0.8
+    dynamic_friction: float = 0.8
+    surface_energy: float = 0.010
+    restitution: float = 0.5
+    wall_friction: float = 0.8
+
+    def __post_init__(self) -> None:
+        _check_positive(self, ("density", "young_modulus"))
+        if not -1.0 < self.poisson_ratio < 0.5:
+            raise InputError(f"Poisson's ratio must lie between -1 and 0.5, got {self.poisson_ratio}.")
+        if not 0.0 <= self.restitution <= 1.0:
+            raise InputError(f"The coefficient of restitution must lie in 0..1, got {self.restitution}.")
+        for name in ("static_friction", "dynamic_friction", "surface_energy", "wall_friction"):
+            if not getattr(self, name) >= 0.0:
+                raise InputError(f"{name} must not be negative, got {getattr(self, name)}.")
+
+
+@dataclass(frozen=True)
+class LiftingCylinder:
+    """The cylinder that is filled and lifted; Table 2 where the paper gives a number. Metres, kg, seconds.
+
+    Parameters
+    ----------
+    diameter, height
+        Of the cylinder.
+    total_mass
+        Of the particles; their number follows from it.
+    lifting_speed, settling_time, resting_time
+        m/s and s; not given in the paper.
+    """
+
+    diameter: float = 0.02
+    height: float = 0.08
+    total_mass: float = 0.015
+    lifting_speed: float = 0.01
+    settling_time: float = 1.0
+    resting_time: float = 1.0
+
+    def __post_init__(self) -> None:
+        _check_positive(self, tuple(field.name for field in fields(self)))
+
+    @property
+    def duration(self) -> float:
+        """Settle, lift the cylinder clear by its own height, come to rest: seconds."""
+        return self.settling_time + self.height / self.lifting_speed + self.resting_time
+
+
+def mean_particle_mass(dataset: Dataset, density: float, coarse_graining_factor: float = 1.0) -> float:
+    """Mean mass of a particle counted by number, in kg: density pi/6 f^3 <d^3>."""
+    cubes = np.array([one.sizes.mean_cube() for one in dataset.representatives])
+    mean_cube = float(dataset.class_weights("number") @ cubes)
+    return density * np.pi / 6 * (coarse_graining_factor * MICROMETRE) ** 3 * mean_cube
+
+
+def particle_count(
+    dataset: Dataset, total_mass: float, density: float, coarse_graining_factor: float = 1.0
+) -> float:
+    """Particles in `total_mass` (kg); with the paper's sizes, density and factor 378,000 in 15 g."""
+    return total_mass / mean_particle_mass(dataset, density, coarse_graining_factor)
+
+
+def solid_fraction(mass: float, density: float, diameter: float, fill_height: float) -> float:
+    """Share of a cylinder filled to `fill_height` that is solid."""
+    return mass / density / (np.pi / 4 * diameter**2 * fill_height)
+
+
+def _check_positive(settings: object, names: tuple[str, ...]) -> None:
+    for name in names:
+        value = getattr(settings, name)
+        if not (np.isfinite(value) and value > 0.0):
+            raise InputError(f"{name} must be positive, got {value}.")

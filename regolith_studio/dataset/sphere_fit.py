@@ -1,0 +1,64 @@
+"""Spheres inside a convex polyhedron that fill as much of it as they can: greedy, from the largest down."""
+
+import numpy as np
+from scipy.optimize import linprog
+from scipy.spatial.distance import cdist
+from scipy.stats import qmc
+
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+
+PROBES = 4096
+"""Points that the fit tries to cover; a power of two for Sobol's sequence."""
+CENTRES = 1500
+"""Places for a sphere that are tried."""
+VOLUME_PROBES = 1 << 16
+
+
+def fit_spheres(shape: ConvexPolyhedron, count: int) -> FloatArray:
+    """At most `count` spheres inside `shape`, each row x, y, z, r; the first is the largest that fits.
+
+    Every further sphere is the one, among many centres, each with the largest radius that fits there,
+    that covers most of what is still bare. Fewer come back where nothing is gained any more.
+    """
+    probes = inner_points(shape, PROBES)
+    centres = np.vstack([_incentre(shape), probes[:CENTRES]])
+    radii = (shape.half_spaces.offsets - centres @ shape.half_spaces.normals.T).min(axis=1)
+    inside = cdist(centres, probes) <= radii[:, None]
+    bare, chosen = np.ones(len(probes), dtype=bool), [0]
+    bare &= ~inside[0]
+    while len(chosen) < count:
+        gain = (inside & bare).sum(axis=1)
+        best = int(gain.argmax())
+        if gain[best] == 0:
+            break
+        chosen.append(best)
+        bare &= ~inside[best]
+    return np.column_stack([centres[chosen], radii[chosen]])
+
+
+def union_volume(shape: ConvexPolyhedron, spheres: FloatArray) -> float:
+    """Volume of the union of spheres that lie inside `shape`; standard error about 0.001 of the shape's."""
+    probes = inner_points(shape, VOLUME_PROBES)
+    covered = np.zeros(len(probes), dtype=bool)
+    for x, y, z, radius in spheres:
+        covered |= ((probes - (x, y, z)) ** 2).sum(axis=1) <= radius**2
+    return shape.volume * float(covered.mean())
+
+
+def inner_points(shape: ConvexPolyhedron, count: int) -> FloatArray:
+    """About `count` points inside, evenly spread (Sobol, no chance in it), shape (k, 3)."""
+    low, high = shape.vertices.min(axis=0), shape.vertices.max(axis=0)
+    share = shape.volume / float(np.prod(high - low))
+    power = int(np.ceil(np.log2(count / share)))
+    points = low + np.asarray(qmc.Sobol(3, scramble=False).random_base2(power)) * (high - low)
+    planes = shape.half_spaces
+    return np.asarray(points[(points @ planes.normals.T <= planes.offsets).all(axis=1)])
+
+
+def _incentre(shape: ConvexPolyhedron) -> FloatArray:
+    """Centre of the largest sphere inside, by linear programming."""
+    planes = shape.half_spaces
+    matrix = np.column_stack([planes.normals, np.ones(len(planes))])
+    answer = linprog([0, 0, 0, -1], A_ub=matrix, b_ub=planes.offsets, bounds=[(None, None)] * 3 + [(0, None)])
+    return np.asarray(answer.x)[:3]

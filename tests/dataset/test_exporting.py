@@ -1,0 +1,138 @@
+"""Exports as folders: what every format has in common."""
+
+import hashlib
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from regolith_studio.dataset.dataset import Dataset
+from regolith_studio.dataset.disk import leftovers
+from regolith_studio.dataset.exporters import EXPORTERS
+from regolith_studio.dataset.exporting import NOTES, Exporter, ExportOptions, write_export
+from regolith_studio.dataset.simulation_case import particle_count
+from regolith_studio.errors import DatasetError, InputError
+
+OPTIONS = ExportOptions(n_particles=12, n_spheres=4)
+EXPECTED = {
+    "aspherix", "chrono", "gltf", "half-spaces", "hoomd", "lammps", "mujoco", "multi-sphere", "rockable",
+    "rocky", "yade",
+}  # fmt: skip
+
+
+def written(dataset: Dataset, key: str, folder: Path, options: ExportOptions = OPTIONS) -> Path:
+    return write_export(dataset, EXPORTERS[key], folder, options, accept_loss=True).folder
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {
+        path.relative_to(folder).as_posix(): path.read_bytes() for path in folder.rglob("*") if path.is_file()
+    }
+
+
+def test_that_all_formats_are_found_by_themselves() -> None:
+    assert set(EXPORTERS) == EXPECTED
+    assert all(exporter.key == key for key, exporter in EXPORTERS.items())
+
+
+@pytest.mark.parametrize("key", sorted(EXPECTED))
+def test_that_an_export_says_what_it_is_and_gives_the_same_bytes_again(
+    key: str, tmp_path: Path, make_dataset
+) -> None:
+    dataset, exporter = make_dataset(3), EXPORTERS[key]
+    first = contents(written(dataset, key, tmp_path / "a"))
+    assert contents(written(dataset, key, tmp_path / "b")) == first
+    record = json.loads(first["export.json"])
+    assert NOTES not in first
+    assert set(record["files"]) == set(first) - {"export.json"}
+    assert all(hashlib.sha256(first[name]).hexdigest() == digest for name, digest in record["files"].items())
+    readme = first["README.txt"].decode()
+    assert all(
+        said in readme for said in (exporter.units, *exporter.carries, *exporter.loses, exporter.alters)
+    )
+    assert exporter.load_command.format(folder=".") in readme
+    assert "{" not in readme.replace("{folder}", "")
+
+
+@pytest.mark.parametrize("key", sorted(EXPECTED))
+def test_that_shapes_are_changed_only_with_consent(key: str, tmp_path: Path, make_dataset) -> None:
+    exporter = EXPORTERS[key]
+    if not exporter.alters:
+        write_export(make_dataset(1), exporter, tmp_path / "x", OPTIONS)
+        return
+    with pytest.raises(DatasetError, match="cannot hold the shapes as they are") as refused:
+        write_export(make_dataset(1), exporter, tmp_path / "x", OPTIONS)
+    assert exporter.alters in str(refused.value)
+    assert not (tmp_path / "x").exists()
+
+
+def test_that_an_export_replaces_an_export_and_nothing_else(tmp_path: Path, make_dataset) -> None:
+    folder = written(make_dataset(3), "hoomd", tmp_path / "x")
+    written(make_dataset(1), "aspherix", folder)
+    assert not (folder / "type_shapes.json").exists()
+    (folder / "log.txt").write_text("results of a week")
+    with pytest.raises(DatasetError, match=r"log\.txt"):
+        written(make_dataset(1), "hoomd", folder)
+    assert (folder / "log.txt").read_text() == "results of a week"
+    assert leftovers(folder) == []
+
+
+def test_that_a_folder_of_others_and_a_file_are_refused(tmp_path: Path, make_dataset) -> None:
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "export.json").write_text('{"files": {"export.json": ""}}')
+    (tmp_path / "mine" / "thesis.txt").write_text("x")
+    with pytest.raises(DatasetError, match="not an export's"):
+        written(make_dataset(1), "hoomd", tmp_path / "mine")
+    (tmp_path / "file").write_text("x")
+    with pytest.raises(DatasetError, match="is a file"):
+        written(make_dataset(1), "hoomd", tmp_path / "file")
+    with pytest.raises(DatasetError, match="could not be written"):
+        written(make_dataset(1), "hoomd", tmp_path / "file" / "below")
+
+
+def test_that_an_exporter_that_fails_leaves_the_old_export(tmp_path: Path, make_dataset) -> None:
+    folder = written(make_dataset(1), "hoomd", tmp_path / "x")
+    before = contents(folder)
+
+    def fail(*_: object) -> dict[str, bytes]:
+        raise DatasetError("no")
+
+    with pytest.raises(DatasetError):
+        write_export(make_dataset(1), Exporter("x", "X", "", (), (), "", fail), folder)
+    assert contents(folder) == before
+
+
+def test_that_settings_of_contact_and_cylinder_go_by_their_own_names() -> None:
+    options = ExportOptions().replaced(seed=3, density=2900.0, restitution=0.4, total_mass=0.01)
+    assert (options.seed, options.contact.density, options.contact.restitution) == (3, 2900.0, 0.4)
+    assert options.cylinder.total_mass == 0.01
+    assert options.contact.young_modulus == 30e9
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"coarse_graining_factor": 0.0},
+        {"coarse_graining_factor": float("nan")},
+        {"n_particles": 0},
+        {"rounding": 0.0},
+        {"n_spheres": 0},
+        {"density": -1.0},
+        {"poisson_ratio": 0.5},
+        {"restitution": 1.1},
+        {"static_friction": -0.1},
+        {"lifting_speed": 0.0},
+        {"colour": 1},
+    ],
+)
+def test_that_settings_that_make_no_sense_are_refused(change: dict[str, float]) -> None:
+    with pytest.raises(InputError):
+        ExportOptions().replaced(**change)
+
+
+def test_that_the_number_of_particles_falls_with_the_cube_of_the_coarse_graining(make_dataset) -> None:
+    dataset = make_dataset(3)
+    mean = np.mean([4 / 3 * np.pi * (r.sizes.quantile(0.5) / 2 * 1e-6) ** 3 for r in dataset.representatives])
+    assert particle_count(dataset, 0.01, 3000.0) == pytest.approx(0.01 / (3000 * mean))
+    assert particle_count(dataset, 0.01, 3000.0, 10.0) == pytest.approx(0.01 / (3e6 * mean))
