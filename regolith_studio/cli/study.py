@@ -35,6 +35,35 @@ Below = Annotated[
     ),
 ]
 
+SampleSources = Annotated[
+    list[str],
+    typer.Argument(metavar="FIT|MESH...", help="The fit of a sample, or its meshes."),
+]
+Models = Annotated[
+    str,
+    typer.Option("--models", help="Models by key, separated by commas.", metavar="LIST", show_default="all"),
+]
+Draws = Annotated[
+    int,
+    typer.Option(
+        "--draws",
+        help="Particles of each drawing.",
+        metavar="N",
+        show_default="half the sample, at most 1000",
+    ),
+]
+Splits = Annotated[int, typer.Option("--splits", help="Random halves to fit to.", metavar="N")]
+Repeats = Annotated[int, typer.Option("--repeats", help="Drawings from each fit.", metavar="N")]
+DescriptorKeys = Annotated[
+    str,
+    typer.Option(
+        "--descriptors",
+        help="Keys of descriptors, separated by commas.",
+        metavar="LIST",
+        show_default="r_eq, A, AR, S, V/CH",
+    ),
+]
+
 app = typer.Typer(help="Tables and figures over a sample.", no_args_is_help=True, rich_markup_mode=None)
 
 
@@ -92,6 +121,56 @@ def coarsening(
     loaded = read_inputs(meshes, unit)
     _conclude("coarsening_study", study_coarsening(loaded.particles, wish.order, jobs), output, json)
     raise typer.Exit(exit_code(meshes, loaded))
+
+
+@app.command("population")
+def population(
+    sources: SampleSources,
+    output: Folder,
+    models: Models = "",
+    l_max: LMax = 10,
+    draws: Draws = 0,
+    splits: Splits = 5,
+    repeats: Repeats = 5,
+    descriptors: DescriptorKeys = "",
+    unit: Unit = "um",
+    json: Json = False,
+    jobs: Jobs = 1,
+    seed: Seed = 0,
+) -> None:
+    """Drawn against measured particles: models fitted to one half, judged on the other (Figs. 4-6)."""
+    from regolith_studio.cli.generate import shape_source
+    from regolith_studio.cli.terminal import complain
+    from regolith_studio.errors import InputError
+    from regolith_studio.jobs.generating import GenerateOrder
+    from regolith_studio.jobs.studying import study_population
+    from regolith_studio.model.sample import Sample
+    from regolith_studio.studies.population import KEYS
+
+    with as_bad_use():
+        order = GenerateOrder(l_max=l_max, seed=seed)
+    source = shape_source(sources, unit, order, jobs)
+    complain(source.notes)
+    if not isinstance(source.content, Sample):
+        raise InputError(
+            f"{source.name} holds no measured particles to judge models on; give a fit, or meshes."
+        )
+    steps = study_population(
+        source.content,
+        _words(models) or None,
+        jobs,
+        l_max=l_max,
+        n_draws=draws or None,
+        n_splits=splits,
+        n_repeats=repeats,
+        keys=_words(descriptors) or KEYS,
+        seed=seed,
+    )
+    _conclude("population_study", steps, output, json)
+
+
+def _words(text: str) -> tuple[str, ...]:
+    return tuple(word.strip() for word in text.split(",") if word.strip())
 
 
 def _conclude(kind: str, steps: "Steps", folder: Path, json: bool) -> Any:

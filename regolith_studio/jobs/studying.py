@@ -7,8 +7,10 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.coarsening import CoarseningOrder
 from regolith_studio.jobs.crew import Crew, hired
 from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
+from regolith_studio.model.sample import Sample
 from regolith_studio.studies.coarsening import TargetChoice, coarsening_study
 from regolith_studio.studies.lmax import lmax_study
+from regolith_studio.studies.population import population_study
 from regolith_studio.studies.progress import StudyProgress
 
 
@@ -26,7 +28,26 @@ def study_lmax(
     """
     yield Started("RMSRE against l_max", len(particles))
     with hired(workers) as crew:
-        return (yield from _told(lmax_study(particles, mapper=crew.map, seed=seed, **options)))
+        return (yield from told(lmax_study(particles, mapper=crew.map, seed=seed, **options)))
+
+
+def study_population(
+    sample: Sample, models: Sequence[str] | None = None, workers: int | Crew = 1, **options: Any
+) -> Steps:
+    """Figs. 4 to 6 for `sample`; partial results and the result are ``PopulationStudy``.
+
+    Parameters
+    ----------
+    models
+        Keys of ``MODELS``; all by default.
+    workers
+        Processes at a time; 0 for one a core.
+    options
+        Further ones of :func:`~regolith_studio.studies.population.population_study`.
+    """
+    yield Started("Judging models", 0)
+    with hired(workers) as crew:
+        return (yield from told(population_study(sample, models, mapper=crew.map, **options)))
 
 
 def study_coarsening(
@@ -55,10 +76,10 @@ def study_coarsening(
             mapper=crew.map,
             **options,
         )
-        return (yield from _told(study))
+        return (yield from told(study))
 
 
-def _told(steps: Generator[StudyProgress, None, Any]) -> Generator[Step, None, Any]:
+def told(steps: Generator[StudyProgress, None, Any]) -> Generator[Step, None, Any]:
     """The story of a study in the events of jobs."""
     while True:
         try:

@@ -35,6 +35,38 @@ def kolmogorov_smirnov(
     return float(np.abs(gap).max())
 
 
+def resampled_distances(
+    measured: FloatArray, drawn: FloatArray, weights: FloatArray, drawn_weights: FloatArray, scale: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """:func:`relative_wasserstein` and :func:`kolmogorov_smirnov` for many weightings of the same values.
+
+    Parameters
+    ----------
+    measured, drawn
+        Shapes (n,) and (m,).
+    weights, drawn_weights
+        A row for each weighting, shapes (b, n) and (b, m).
+    scale
+        Weights of the measured mean whose share the first distance is, shape (n,).
+
+    Returns
+    -------
+    Both distances of each weighting, shapes (b,).
+    """
+    places = np.concatenate([measured, drawn])
+    order = np.argsort(places, kind="stable")
+    signed = np.hstack(
+        [
+            weights / weights.sum(axis=1, keepdims=True),
+            -drawn_weights / drawn_weights.sum(axis=1, keepdims=True),
+        ]
+    )
+    rising = np.abs(np.cumsum(signed[:, order], axis=1))[:, :-1]
+    steps = np.diff(places[order])
+    mean = max(abs(float(scale @ measured / scale.sum())), 1e-300)
+    return rising @ steps / mean, np.where(steps > 0, rising, 0.0).max(axis=1)
+
+
 def energy_distance(measured: FloatArray, drawn: FloatArray) -> float:
     """2 E|X - Y| - E|X - X'| - E|Y - Y'| of Szekely and Rizzo (2004) between two tables (n, d).
 
@@ -90,10 +122,15 @@ def novelty(measured: FloatArray, drawn: FloatArray) -> FloatArray:
     measured, drawn
         Coefficients of radii, shapes (n, k) and (m, k).
     """
-    tree = cKDTree(canonical(measured))
+    return novelty_in_frame(canonical(measured), canonical(drawn))
+
+
+def novelty_in_frame(measured: FloatArray, drawn: FloatArray) -> FloatArray:
+    """As :func:`novelty`, for particles that are already in the frame of :func:`principal_axes.canonical`."""
+    tree = cKDTree(measured)
     own = np.asarray(tree.query(tree.data, k=[2])[0])
     unit = float(np.median(own))
-    return np.asarray(tree.query(canonical(drawn))[0] / max(unit, 1e-300))
+    return np.asarray(tree.query(drawn)[0] / max(unit, 1e-300))
 
 
 def _rising_share(values: FloatArray, weights: FloatArray, places: FloatArray) -> FloatArray:

@@ -11,53 +11,30 @@ from typing import Any
 
 import numpy as np
 
+from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.errors import InputError, RegolithError
-from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.model.draws import Draws, virtual_mesh
-from regolith_studio.model.judging import (
-    classifier_accuracy,
-    energy_distance,
-    kolmogorov_smirnov,
-    novelty,
-    pairs_of,
-    relative_wasserstein,
-)
+from regolith_studio.model.judging import novelty_in_frame, pairs_of
 from regolith_studio.model.models import MODELS
+from regolith_studio.model.principal_axes import canonical
 from regolith_studio.model.sample import Sample
+from regolith_studio.studies.population_distances import Distances, Intervals, distances, intervals
 from regolith_studio.studies.progress import StudyProgress
 
 KEYS = ("equivalent_radius", "surface_area", "aspect_ratio", "sphericity", "convexity")
 """Those of Fig. 4 and two more."""
-WEIGHTINGS = ("number", "volume")
 N_FLOOR_SPLITS = 30
 LEVEL = 3
 """Icosphere level of the meshes that are measured: 642 vertices, and the exact volume of the series."""
 FEWEST = 20
-STEP = 50
+STEP = 25
+"""Particles that one process measures at a time."""
+MOST_DRAWS = 1000
 
-Mapper = Callable[[Callable[[int], "tuple[float, ...]"], Iterable[int]], Iterable["tuple[float, ...]"]]
+Mapper = Callable[[Callable[[Draws], FloatArray], Iterable[Draws]], Iterable[FloatArray]]
 """Anything that maps a picklable function in order: ``map``, or ``imap`` of a process pool."""
-
-
-@dataclass(frozen=True, eq=False)
-class Distances:
-    """Distances over rounds (splits of the sample).
-
-    Parameters
-    ----------
-    wasserstein, kolmogorov
-        Share of the mean, and share of all, shape (rounds, weightings, keys).
-    energy
-        Of pairs of descriptors, number-weighted, shape (rounds, pairs).
-    accuracy
-        Of the classifier, shape (rounds,).
-    """
-
-    wasserstein: FloatArray
-    kolmogorov: FloatArray
-    energy: FloatArray
-    accuracy: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,19 +47,25 @@ class JudgedModel:
         Of ``MODELS``.
     distances
         To the half that the model has not seen.
+    intervals
+        Of the distances of one round.
     novelty
-        Median over the draws of each round, shape (rounds,).
+        Median over the first draws of each split, shape (splits,).
     rejected
         Draws thrown away, as a share of all, shape (rounds,).
     table
         Descriptors of the first round's draws, shape (n_draws, keys).
+    criterion
+        Bayes' criterion for 1, 2, ... parts in the first fit of a mixture; else empty.
     """
 
     key: str
     distances: Distances
+    intervals: Intervals
     novelty: FloatArray
     rejected: FloatArray
     table: FloatArray
+    criterion: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,8 +86,12 @@ class PopulationStudy:
         Distances between random halves.
     models
         In the order asked for.
-    n_draws, seed
+    n_draws
         Of each round.
+    n_repeats
+        Rounds of each split.
+    seed
+        Of splits and draws.
     left_out
         Particles whose series has a negative radius at this degree.
     """
@@ -116,6 +103,7 @@ class PopulationStudy:
     floor: Distances
     models: tuple[JudgedModel, ...]
     n_draws: int
+    n_repeats: int
     seed: int
     left_out: int = 0
 
@@ -130,8 +118,9 @@ def population_study(
     models: Sequence[str] | None = None,
     *,
     l_max: int = 10,
-    n_draws: int = 1000,
+    n_draws: int | None = None,
     n_splits: int = 5,
+    n_repeats: int = 5,
     keys: Sequence[str] = KEYS,
     level: int = LEVEL,
     settings: Mapping[str, Any] | None = None,
@@ -140,7 +129,9 @@ def population_study(
 ) -> Generator[StudyProgress, None, PopulationStudy]:
     """Judge models on held-out halves of a sample.
 
-    Yields a :class:`StudyProgress` every 50 particles measured, and returns the study.
+    Each model is fitted to `n_splits` random halves, and `n_repeats` times `n_draws` particles are drawn from
+    each fit. Yields a :class:`StudyProgress` every 25 particles measured, with the study so far after each
+    split, and returns the study.
 
     Parameters
     ----------
@@ -148,6 +139,8 @@ def population_study(
         Keys of ``MODELS``; all if ``None``.
     l_max
         Degree at which measured and drawn particles are compared; the models see all that the sample has.
+    n_draws
+        By default as many as the held-out half has, so that the noise is that of the floor; at most 1,000.
     settings
         Settings by model key; by default the models' own with this `l_max`.
     mapper
@@ -156,69 +149,123 @@ def population_study(
     Raises
     ------
     InputError
-        If a model or the degree is unknown, there are fewer than 20 particles or draws.
+        If a model, descriptor or the degree is unknown, there are fewer than 20 particles or draws.
     """
     chosen = tuple(MODELS) if models is None else tuple(models)
-    _check(sample, chosen, n_draws, n_splits)
-    measure = partial(_measured, keys=tuple(keys), level=level, mapper=mapper)
-    total = len(sample) + len(chosen) * n_splits * n_draws
+    drawn = max(FEWEST, min(MOST_DRAWS, len(sample) // 2)) if n_draws is None else n_draws
+    _check(sample, chosen, keys, (drawn, n_splits, n_repeats))
+    measure = _Measure(tuple(keys), level, mapper, len(sample) + len(chosen) * n_splits * n_repeats * drawn)
     known = Draws(sample.truncated(l_max).coefficients, "radius", "measured", seed, sample.unit)
-    table = yield from measure(known, 0, total, "measured particles")
+    table = yield from measure(known, "measured particles")
     keep = np.flatnonzero(np.isfinite(table).all(axis=1))
     if len(keep) < FEWEST:
         raise InputError(f"Only {len(keep)} particles bound a solid at l_max = {l_max}; {FEWEST} are needed.")
-    usable, table = sample.chosen(keep), table[keep]
-    rounds: dict[str, list[tuple[Distances, float, float, FloatArray]]] = {key: [] for key in chosen}
-    done = len(sample)
+    half = _Halves(sample.chosen(keep), table[keep], canonical(known.coefficients[keep]), measure)
+    floor = _floor(half.sample, half.table, seed, measure.size_column)
+    rounds: dict[str, list[_Round]] = {key: [] for key in chosen}
     for split in range(n_splits):
-        train, test = usable.halves(seed + split)
         for key in chosen:
             options = (settings or {}).get(key) or MODELS[key].Settings(l_max=l_max)
-            draws = MODELS[key].fit(usable.chosen(train), options).draw(n_draws, seed + split)
-            drawn = yield from measure(draws, done, total, f"{MODELS[key].label}, split {split + 1}")
-            drawn = drawn[np.isfinite(drawn).all(axis=1)]
-            far = novelty(known.coefficients[keep][train], _radius_rows(draws, l_max))
-            apart = _distances([(table[test], drawn)], seed + split, _sizes(keys))
-            rounds[key].append((apart, float(np.median(far)), 1 - draws.acceptance, drawn))
-            done += n_draws
-    return PopulationStudy(
-        tuple(keys),
-        l_max,
-        sample.unit,
-        table,
-        _floor(usable, table, seed, _sizes(keys)),
-        tuple(_judged(key, rounds[key]) for key in chosen),
-        n_draws,
-        seed,
-        len(sample) - len(usable),
-    )
+            rounds[key] += yield from half.rounds(key, options, split, (drawn, n_repeats, seed))
+        judged = tuple(_judged(key, rounds[key]) for key in chosen)
+        left_out = len(sample) - len(keep)
+        study = PopulationStudy(
+            tuple(keys), l_max, sample.unit, half.table, floor, judged, drawn, n_repeats, seed, left_out
+        )
+        yield StudyProgress(measure.done, measure.total, f"split {split + 1} of {n_splits}", study)
+    return study
 
 
-def _check(sample: Sample, models: tuple[str, ...], n_draws: int, n_splits: int) -> None:
+def _check(
+    sample: Sample, models: tuple[str, ...], keys: Sequence[str], counts: tuple[int, int, int]
+) -> None:
     unknown = [key for key in models if key not in MODELS]
     if unknown or not models:
         raise InputError(f"The models are {', '.join(MODELS)}; got {', '.join(unknown) or 'none'}.")
-    if len(sample) < FEWEST or n_draws < FEWEST or n_splits < 1:
+    wrong = [key for key in keys if key not in CATALOGUE]
+    if wrong or not keys:
+        raise InputError(f"The descriptors are {', '.join(CATALOGUE)}; got {', '.join(wrong) or 'none'}.")
+    n_draws, n_splits, n_repeats = counts
+    if len(sample) < FEWEST or n_draws < FEWEST or n_splits < 1 or n_repeats < 1:
         raise InputError(
             f"Judging models needs at least {FEWEST} particles, {FEWEST} draws and one split, got "
-            f"{len(sample)}, {n_draws} and {n_splits}."
+            f"{len(sample)}, {n_draws} and {min(n_splits, n_repeats)}."
         )
 
 
-def _measured(
-    draws: Draws, done: int, total: int, message: str, *, keys: tuple[str, ...], level: int, mapper: Mapper
-) -> Generator[StudyProgress, None, FloatArray]:
-    """Descriptors of every particle, shape (n, keys); NaN where its series bounds no solid."""
-    rows = []
-    for row in mapper(partial(descriptors_of, draws=draws, keys=keys, level=level), range(len(draws))):
-        rows.append(row)
-        if len(rows) % STEP == 0 or len(rows) == len(draws):
-            yield StudyProgress(done + len(rows), total, message)
+class _Measure:
+    """Measures particles and remembers how many, for the progress of a study."""
+
+    def __init__(self, keys: tuple[str, ...], level: int, mapper: Mapper, total: int) -> None:
+        self.keys, self.level, self.mapper, self.total = keys, level, mapper, total
+        self.done = 0
+        self.size_column = keys.index("equivalent_radius") if "equivalent_radius" in keys else None
+
+    def __call__(self, draws: Draws, message: str) -> Generator[StudyProgress, None, FloatArray]:
+        """Descriptors of every particle, shape (n, keys); NaN where its series bounds no solid."""
+        tables = [np.empty((0, len(self.keys)))]
+        parts = (draws.chosen(range(i, min(i + STEP, len(draws)))) for i in range(0, len(draws), STEP))
+        for table in self.mapper(partial(descriptors_of, keys=self.keys, level=self.level), parts):
+            tables.append(table)
+            self.done += len(table)
+            yield StudyProgress(self.done, self.total, message)
+        return np.concatenate(tables)
+
+
+@dataclass(frozen=True, eq=False)
+class _Round:
+    """What one drawing from one fit came to; the novelty is worked out for the first drawing of each fit."""
+
+    distances: Distances
+    intervals: Intervals
+    novelty: float | None
+    rejected: float
+    table: FloatArray
+    criterion: tuple[float, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class _Halves:
+    """The sample, its descriptors (n, keys) and its particles in the frame of their axes."""
+
+    sample: Sample
+    table: FloatArray
+    frames: FloatArray
+    measure: _Measure
+
+    def rounds(
+        self, key: str, options: Any, split: int, plan: tuple[int, int, int]
+    ) -> Generator[StudyProgress, None, list[_Round]]:
+        """Fit to one half, draw, and judge on the other; `plan` is (draws, repeats, seed)."""
+        n_draws, n_repeats, seed = plan
+        train, test = self.sample.halves(seed + split)
+        fitted = MODELS[key].fit(self.sample.chosen(train), options)
+        found = []
+        for repeat in range(n_repeats):
+            own = seed + split * n_repeats + repeat
+            draws = fitted.draw(n_draws, own)
+            message = f"{MODELS[key].label}, split {split + 1}, draw {repeat + 1}"
+            drawn = yield from self.measure(draws, message)
+            drawn = drawn[np.isfinite(drawn).all(axis=1)]
+            apart = distances([(self.table[test], drawn)], own, self.measure.size_column)
+            ends = intervals(self.table[test], drawn, apart, own, self.measure.size_column)
+            new = None if repeat else self._novelty(train, draws)
+            criterion = tuple(getattr(fitted, "bic", ()))
+            found.append(_Round(apart, ends, new, 1 - draws.acceptance, drawn, criterion))
+        return found
+
+    def _novelty(self, train: IntArray, draws: Draws) -> float:
+        l_max = round(self.frames.shape[1] ** 0.5) - 1
+        return float(np.median(novelty_in_frame(self.frames[train], canonical(_radius_rows(draws, l_max)))))
+
+
+def descriptors_of(draws: Draws, keys: tuple[str, ...], level: int = LEVEL) -> FloatArray:
+    """Descriptors of each particle, shape (n, keys); NaN where its series bounds no solid."""
+    rows = [_described(draws, index, keys, level) for index in range(len(draws))]
     return np.array(rows, dtype=np.float64).reshape(len(draws), len(keys))
 
 
-def descriptors_of(index: int, draws: Draws, keys: tuple[str, ...], level: int) -> tuple[float, ...]:
-    """Descriptors of one drawn particle; NaN if its series bounds no solid."""
+def _described(draws: Draws, index: int, keys: tuple[str, ...], level: int) -> tuple[float, ...]:
     try:
         found = describe(virtual_mesh(draws, index, level), keys)
     except RegolithError:
@@ -226,45 +273,25 @@ def descriptors_of(index: int, draws: Draws, keys: tuple[str, ...], level: int) 
     return tuple(found[key] for key in keys)
 
 
-def _sizes(keys: Sequence[str]) -> int | None:
-    """Column of the equivalent radius, whose cube weighs by volume."""
-    return list(keys).index("equivalent_radius") if "equivalent_radius" in keys else None
-
-
-def _distances(
-    halves: Iterable[tuple[FloatArray, FloatArray]], seed: int, size_column: int | None
-) -> Distances:
-    """Between each pair of tables; by volume too if there is a column of equivalent radii."""
-    near, gaps, energies, accuracies = [], [], [], []
-    for number, (one, two) in enumerate(halves):
-        pairs = [(_weights(one, kind, size_column), _weights(two, kind, size_column)) for kind in WEIGHTINGS]
-        columns = range(one.shape[1])
-        near.append([[relative_wasserstein(one[:, j], two[:, j], *pair) for j in columns] for pair in pairs])
-        gaps.append([[kolmogorov_smirnov(one[:, j], two[:, j], *pair) for j in columns] for pair in pairs])
-        energies.append([energy_distance(one[:, [i, j]], two[:, [i, j]]) for i, j in pairs_of(one.shape[1])])
-        rng = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(number,)))
-        accuracies.append(classifier_accuracy(one, two, rng))
-    return Distances(*map(np.array, (near, gaps, energies, accuracies)))
-
-
-def _weights(table: FloatArray, weighting: str, size_column: int | None) -> FloatArray:
-    if weighting == "number" or size_column is None:
-        return np.ones(len(table))
-    return np.asarray(table[:, size_column] ** 3)
-
-
 def _floor(sample: Sample, table: FloatArray, seed: int, size_column: int | None) -> Distances:
     halves = (sample.halves(seed + split) for split in range(N_FLOOR_SPLITS))
-    return _distances(((table[test], table[train]) for train, test in halves), seed, size_column)
+    return distances(((table[test], table[train]) for train, test in halves), seed, size_column)
 
 
-def _judged(key: str, rounds: list[tuple[Distances, float, float, FloatArray]]) -> JudgedModel:
-    parts = [each[0] for each in rounds]
-    joined = Distances(
-        *(np.concatenate([getattr(part, name) for part in parts]) for name in Distances.__annotations__)
+def _judged(key: str, rounds: Sequence[_Round]) -> JudgedModel:
+    ends = {
+        name: np.mean([getattr(each.intervals, name) for each in rounds], axis=0)
+        for name in Intervals.__annotations__
+    }
+    return JudgedModel(
+        key,
+        Distances.joined([each.distances for each in rounds]),
+        Intervals(**ends),
+        np.array([each.novelty for each in rounds if each.novelty is not None]),
+        np.array([each.rejected for each in rounds]),
+        rounds[0].table,
+        rounds[0].criterion,
     )
-    news, refused = np.array([each[1] for each in rounds]), np.array([each[2] for each in rounds])
-    return JudgedModel(key, joined, news, refused, rounds[0][3])
 
 
 def _radius_rows(draws: Draws, l_max: int) -> FloatArray:

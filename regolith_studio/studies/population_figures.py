@@ -7,13 +7,15 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
 from scipy.stats import gaussian_kde
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.model.models import MODELS
 from regolith_studio.studies.figure_files import write_figure
-from regolith_studio.studies.population import WEIGHTINGS, PopulationStudy
+from regolith_studio.studies.population import PopulationStudy
+from regolith_studio.studies.population_distances import WEIGHTINGS, class_weights
 from regolith_studio.studies.population_tables import distance_table, pair_table, ranking_table
 from regolith_studio.studies.tables import write_table
 
@@ -36,7 +38,7 @@ def density_figure(study: PopulationStudy, weighting: str = "number") -> Figure:
         tables = [study.measured, *(model.table for model in study.models)]
         low, high = np.percentile(np.concatenate([table[:, column] for table in tables]), [0.1, 99.9])
         bins = np.linspace(low, max(high, low + 1e-12), N_BINS + 1).tolist()
-        weights = [_weights(study, table, weighting) for table in tables]
+        weights = [class_weights(table, weighting, size_column(study)) for table in tables]
         measured = study.measured[:, column]
         axis.hist(measured, bins, weights=weights[0], density=True, color=MEASURED, label="measured")
         for table, weight, model, colour in zip(tables[1:], weights[1:], study.models, COLOURS, strict=False):
@@ -101,6 +103,24 @@ def pair_figure(study: PopulationStudy, keys: tuple[str, ...] | None = None) -> 
     return figure
 
 
+def components_figure(study: PopulationStudy) -> Figure | None:
+    """Bayes' criterion above its lowest value against the number of parts; none without a mixture."""
+    curves = [(model, np.array(model.criterion)) for model in study.models if len(model.criterion) > 1]
+    if not curves:
+        return None
+    figure = Figure(figsize=(5, 3.4), layout="constrained")
+    axis = figure.subplots()
+    for (model, curve), colour in zip(curves, COLOURS, strict=False):
+        numbers, best = np.arange(1, len(curve) + 1), int(curve.argmin())
+        axis.plot(numbers, curve - curve.min(), "o-", color=colour, label=MODELS[model.key].label)
+        axis.plot(numbers[best], 0.0, "o", color=colour, markersize=10, fillstyle="none")
+    axis.set_xlabel("number of parts")
+    axis.set_ylabel("Bayes' criterion above its lowest")
+    axis.xaxis.set_major_locator(MaxNLocator(integer=True))
+    axis.legend(frameon=False)
+    return figure
+
+
 def write_population_study(
     study: PopulationStudy, folder: Path, stem: str = "population"
 ) -> tuple[Path, ...]:
@@ -114,6 +134,8 @@ def write_population_study(
         files += write_figure(density_figure(study, weighting), folder, f"{stem}_{weighting}")
     files += write_figure(pair_figure(study), folder, f"{stem}_pairs")
     files += write_figure(quantile_figure(study), folder, f"{stem}_quantiles")
+    if (figure := components_figure(study)) is not None:
+        files += write_figure(figure, folder, f"{stem}_components")
     return tuple(files)
 
 
@@ -135,10 +157,9 @@ def _label(study: PopulationStudy, column: int) -> str:
     return f"{row.label.lower()}{suffix}"
 
 
-def _weights(study: PopulationStudy, table: FloatArray, weighting: str) -> FloatArray:
-    if weighting == "number" or "equivalent_radius" not in study.keys:
-        return np.ones(len(table))
-    return np.asarray(table[:, study.keys.index("equivalent_radius")] ** 3)
+def size_column(study: PopulationStudy) -> int | None:
+    """Column of the equivalent radius, if it was measured."""
+    return study.keys.index("equivalent_radius") if "equivalent_radius" in study.keys else None
 
 
 def _contours(axis: Axes, measured: FloatArray, drawn: FloatArray, colour: str) -> None:

@@ -2,17 +2,20 @@
 
 import numpy as np
 
-from regolith_studio.studies.population import N_FLOOR_SPLITS, WEIGHTINGS, PopulationStudy
+from regolith_studio.studies.population import N_FLOOR_SPLITS, PopulationStudy
+from regolith_studio.studies.population_distances import CONFIDENCE, N_RESAMPLES, WEIGHTINGS
 from regolith_studio.studies.tables import Column, Table
 
 PERCENTAGES = (
     "wasserstein",
-    "wasserstein_lowest",
-    "wasserstein_highest",
+    "wasserstein_low",
+    "wasserstein_high",
     "floor",
     "floor_p5",
     "floor_p95",
     "kolmogorov_smirnov",
+    "kolmogorov_smirnov_low",
+    "kolmogorov_smirnov_high",
     "kolmogorov_smirnov_floor",
 )
 
@@ -26,10 +29,11 @@ def distance_table(study: PopulationStudy) -> Table:
         far, ks = model.distances.wasserstein, model.distances.kolmogorov
         for w, weighting in enumerate(WEIGHTINGS):
             for k, key in enumerate(study.keys):
-                mean, spread = far[:, w, k].mean(), (far[:, w, k].min(), far[:, w, k].max())
+                mean, spread = far[:, w, k].mean(), model.intervals.wasserstein[:, w, k]
                 noise = (floor[w, k], low[w, k], high[w, k])
                 shares = [100 * value for value in (mean, *spread, *noise)]
-                gaps = (100 * ks[:, w, k].mean(), 100 * gap[w, k])
+                ends = 100 * model.intervals.kolmogorov[:, w, k]
+                gaps = (100 * ks[:, w, k].mean(), *ends, 100 * gap[w, k])
                 floors = (mean / floor[w, k], ks[:, w, k].mean() / gap[w, k])
                 rows.append((model.key, weighting, key, *shares, *gaps, *floors))
     columns = (
@@ -85,12 +89,15 @@ def ranking_table(study: PopulationStudy) -> Table:
 
 
 def _notes(study: PopulationStudy) -> tuple[str, ...]:
-    rounds = len(study.models[0].novelty) if study.models else 0
+    splits = len(study.models[0].novelty) if study.models else 0
     return (
         f"{len(study.measured)} measured particles at l_max = {study.l_max}, {study.left_out} left out; "
-        f"fitted to one half, judged on the other; {rounds} splits of {study.n_draws}, seed {study.seed}.",
+        f"fitted to one half, judged on the other; {splits} splits, {study.n_repeats} times {study.n_draws} "
+        f"draws from each fit, seed {study.seed}.",
         "Wasserstein distances are shares of the measured mean; the floor is the distance between random "
         f"halves, {N_FLOOR_SPLITS} of them; by volume means weighted with the cube of the equivalent radius.",
+        f"Low and high hold the distance of one round in {CONFIDENCE:.0%} of {N_RESAMPLES} resamples of "
+        "measured and drawn particles, shifted back by what resampling adds.",
         "Energy distances are unbiased, of standardised columns; a classifier at 0.5 cannot tell measured "
         "from drawn; novelty is the distance to the nearest measured particle, 1 for the same source.",
     )

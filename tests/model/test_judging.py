@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from scipy.stats import ks_2samp
+from scipy.stats import ks_2samp, wasserstein_distance
 
 from regolith_studio.errors import InputError
 from regolith_studio.harmonics.coefficients import ShCoefficients
@@ -11,6 +11,7 @@ from regolith_studio.model.judging import (
     kolmogorov_smirnov,
     novelty,
     relative_wasserstein,
+    resampled_distances,
 )
 
 RNG = np.random.default_rng
@@ -27,6 +28,17 @@ def test_that_the_unweighted_gap_is_that_of_scipy() -> None:
     one, two = RNG(0).normal(size=80), RNG(1).normal(0.3, 1, size=131)
     found = kolmogorov_smirnov(one, two, np.ones(80), np.ones(131))
     assert found == pytest.approx(ks_2samp(one, two).statistic, abs=1e-12)
+
+
+def test_that_many_weightings_at_once_are_each_of_them_alone() -> None:
+    one, two = RNG(0).normal(2, 1, size=60), np.round(RNG(1).normal(2, 1, size=45), 1)
+    weights, others = RNG(2).integers(0, 4, (5, 60)) * 1.0, RNG(3).integers(0, 4, (5, 45)) * 1.0
+    near, gaps = resampled_distances(one, two, weights, others, np.ones(60))
+    for row in range(5):
+        assert near[row] * one.mean() == pytest.approx(
+            wasserstein_distance(one, two, weights[row], others[row])
+        )
+        assert gaps[row] == pytest.approx(kolmogorov_smirnov(one, two, weights[row], others[row]))
 
 
 def test_that_whole_weights_are_repetitions() -> None:

@@ -8,6 +8,8 @@ from regolith_studio.harmonics.coefficients import degrees
 from regolith_studio.model.draws import Draws
 from regolith_studio.model.log_shapes import directed, log_shapes, sized
 from regolith_studio.model.mixture import MixtureSettings
+from regolith_studio.model.models.gaussian_field import MODEL as GAUSSIAN_FIELD
+from regolith_studio.model.models.gaussian_mixture import MODEL as GAUSSIAN_MIXTURE
 from regolith_studio.model.models.log_field import MODEL as LOG_FIELD
 from regolith_studio.model.models.log_field import LogField, LogFieldSettings
 from regolith_studio.model.models.mixture_field import MODEL as MIXTURE
@@ -100,6 +102,33 @@ def test_that_two_constituents_are_told_apart_by_the_criterion() -> None:
     draws = mixture.draw(1000, 0)
     assert draws.components is not None
     assert draws.components.mean() == pytest.approx(1 / 3, abs=0.06)
+
+
+def test_that_the_papers_mixture_finds_two_constituents_and_draws_them_apart() -> None:
+    """Spheres about 10 with A_2 = 0.01 and about 20 with A_2 = 0.09, two to one."""
+    rng = np.random.default_rng(0)
+    scales = np.repeat([10.0, 20.0], [200, 100])
+    rows = rng.normal(size=(300, 9)) * np.repeat([0.1, 0.3], [200, 100])[:, None]
+    rows[:, 0] = np.sqrt(4 * np.pi) * scales * (1 + 0.02 * rng.normal(size=300))
+    mixture = GAUSSIAN_MIXTURE.fit(Sample(rows), MixtureSettings(l_max=2, most_components=4))
+    assert mixture.n_components == 2
+    np.testing.assert_allclose(mixture.weights, [2 / 3, 1 / 3], atol=0.01)
+    np.testing.assert_allclose(mixture.means, np.sqrt(4 * np.pi) * np.array([10, 20]), rtol=0.01)
+    np.testing.assert_allclose(mixture.spectra[:, 2], [0.01, 0.09], rtol=0.15)
+    draws = mixture.renamed(["fine", "coarse"]).draw(900, 0)
+    assert draws.rejected == 0
+    parts, radii = np.asarray(draws.components), draws.equivalent_radii()
+    assert parts.mean() == pytest.approx(1 / 3, abs=0.05)
+    assert radii[parts == 0].max() < 12 < 18 < radii[parts == 1].min()
+
+
+def test_that_the_papers_mixture_of_one_part_is_the_papers_field(rough_sample: Callable[..., Sample]) -> None:
+    sample = rough_sample(40, 4)
+    mixture = GAUSSIAN_MIXTURE.fit(sample, MixtureSettings(l_max=4, n_components=1))
+    field = GAUSSIAN_FIELD.fit(sample, GAUSSIAN_FIELD.Settings(4))
+    assert mixture.means[0] == pytest.approx(field.mean)
+    np.testing.assert_allclose(mixture.spectra[0, 1:], field.spectrum[1:])
+    assert mixture.spectra[0, 0] == pytest.approx(field.spectrum[0] * 39 / 40)  # maximum likelihood
 
 
 def test_that_one_part_is_the_pooled_field() -> None:

@@ -1,4 +1,5 @@
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import matplotlib.image
@@ -10,9 +11,12 @@ from regolith_studio.harmonics.coefficient_tables import from_complex_rows
 from regolith_studio.harmonics.coefficients import degrees, orders
 from regolith_studio.model.sample import Sample
 from regolith_studio.studies.population import KEYS, PopulationStudy, population_study
-from regolith_studio.studies.population_figures import write_population_study
+from regolith_studio.studies.population_figures import components_figure, write_population_study
 from regolith_studio.studies.population_tables import distance_table, pair_table, ranking_table
 from regolith_studio.studies.progress import StudyProgress
+
+SMALL_MODELS = ("gaussian_field", "mixture_field", "sample_matched")
+SMALL = {"l_max": 4, "n_draws": 40, "n_splits": 2, "n_repeats": 2, "level": 2}
 
 
 def rough_sample(n: int, l_max: int = 4) -> Sample:
@@ -34,9 +38,7 @@ def run(*arguments: object, **options: object) -> tuple[list[StudyProgress], Pop
 
 @pytest.fixture(scope="module")
 def small() -> tuple[list[StudyProgress], PopulationStudy]:
-    return run(
-        rough_sample(60), ["gaussian_field", "sample_matched"], l_max=4, n_draws=60, n_splits=2, level=2
-    )
+    return run(rough_sample(60), SMALL_MODELS, **SMALL)
 
 
 def test_that_progress_rises_to_the_end(small: tuple[list[StudyProgress], PopulationStudy]) -> None:
@@ -51,21 +53,57 @@ def test_that_every_table_has_a_row_for_each_case(
 ) -> None:
     _, study = small
     assert study.measured.shape == (60, len(KEYS))
-    assert len(distance_table(study).rows) == 2 * 2 * len(KEYS)
-    assert len(pair_table(study).rows) == 2 * 10
-    assert set(ranking_table(study).column("model")) == {"gaussian_field", "sample_matched"}
+    assert len(distance_table(study).rows) == 3 * 2 * len(KEYS)
+    assert len(pair_table(study).rows) == 3 * 10
+    assert set(ranking_table(study).column("model")) == set(SMALL_MODELS)
     assert all(np.isfinite(value) for value in distance_table(study).column("wasserstein_in_floors"))
 
 
-def test_that_the_same_seed_gives_the_same_study(
+def test_that_every_split_is_drawn_from_several_times(
     small: tuple[list[StudyProgress], PopulationStudy],
 ) -> None:
-    _, again = run(
-        rough_sample(60), ["gaussian_field", "sample_matched"], l_max=4, n_draws=60, n_splits=2, level=2
-    )
-    for one, two in zip(small[1].models, again.models, strict=True):
-        np.testing.assert_array_equal(one.table, two.table)
-        np.testing.assert_array_equal(one.distances.energy, two.distances.energy)
+    steps, study = small
+    for model in study.models:
+        assert model.distances.wasserstein.shape == (4, 2, len(KEYS))
+        assert model.novelty.shape == (2,)
+    partial = [step.partial for step in steps if step.partial is not None]
+    assert [len(each.models[0].distances.accuracy) for each in partial] == [2, 4]
+    assert partial[-1] is study
+
+
+def test_that_intervals_hold_the_mean_distance(small: tuple[list[StudyProgress], PopulationStudy]) -> None:
+    for model in small[1].models:
+        for found, ends in (
+            (model.distances.wasserstein, model.intervals.wasserstein),
+            (model.distances.kolmogorov, model.intervals.kolmogorov),
+        ):
+            assert (ends[0] <= found.mean(axis=0)).all()
+            assert (found.mean(axis=0) <= ends[1]).all()
+
+
+def test_that_the_number_of_parts_is_shown_with_its_criterion(
+    small: tuple[list[StudyProgress], PopulationStudy],
+) -> None:
+    figure = components_figure(small[1])
+    assert figure is not None
+    curve = small[1].models[1].criterion
+    heights = figure.axes[0].lines[0].get_ydata()
+    np.testing.assert_allclose(heights, np.array(curve) - min(curve))
+    without = replace(small[1], models=small[1].models[:1])
+    assert components_figure(without) is None
+
+
+def test_that_as_many_are_drawn_as_were_held_out() -> None:
+    _, study = run(rough_sample(46), ["gaussian_field"], l_max=2, n_splits=1, n_repeats=1, level=1)
+    assert study.n_draws == 23
+
+
+def test_that_the_same_seed_gives_the_same_study() -> None:
+    options = {"l_max": 2, "n_draws": 20, "n_splits": 1, "n_repeats": 1, "level": 1}
+    one, two = (run(rough_sample(24), ["log_field"], seed=5, **options)[1].models[0] for _ in range(2))
+    np.testing.assert_array_equal(one.table, two.table)
+    np.testing.assert_array_equal(one.distances.energy, two.distances.energy)
+    np.testing.assert_array_equal(one.intervals.wasserstein, two.intervals.wasserstein)
 
 
 def test_that_a_study_becomes_tables_and_pictures(
@@ -85,6 +123,8 @@ def test_that_a_study_becomes_tables_and_pictures(
         ({"models": []}, "got none"),
         ({"n_draws": 5}, "at least 20 particles, 20 draws and one split"),
         ({"n_splits": 0}, "one split"),
+        ({"n_repeats": 0}, "one split"),
+        ({"keys": ["charm"]}, "got charm"),
         ({"l_max": 9}, "no l_max = 9"),
     ],
 )
@@ -101,7 +141,7 @@ def test_that_the_default_model_reaches_the_noise_of_sampling(real_data: Callabl
         table = stored["anm"][:600, :441]
     degree, order = degrees(441), orders(441)
     particles = [from_complex_rows(np.column_stack([degree, order, row.real, row.imag])) for row in table]
-    _, study = run(Sample.of(particles), ["gaussian_field", "sample_matched"], n_draws=600, n_splits=2)
+    _, study = run(Sample.of(particles), ["gaussian_field", "sample_matched"], n_draws=300, n_splits=2)
     paper, matched = (model.distances for model in study.models)
     aspect, convexity = KEYS.index("aspect_ratio"), KEYS.index("convexity")
     assert matched.wasserstein[:, 0, aspect].mean() < paper.wasserstein[:, 0, aspect].mean() / 3

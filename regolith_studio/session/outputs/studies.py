@@ -9,6 +9,8 @@ from regolith_studio.studies.coarsening import rmsre_table as coarsening_table
 from regolith_studio.studies.coarsening_figures import write_coarsening_study
 from regolith_studio.studies.lmax import rmsre_table as lmax_table
 from regolith_studio.studies.lmax_figures import write_lmax_study
+from regolith_studio.studies.population_figures import write_population_study
+from regolith_studio.studies.population_tables import ranking_table
 from regolith_studio.studies.tables import Table
 
 
@@ -44,5 +46,11 @@ STUDIES: Mapping[str, StudyKind] = {
         write_coarsening_study,
         coarsening_table,
     ),
+    "population_study": StudyKind(
+        "Drawn against measured particles (Figs. 4 to 6)",
+        "population_number.png",
+        write_population_study,
+        ranking_table,
+    ),
 }
-"""By the same words as :class:`~regolith_studio.session.plan.Kind`."""
+"""Those that a recipe can ask for by the same words as :class:`~regolith_studio.session.plan.Kind`."""
