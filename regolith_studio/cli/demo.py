@@ -24,12 +24,13 @@ def demo(
     """Run the whole chain on the shipped particles: dataset, picture, Fig. 3, Fig. 8, summary page."""
     from regolith_studio.cli.terminal import complain, follow, print_json
     from regolith_studio.session.outputs.summary import write_summary
-    from regolith_studio.session.performing import perform, summary_facts
+    from regolith_studio.session.performing import perform
     from regolith_studio.session.recipe import Outputs, recipe_of
 
     everything = Outputs(fits=True, lmax_study=True, coarsening_study=True, summary=False)
     done = follow(perform(recipe_of(seed=seed, outputs=everything), Path(), output, jobs))
-    write_summary(output, summary_facts(done, _pictures(done)))
+    done.summary.pictures = _pictures(done)
+    write_summary(output, done.recipe, done.summary, done.studies, done.problems)
     complain(done.problems)
     if json:
         print_json({"folder": str(output), "files": done.files, "problems": list(done.problems)})
@@ -41,13 +42,17 @@ def demo(
 def _pictures(done: "Performed") -> tuple[tuple[str, str], ...]:
     """The three views of the first particle; where nothing can be drawn, a sentence in their place."""
     from regolith_studio.cli.picture import draw_three_views
+    from regolith_studio.cli.terminal import follow
     from regolith_studio.errors import RegolithError
+    from regolith_studio.jobs.coarsening import coarsen_particle
 
-    first = next((each for each in done.outcomes if each.coarsened), None)
-    if first is None:
+    index = done.tally.first_coarse
+    if index is None:
         return ()
+    particle = done.items.members[index].particle()
+    first = follow(coarsen_particle(particle, done.choices.order, index))
     try:
-        draw_three_views(done.particles[first.index], first, done.choices, done.folder / PICTURE)
+        draw_three_views(particle, first, done.choices, done.folder / PICTURE)
     except RegolithError as error:
         done.problems.append(str(error))
         return ()

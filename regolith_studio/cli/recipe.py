@@ -13,6 +13,19 @@ def run(
     output: Folder = Path("regolith-results"),
     json: Json = False,
     jobs: Jobs = 1,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Go on with a run into this folder that has not ended.")
+    ] = False,
+    chunk: Annotated[
+        int | None,
+        typer.Option(
+            "--chunk",
+            min=1,
+            help="Particles done and written together; by default 1, in batches of 200 or more 25 to 200.",
+            metavar="N",
+            show_default=False,
+        ),
+    ] = None,
     seed: Annotated[
         int | None, typer.Option("--seed", help="Seed in place of the recipe's.", metavar="N")
     ] = None,
@@ -25,7 +38,7 @@ def run(
     wish = read_recipe(recipe)
     if seed is not None:
         wish = wish.model_copy(update={"seed": seed})
-    done = follow(perform(wish, recipe.parent, output, jobs))
+    done = follow(perform(wish, recipe.parent, output, jobs, resume, chunk))
     complain(done.problems)
     if json:
         print_json({"folder": str(output), "files": done.files, "problems": list(done.problems)})

@@ -9,6 +9,7 @@ from regolith_studio.dataset.dataset import CoarseningRecord, Dataset, Provenanc
 from regolith_studio.dataset.folder import write_dataset
 from regolith_studio.errors import DatasetError
 from regolith_studio.geometry.particle import Particle
+from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.sample_spectrum import sample_spectrum
 from regolith_studio.jobs.coarsening import CoarsenedParticle, CoarseningOrder, coarsen_sample
 from regolith_studio.jobs.events import Progress, Started, Steps
@@ -101,7 +102,13 @@ def provenance(
     outcomes: Sequence[CoarsenedParticle], order: CoarseningOrder, preset: str | None
 ) -> Provenance:
     """How the shapes came about, in the words of section 2.5."""
-    fitted = [each.coefficients for each in outcomes if each.coarsened and each.coefficients]
+    return story(
+        [each.coefficients for each in outcomes if each.coarsened and each.coefficients], order, preset
+    )
+
+
+def story(fitted: Sequence[ShCoefficients], order: CoarseningOrder, preset: str | None) -> Provenance:
+    """As :func:`provenance`, from the coefficients of the particles that were fitted and coarsened."""
     fit = (f"Spherical-harmonics surface up to l = {order.l_max}.",) if order.target == "fit" else ()
     record = CoarseningRecord(
         method=order.method,

@@ -139,6 +139,11 @@ class Batch:
         for chunk in self.chunks:
             yield from read_shard(self._shard(chunk.number), blobs)
 
+    @property
+    def notes(self) -> tuple[Mapping[str, Any], ...]:
+        """Lines of the journal that are not about a chunk."""
+        return tuple(entry for entry in self._journal.entries if "chunk" not in entry)
+
     def note(self, entry: Mapping[str, Any]) -> None:
         """A line in the journal that is not about a chunk."""
         self._journal.append(entry)

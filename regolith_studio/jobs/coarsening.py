@@ -14,7 +14,7 @@ from regolith_studio.errors import Cancelled
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.coefficients import ShCoefficients
-from regolith_studio.harmonics.fit import fit_harmonics
+from regolith_studio.harmonics.fit import HarmonicFit, fit_harmonics
 from regolith_studio.harmonics.surface import reconstruct
 from regolith_studio.jobs.crew import Crew, hired
 from regolith_studio.jobs.events import Ending, Failed, Finished, Job, Partial, Progress, Started, Step, Steps
@@ -79,13 +79,21 @@ def coarsen_one(mesh: Mesh, order: CoarseningOrder, particle_index: int = 0) -> 
     return (yield from _told(mesh, order, particle_index))
 
 
-def coarsen_particle(particle: Particle, order: CoarseningOrder, index: int) -> Steps:
-    """Fit (where the order says so) and coarsen one particle of a sample; returns `CoarsenedParticle`."""
+def coarsen_particle(
+    particle: Particle, order: CoarseningOrder, index: int, fit: HarmonicFit | None = None
+) -> Steps:
+    """Fit (where the order says so) and coarsen one particle of a sample; returns `CoarsenedParticle`.
+
+    Parameters
+    ----------
+    fit
+        Of the particle, to at least the order's degree, if there is one already.
+    """
     yield Started(f"Coarsening {particle.name}")
     begun = time.perf_counter()
     mesh, notes, coefficients = particle.mesh, particle.notes, None
     if order.target == "fit":
-        fit = fit_harmonics(mesh, l_max=max(order.l_max, FIT_DEGREE)).truncated(order.l_max)
+        fit = (fit or fit_harmonics(mesh, l_max=max(order.l_max, FIT_DEGREE))).truncated(order.l_max)
         mesh, notes = reconstruct(fit, order.l_max, level=order.level), notes + fit.warnings
         coefficients = fit.coefficients
     coarsened = yield from _told(mesh, order, index)

@@ -38,7 +38,7 @@ def load_particles(paths: Sequence[Path], unit: str = "um", repair: bool = True)
     """
     problems: list[Problem] = []
     particles: list[Particle] = []
-    files = _found(paths, problems)
+    files = files_in(paths, problems)
     yield Started("Reading particles", len(files))
     for done, file in enumerate(files, start=1):
         try:
@@ -51,15 +51,17 @@ def load_particles(paths: Sequence[Path], unit: str = "um", repair: bool = True)
     return Loaded(uniquely_named(particles), tuple(problems))
 
 
-def _found(paths: Sequence[Path], problems: list[Problem]) -> list[MeshFile]:
-    """The files behind `paths`; a folder without meshes is a problem of its own."""
+def files_in(paths: Sequence[Path], problems: list[Problem]) -> list[MeshFile]:
+    """The files behind `paths`; a folder without meshes becomes one of the `problems`."""
+    if not paths:
+        return []
     try:
         return mesh_files(paths)
     except FileError as error:
         if len(paths) == 1:
             problems.append(Problem(str(paths[0]), str(error)))
             return []
-    return [file for path in paths for file in _found([path], problems)]
+    return [file for path in paths for file in files_in([path], problems)]
 
 
 def load_sample() -> Steps:
@@ -70,15 +72,20 @@ def load_sample() -> Steps:
 
 def uniquely_named(particles: Sequence[Particle], taken: Sequence[str] = ()) -> tuple[Particle, ...]:
     """The particles; a name that has been `taken`, or came before, gets the group, then a number."""
-    used, renamed = set(taken), []
-    for particle in particles:
-        name, number = particle.name, 1
-        if name in used and particle.group:
-            name = f"{particle.group.replace('/', '_')}_{name}"
-        base = name
-        while name in used:
-            number += 1
-            name = f"{base}_{number}"
-        used.add(name)
-        renamed.append(dataclasses.replace(particle, name=name))
-    return tuple(renamed)
+    used = set(taken)
+    return tuple(
+        dataclasses.replace(particle, name=free_name(particle.name, particle.group, used))
+        for particle in particles
+    )
+
+
+def free_name(name: str, group: str, used: set[str]) -> str:
+    """The name, or if it is `used` the name with its group, then with a number; is used afterwards."""
+    if name in used and group:
+        name = f"{group.replace('/', '_')}_{name}"
+    base, number = name, 1
+    while name in used:
+        number += 1
+        name = f"{base}_{number}"
+    used.add(name)
+    return name

@@ -1,42 +1,64 @@
-"""Performs a recipe: from files to everything that it asks for, in one folder."""
+"""Performs a recipe: from files to everything that it asks for, in one folder.
 
-from collections.abc import Generator
+Every particle is worked on by itself; what is known of it goes to disk at once (``journal/`` in the
+folder, see :mod:`regolith_studio.jobs.chunked`) and becomes the files of the results in the end. So a run
+that was killed goes on where it was, and its size is limited by the disk and not by the memory.
+"""
+
+import contextlib
+import dataclasses
+import hashlib
+import shutil
+from collections.abc import Generator, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from regolith_studio.dataset.folder import write_dataset
-from regolith_studio.errors import RegolithError
+from regolith_studio.dataset.build import software_versions
+from regolith_studio.dataset.streaming import write_stored
+from regolith_studio.errors import FileError, RegolithError
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.jobs.building import dataset_of
-from regolith_studio.jobs.coarsening import CoarsenedParticle, coarsen_sample
+from regolith_studio.jobs.building import story
+from regolith_studio.jobs.chunked import JOURNAL, LOST, Batch, work_through
 from regolith_studio.jobs.crew import Crew, hired
-from regolith_studio.jobs.events import Progress, Started, Step, Steps
-from regolith_studio.jobs.examining import Examined, examine_sample
-from regolith_studio.jobs.fitting import fit_sample
-from regolith_studio.jobs.loading import Loaded, load_particles, load_sample
+from regolith_studio.jobs.events import Job, Progress, Started, Step, Steps
+from regolith_studio.jobs.journal import Journal
+from regolith_studio.jobs.shards import Record
 from regolith_studio.jobs.studying import study_coarsening, study_lmax
+from regolith_studio.session.batch.items import Items
+from regolith_studio.session.batch.sinks import (
+    Sink,
+    Tally,
+    descriptor_sink,
+    failure_sink,
+    fit_sink,
+    mesh_sink,
+    n_failures,
+    shapes_of,
+)
+from regolith_studio.session.batch.working import Wish, work_on
 from regolith_studio.session.choices import Choices
-from regolith_studio.session.outputs.coarsening import write_coarsening
-from regolith_studio.session.outputs.descriptors import described, descriptor_table
-from regolith_studio.session.outputs.fits import FittedSample, write_fits
-from regolith_studio.session.outputs.staging import json_bytes, staged_folder, write_bytes
+from regolith_studio.session.outputs.staging import staged_folder, write_bytes
 from regolith_studio.session.outputs.studies import STUDIES
-from regolith_studio.session.outputs.summary import SummaryFacts, write_summary
-from regolith_studio.session.recipe import SAMPLE, Recipe
-from regolith_studio.studies.tables import csv_text
+from regolith_studio.session.outputs.summary import Summary, write_summary
+from regolith_studio.session.recipe import Recipe
 
 Part = Generator[Step, None, Any]
+JOURNAL_FOLDER = "journal"
 
 
 @dataclass
 class Performed:
-    """What a recipe has led to so far.
+    """What a recipe has led to.
 
     Parameters
     ----------
     folder
         Where everything is.
+    tally
+        What is known of all particles together.
+    summary
+        What its page tells.
     problems
         One sentence for each file or particle that failed.
     """
@@ -44,20 +66,27 @@ class Performed:
     folder: Path
     recipe: Recipe
     choices: Choices
-    particles: tuple[Particle, ...] = ()
-    facts: tuple[Examined, ...] = ()
-    outcomes: tuple[CoarsenedParticle, ...] = ()
-    studies: dict[str, Any] = field(default_factory=dict)
+    items: Items
+    tally: Tally = field(default_factory=Tally)
+    summary: Summary = field(default_factory=Summary)
+    studies: list[str] = field(default_factory=list)
     problems: list[str] = field(default_factory=list)
 
     @property
     def files(self) -> list[str]:
-        """Paths of all files below the folder, relative to it."""
-        found = (path for path in self.folder.rglob("*") if path.is_file())
-        return sorted(path.relative_to(self.folder).as_posix() for path in found)
+        """Paths of all results below the folder, relative to it; the journal is none."""
+        found = (path.relative_to(self.folder) for path in self.folder.rglob("*") if path.is_file())
+        return sorted(path.as_posix() for path in found if path.parts[0] != JOURNAL_FOLDER)
 
 
-def perform(recipe: Recipe, base: Path, folder: Path, workers: int = 1) -> Steps:
+def perform(
+    recipe: Recipe,
+    base: Path,
+    folder: Path,
+    workers: int | Crew = 1,
+    resume: bool = False,
+    chunk: int | None = None,
+) -> Steps:
     """Do all that `recipe` asks for; returns :class:`Performed`.
 
     Particles that fail are told and do not stop the others. Each part of the output appears whole or
@@ -71,102 +100,173 @@ def perform(recipe: Recipe, base: Path, folder: Path, workers: int = 1) -> Steps
         Where to write.
     workers
         Processes at a time; 0 for one a core. The results do not depend on it.
+    resume
+        Whether to go on with a run of the same recipe into the same folder that has not ended.
+    chunk
+        Particles that are done, written and lost together; by default 1 in small batches and 25 to 200
+        in those of 200 or more. The results do not depend on it.
 
     Raises
     ------
     InputError
         If the recipe holds a choice that cannot be used.
     FileError
-        If no input can be read or the folder cannot be written.
+        If no input can be read, the folder cannot be written, or holds an unfinished run that is not to
+        be resumed or is of another recipe.
     """
-    done = Performed(folder, recipe, recipe.choices())
-    yield from _load(done, base)
-    with hired(workers) as crew:
-        yield from _parts(done, crew)
-    write_bytes(folder / "recipe.json", recipe.to_json().encode("utf-8"))
-    if recipe.outputs.summary:
-        write_summary(folder, summary_facts(done))
+    done = Performed(folder, recipe, recipe.choices(), Items.of(recipe, base))
+    if not done.items.members:
+        sentences = [problem.sentence for problem in done.items.problems]
+        raise FileError(sentences[0] if sentences else "There is no file to read.")
+    with _opened(done, resume, chunk) as batch, hired(workers) as crew:
+        if (ended := _ending(batch)) is not None:
+            done.problems = ended
+            return done
+        yield from _worked(done, batch, crew)
+        yield from _assembled(done, batch)
+        yield from _studied(done, crew)
+        if recipe.outputs.summary:
+            write_summary(folder, done.recipe, done.summary, done.studies, done.problems)
+        write_bytes(folder / "recipe.json", recipe.to_json().encode("utf-8"))
+        batch.note({"ended": done.problems})
+        batch.clear()
     return done
 
 
-def _parts(done: Performed, crew: Crew) -> Part:
-    """Everything between reading and the last page, by one crew that stays warm."""
+def _opened(done: Performed, resume: bool, chunk: int | None) -> Batch:
+    """The batch of the recipe, begun or taken up again."""
+    items, place = done.items, done.folder / JOURNAL_FOLDER
+    marks = hashlib.sha256("\n".join(items.marks()).encode("utf-8", "surrogateescape")).hexdigest()
+    subject = {
+        "recipe": done.recipe.model_dump(mode="json"),
+        "set of input files": marks,
+        "set of program versions": software_versions(),
+    }
+    if (place / JOURNAL).exists():
+        if resume:
+            return Batch.resume(place, len(items.members), subject)
+        _check_ended(place, done.folder)
+    return Batch.begin(place, len(items.members), subject, chunk)
+
+
+def _check_ended(place: Path, folder: Path) -> None:
+    with contextlib.closing(Journal.reopen(place / JOURNAL)) as journal:
+        if not any("ended" in entry for entry in journal.entries):
+            raise FileError(
+                f"{folder} holds a run that has not ended; go on with --resume, or remove {place} to begin "
+                "anew."
+            )
+
+
+def _ending(batch: Batch) -> list[str] | None:
+    """The problems of a run that has ended already."""
+    return next((list(entry["ended"]) for entry in batch.notes if "ended" in entry), None)
+
+
+def _worked(done: Performed, batch: Batch, crew: Crew) -> Part:
     wish = done.recipe.outputs
-    if wish.descriptors or wish.summary:
-        yield from _describe(done, crew)
-    if wish.fits:
-        yield from _fit(done, crew)
-    if wish.meshes or wish.dataset or wish.summary:
-        yield from _coarsen(done, crew)
-    if wish.lmax_study:
-        yield from _study(done, "lmax_study", study_lmax(done.particles, crew, done.recipe.seed))
-    if wish.coarsening_study:
-        steps = study_coarsening(done.particles, done.choices.order, crew)
-        yield from _study(done, "coarsening_study", steps)
-
-
-def summary_facts(done: Performed, pictures: tuple[tuple[str, str], ...] = ()) -> SummaryFacts:
-    """What the summary page tells; `pictures` are (file, caption) pairs besides those of the studies."""
-    return SummaryFacts(
-        title="Regolith Studio: from particles to a dataset",
-        recipe=done.recipe,
-        particles=done.particles,
-        facts=done.facts,
-        outcomes=done.outcomes,
-        studies=tuple(done.studies),
-        problems=tuple(done.problems),
-        pictures=pictures,
+    coarse = wish.meshes or wish.dataset or wish.summary
+    asked = Wish(
+        examine=wish.descriptors or wish.summary,
+        fit=wish.fits,
+        order=done.choices.order if coarse else None,
+        shapes=wish.dataset,
+        box_metric=done.choices.box_metric,
+    )
+    members = done.items.members
+    yield Started("Working on particles", len(members))
+    yield from work_through(
+        batch, lambda chunk: Job(work_on, (tuple((i, members[i]) for i in chunk), asked)), crew, n_failures
     )
 
 
-def _load(done: Performed, base: Path) -> Part:
+def _assembled(done: Performed, batch: Batch) -> Part:
+    """Turn what is on disk into the files that were asked for."""
+    wish = done.recipe.outputs
+    yield Started("Writing the results", batch.n_items)
+    _tally(done, batch)
+    with contextlib.ExitStack() as stack:
+        sinks: list[Sink] = [done.summary, stack.enter_context(failure_sink(done.folder))]
+        if wish.descriptors:
+            sinks.append(stack.enter_context(descriptor_sink(done.folder)))
+        if wish.meshes:
+            sinks.append(stack.enter_context(mesh_sink(done.folder / "meshes", done.choices.order)))
+        if wish.fits:
+            sinks.append(stack.enter_context(fit_sink(done.folder / "fit")))
+        for record in _records(done, batch):
+            for sink in sinks:
+                sink.add(record)
+            yield Progress(record.index + 1, batch.n_items, record.values["name"])
+    if wish.dataset:
+        _write_dataset(done, batch)
+
+
+def _tally(done: Performed, batch: Batch) -> None:
+    for record in _records(done, batch):
+        done.tally.add(record)
+    done.problems += [f"{problem.path}: {problem.sentence}" for problem in done.items.problems]
+    done.problems += done.tally.unread + done.tally.problems
+    if not done.tally.n_read:
+        shutil.rmtree(batch.folder, ignore_errors=True)
+        with contextlib.suppress(OSError):
+            done.folder.rmdir()
+        raise FileError(done.tally.unread[0])
+
+
+def _records(done: Performed, batch: Batch) -> Iterator[Record]:
+    """What is known of each particle; those that ended their process get a name."""
+    for record in batch.records():
+        if LOST in record.values:
+            failures = [{"stage": LOST, "reason": record.values[LOST]}]
+            name = done.items.members[record.index].name
+            record = dataclasses.replace(record, values={"name": name, "group": "", "failures": failures})
+        yield record
+
+
+def _write_dataset(done: Performed, batch: Batch) -> None:
+    preset = None if done.choices.preset_modified else done.choices.preset
+    try:
+        write_stored(
+            done.folder / "dataset",
+            lambda: shapes_of(batch),
+            done.tally.n_coarse,
+            name=done.folder.resolve().name,
+            provenance=story(done.tally.fitted, done.choices.order, preset),
+        )
+    except RegolithError as error:
+        if done.tally.n_coarse:
+            raise
+        done.problems.append(f"There is no dataset, because no particle could be coarsened. ({error})")
+
+
+def _studied(done: Performed, crew: Crew) -> Part:
+    wish, choices = done.recipe.outputs, done.choices
+    if not (wish.lmax_study or wish.coarsening_study):
+        return
+    particles = yield from _read(done)
+    if wish.lmax_study:
+        yield from _study(done, "lmax_study", study_lmax(particles, crew, choices.seed))
+    if wish.coarsening_study:
+        yield from _study(done, "coarsening_study", study_coarsening(particles, choices.order, crew))
+
+
+def _read(done: Performed) -> Generator[Step, None, list[Particle]]:
+    """All particles that can be read, which a study needs at the same time."""
+    yield Started("Reading particles", len(done.items.members))
     found: list[Particle] = []
-    files = [base / name for name in done.recipe.inputs if name != SAMPLE]
-    if SAMPLE in done.recipe.inputs:
-        sample: Loaded = yield from load_sample()
-        found += sample.particles
-    if files:
-        loaded: Loaded = yield from load_particles(files, done.choices.unit)
-        found += loaded.particles
-        done.problems += [f"{problem.path}: {problem.sentence}" for problem in loaded.problems]
-    done.particles = tuple(found)
-
-
-def _describe(done: Performed, crew: Crew) -> Part:
-    done.facts = yield from examine_sample(done.particles, done.choices.box_metric, crew)
-    entries = [described(p, facts) for p, facts in zip(done.particles, done.facts, strict=True)]
-    table = descriptor_table(done.particles, done.facts)
-    write_bytes(done.folder / "descriptors.json", json_bytes(entries))
-    write_bytes(done.folder / "descriptors.csv", csv_text(table).encode("utf-8"))
-
-
-def _fit(done: Performed, crew: Crew) -> Part:
-    outcomes = yield from fit_sample(done.particles, workers=crew)
-    sample = FittedSample.of(done.particles, outcomes)
-    done.problems += [f"{name}: {sentence}" for name, sentence in sample.failed]
-    write_fits(done.folder / "fit", sample)
-
-
-def _coarsen(done: Performed, crew: Crew) -> Part:
-    order = done.choices.order
-    done.outcomes = yield from coarsen_sample(done.particles, order, crew)
-    done.problems += [f"{each.name}: {each.problem}" for each in done.outcomes if not each.coarsened]
-    if done.recipe.outputs.meshes:
-        with staged_folder(done.folder / "meshes") as stage:
-            write_coarsening(stage, order, done.outcomes)
-    if done.recipe.outputs.dataset:
-        yield Started("Writing the dataset")
-        preset = None if done.choices.preset_modified else done.choices.preset
-        dataset = dataset_of(done.particles, done.outcomes, order, done.folder.name, preset)
-        write_dataset(done.folder / "dataset", dataset)
-        yield Progress(1, 1, "dataset")
+    for number, item in enumerate(done.items.members, start=1):
+        with contextlib.suppress(RegolithError):
+            found.append(item.particle())
+        yield Progress(number, len(done.items.members), item.name)
+    return found
 
 
 def _study(done: Performed, name: str, steps: Steps) -> Part:
     try:
-        done.studies[name] = yield from steps
+        study = yield from steps
     except RegolithError as error:
         done.problems.append(str(error))
         return
+    done.studies.append(name)
     with staged_folder(done.folder / "studies") as stage:
-        STUDIES[name].write(done.studies[name], stage)
+        STUDIES[name].write(study, stage)

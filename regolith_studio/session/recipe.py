@@ -3,12 +3,12 @@
 from pathlib import Path
 from typing import Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from regolith_studio.coarsening.coarsen import DEFAULT_METHOD, DEFAULT_PRESET
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.errors import FileError, InputError
-from regolith_studio.session.choices import Choices, Scalar
+from regolith_studio.session.choices import L_MAX_LIMIT, Choices, Scalar
 
 FORMAT: Literal["regolith-studio recipe"] = "regolith-studio recipe"
 VERSION: Literal[1] = 1
@@ -32,18 +32,39 @@ class Outputs(_Strict):
     summary: bool = True
 
 
+class Population(_Strict):
+    """Virtual particles among the inputs.
+
+    Parameters
+    ----------
+    card
+        Name of a shipped material card.
+    n
+        Particles to draw, with the seed of the recipe.
+    l_max
+        Degree of their surfaces.
+    """
+
+    card: str
+    n: int = Field(ge=1, le=1_000_000)
+    l_max: int = Field(default=10, ge=1, le=L_MAX_LIMIT)
+
+
 class Recipe(_Strict):
     """Inputs, choices and outputs; relative inputs are looked up beside the recipe file.
 
     Parameters
     ----------
     inputs
-        Files and folders of meshes, or ``sample:all``.
+        Files and folders of meshes, or ``sample:all``; may be empty where there is a population.
+    population
+        Virtual particles, besides the inputs.
     """
 
     format: Literal["regolith-studio recipe"] = FORMAT
     version: Literal[1] = VERSION
-    inputs: list[str] = Field(default_factory=lambda: [SAMPLE], min_length=1)
+    inputs: list[str] = Field(default_factory=lambda: [SAMPLE])
+    population: Population | None = None
     unit: str = "um"
     l_max: int = 10
     level: int = 4
@@ -56,6 +77,12 @@ class Recipe(_Strict):
     seed: int = 0
     box_metric: str = "exact"
     outputs: Outputs = Field(default_factory=Outputs)
+
+    @model_validator(mode="after")
+    def _has_particles(self) -> Self:
+        if not self.inputs and self.population is None:
+            raise ValueError("inputs must name a file or folder, or there must be a population")
+        return self
 
     @classmethod
     def from_choices(cls, choices: Choices, inputs: list[str], outputs: Outputs | None = None) -> Self:
@@ -129,4 +156,5 @@ def recipe_of(**entries: Any) -> Recipe:
 def _first_problem(error: ValidationError) -> str:
     first = error.errors(include_url=False)[0]
     where = ".".join(str(part) for part in first["loc"]) or "the file"
-    return f"{where}: {first['msg'][:1].lower()}{first['msg'][1:]}"
+    said = first["msg"].removeprefix("Value error, ")
+    return f"{where}: {said[:1].lower()}{said[1:]}"

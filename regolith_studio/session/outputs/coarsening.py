@@ -23,13 +23,23 @@ def write_coarsening(folder: Path, order: CoarseningOrder, done: Sequence[Coarse
 
 def coarsening_document(order: CoarseningOrder, done: Sequence[CoarsenedParticle]) -> dict[str, Any]:
     """What ``coarsening.json`` holds."""
+    return document_head(order) | {
+        "particles": [
+            coarsening_entry(each, each.coarsened) | {"seconds": round(each.seconds, 3)}
+            for each in done
+            if each.coarsened
+        ],
+        "failed": [{"name": each.name, "reason": each.problem} for each in done if not each.coarsened],
+    }
+
+
+def document_head(order: CoarseningOrder) -> dict[str, Any]:
+    """What ``coarsening.json`` says before it comes to the particles."""
     return {
         "format": "regolith-studio coarsening",
         "version": 1,
         "unit": "um",
         "order": order_document(order),
-        "particles": [_entry(each, each.coarsened) for each in done if each.coarsened],
-        "failed": [{"name": each.name, "reason": each.problem} for each in done if not each.coarsened],
     }
 
 
@@ -38,7 +48,8 @@ def order_document(order: CoarseningOrder) -> dict[str, Any]:
     return asdict(order) | {"weights": dict(order.weights), "settings": dict(order.settings)}
 
 
-def _entry(each: CoarsenedParticle, coarse: Coarsened) -> dict[str, Any]:
+def coarsening_entry(each: CoarsenedParticle, coarse: Coarsened) -> dict[str, Any]:
+    """One particle in ``coarsening.json``, without the time that it took."""
     return {
         "name": each.name,
         "file": f"{each.name}.stl",
@@ -60,5 +71,4 @@ def _entry(each: CoarsenedParticle, coarse: Coarsened) -> dict[str, Any]:
         "steps": dict(coarse.steps),
         "variants": {name: dict(errors) for name, errors in coarse.variants.items()},
         "notes": list(each.notes),
-        "seconds": round(each.seconds, 3),
     }

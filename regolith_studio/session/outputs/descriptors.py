@@ -1,6 +1,6 @@
 """Descriptors and health of particles as JSON and as a table."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Protocol
 
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
@@ -51,9 +51,6 @@ class Named(Protocol):
 def descriptor_table(particles: Sequence[Named], facts: Sequence[Examined]) -> Table:
     """One row a particle, one column a descriptor with its unit."""
     keys = [key for key in CATALOGUE if any(key in (each.descriptors or ()) for each in facts)]
-    columns = [Column("name"), Column("group")]
-    columns += [Column(key, _POWERS[CATALOGUE[key].dimension]) for key in keys]
-    columns += [Column("sound"), Column("problems")]
     rows = [
         (
             particle.name,
@@ -64,7 +61,20 @@ def descriptor_table(particles: Sequence[Named], facts: Sequence[Examined]) -> T
         )
         for particle, each in zip(particles, facts, strict=True)
     ]
-    return Table("Descriptors of the particles", tuple(columns), tuple(rows))
+    return Table("Descriptors of the particles", table_columns(keys), tuple(rows))
+
+
+def table_columns(keys: Sequence[str]) -> tuple[Column, ...]:
+    """The columns of :func:`descriptor_table` where the descriptors `keys` are known."""
+    named = [Column(key, _POWERS[CATALOGUE[key].dimension]) for key in keys]
+    return Column("name"), Column("group"), *named, Column("sound"), Column("problems")
+
+
+def table_row(entry: Mapping[str, Any], keys: Sequence[str]) -> list[Any]:
+    """A row of :func:`descriptor_table` from what :func:`described` says of the particle."""
+    health = entry["health"]
+    problems = " ".join(filter(None, [*health["problems"], entry.get("problem", "")]))
+    return [entry["name"], entry["group"], *[entry.get(key) for key in keys], health["sound"], problems]
 
 
 def _value(facts: Examined, key: str) -> float | None:

@@ -4,12 +4,12 @@ import io
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
 from regolith_studio.errors import GeometryError
-from regolith_studio.geometry.particle import Particle
+from regolith_studio.geometry.particle import Particle, Source
 from regolith_studio.harmonics import files
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.sample_spectrum import sample_spectrum
@@ -19,11 +19,31 @@ from regolith_studio.imaging.stl import stl_bytes
 from regolith_studio.session.outputs.staging import json_bytes, write_bytes
 
 
+class Known(Protocol):
+    """What the files say of a particle besides its fit."""
+
+    @property
+    def name(self) -> str:
+        """Unique within its sample."""
+
+    @property
+    def group(self) -> str:
+        """That it belongs to."""
+
+    @property
+    def source(self) -> Source | None:
+        """Where it was read."""
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What was wrong with it."""
+
+
 @dataclass(frozen=True)
 class FittedSample:
     """Particles with their fits, all of the same degree, and the sentences of those that failed."""
 
-    particles: tuple[Particle, ...]
+    particles: tuple[Known, ...]
     fits: tuple[HarmonicFit, ...]
     failed: tuple[tuple[str, str], ...] = ()
 

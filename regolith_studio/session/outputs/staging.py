@@ -51,7 +51,7 @@ def write_bytes(path: Path, content: bytes) -> None:
         try:
             with os.fdopen(handle, "wb") as file:
                 file.write(content)
-            Path(name).chmod(0o666 & ~_umask())
+            give_usual_rights(Path(name))
             Path(name).replace(path)
         except BaseException:
             Path(name).unlink(missing_ok=True)
@@ -64,6 +64,11 @@ def json_bytes(document: Any) -> bytes:
     """Indented JSON, ending in a newline; refuses what is not finite."""
     text = json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
     return text.encode("utf-8") + b"\n"
+
+
+def give_usual_rights(path: Path) -> None:
+    """Let the file have the rights that new files have here; temporary ones are private."""
+    path.chmod(0o666 & ~_umask())
 
 
 def _move_into(stage: Path, folder: Path) -> None:

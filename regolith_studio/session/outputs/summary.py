@@ -1,20 +1,20 @@
 """The one-page summary: what was done with which numbers, in tables and pictures, as HTML."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from html import escape
 from pathlib import Path
+from typing import Any
 
 from regolith_studio.dataset.build import software_versions
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
-from regolith_studio.descriptors.comparison import rmsre
-from regolith_studio.geometry.particle import Particle
-from regolith_studio.jobs.coarsening import CoarsenedParticle
-from regolith_studio.jobs.examining import Examined
+from regolith_studio.jobs.shards import Record
 from regolith_studio.session.outputs.staging import write_bytes
 from regolith_studio.session.outputs.studies import STUDIES
 from regolith_studio.session.recipe import Recipe
 
+TITLE = "Regolith Studio: from particles to a dataset"
 _STYLE = """
 body { font: 15px/1.5 system-ui, sans-serif; max-width: 62rem; margin: 2rem auto;
   padding: 0 1rem; color: #222 }
@@ -27,9 +27,52 @@ _SHOWN = ("equivalent_radius", "surface_area", "sphericity", "min_diameter", "ma
 _LENGTH = {0: "", 1: "µm", 2: "µm²", 3: "µm³"}
 
 
-@dataclass(frozen=True)
-class SummaryFacts:
-    """Everything that the page tells.
+SHOWN_ROWS = 200
+"""Rows of a table and sentences of a list that the page shows; the files beside it hold all."""
+
+
+@dataclass
+class Summary:
+    """What the page tells, gathered particle by particle; only the first of many are kept.
+
+    Parameters
+    ----------
+    n_particles, n_coarse
+        Particles, and those of them that could be coarsened.
+    described, coarse
+        What ``descriptors.json`` and ``coarsening.json`` say of the first of them.
+    pictures
+        (file, caption) pairs besides those of the studies, files relative to the page.
+    """
+
+    n_particles: int = 0
+    n_coarse: int = 0
+    described: list[Mapping[str, Any]] = field(default_factory=list)
+    coarse: list[Mapping[str, Any]] = field(default_factory=list)
+    pictures: Sequence[tuple[str, str]] = ()
+    _squares: dict[str, float] = field(default_factory=dict)
+
+    def add(self, record: Record) -> None:
+        """Take one more particle."""
+        self.n_particles += 1
+        for key, kept in (("described", self.described), ("coarse", self.coarse)):
+            if key in record.values and len(kept) < SHOWN_ROWS:
+                kept.append(record.values[key])
+        if coarse := record.values.get("coarse"):
+            self.n_coarse += 1
+            for key in LOSS_KEYS:
+                self._squares[key] = self._squares.get(key, 0.0) + coarse["errors"][key] ** 2
+
+    @property
+    def rmsre(self) -> dict[str, float]:
+        """Root mean square of the relative errors over all polyhedra, Eq. 10."""
+        return {key: math.sqrt(total / self.n_coarse) for key, total in self._squares.items()}
+
+
+def write_summary(
+    folder: Path, recipe: Recipe, summary: Summary, studies: Sequence[str], problems: Sequence[str]
+) -> Path:
+    """Write ``summary.html``; returns its path.
 
     Parameters
     ----------
@@ -37,53 +80,36 @@ class SummaryFacts:
         Kinds of the studies that have been written.
     problems
         One sentence for each file or particle that failed.
-    pictures
-        (file, caption) pairs, files relative to the page.
     """
-
-    title: str
-    recipe: Recipe
-    particles: Sequence[Particle] = ()
-    facts: Sequence[Examined] = ()
-    outcomes: Sequence[CoarsenedParticle] = ()
-    studies: Sequence[str] = ()
-    problems: Sequence[str] = ()
-    pictures: Sequence[tuple[str, str]] = ()
-
-
-def write_summary(folder: Path, facts: SummaryFacts) -> Path:
-    """Write ``summary.html``; returns its path."""
     path = folder / "summary.html"
-    write_bytes(path, summary_page(facts).encode("utf-8"))
+    write_bytes(path, summary_page(recipe, summary, studies, problems).encode("utf-8"))
     return path
 
 
-def summary_page(facts: SummaryFacts) -> str:
+def summary_page(recipe: Recipe, summary: Summary, studies: Sequence[str], problems: Sequence[str]) -> str:
     """The page; pictures stand in it by their relative paths."""
     parts = [
-        f"<h1>{escape(facts.title)}</h1>",
-        _lead(facts),
-        *[_figure(file, caption) for file, caption in facts.pictures],
-        _fidelity(facts.outcomes),
-        *map(_study, facts.studies),
-        _particles(facts),
-        _problems(facts.problems),
-        _provenance(facts.recipe),
+        f"<h1>{TITLE}</h1>",
+        _lead(recipe, summary),
+        *[_figure(file, caption) for file, caption in summary.pictures],
+        _fidelity(summary),
+        *map(_study, studies),
+        _particles(summary),
+        _problems(problems),
+        _provenance(recipe),
     ]
-    head = f'<meta charset="utf-8"><title>{escape(facts.title)}</title><style>{_STYLE}</style>'
+    head = f'<meta charset="utf-8"><title>{TITLE}</title><style>{_STYLE}</style>'
     return (
         f'<!doctype html>\n<html lang="en"><head>{head}</head><body>\n{chr(10).join(parts)}\n</body></html>\n'
     )
 
 
-def _lead(facts: SummaryFacts) -> str:
-    good = [each for each in facts.outcomes if each.coarsened]
-    recipe = facts.recipe
+def _lead(recipe: Recipe, summary: Summary) -> str:
     target = f"surface at l_max = {recipe.l_max}" if recipe.target == "fit" else "measured surface"
     return (
-        f"<p>{len(facts.particles)} particles; {len(good)} convex polyhedra of {recipe.n_faces} faces "
-        f"(method {escape(recipe.method)}, weights {escape(_weights(recipe))}, seed {recipe.seed}) that "
-        f"imitate the {target}. Lengths are in micrometres.</p>"
+        f"<p>{summary.n_particles:,} particles; {summary.n_coarse:,} convex polyhedra "
+        f"of {recipe.n_faces} faces (method {escape(recipe.method)}, weights {escape(_weights(recipe))}, "
+        f"seed {recipe.seed}) that imitate the {target}. Lengths are in micrometres.</p>"
     )
 
 
@@ -100,36 +126,34 @@ def _figure(file: str, caption: str) -> str:
     )
 
 
-def _fidelity(outcomes: Sequence[CoarsenedParticle]) -> str:
+def _fidelity(summary: Summary) -> str:
     """Relative errors of each polyhedron (Eq. 8), and their root mean square (Eq. 10)."""
-    good = [(each, each.coarsened) for each in outcomes if each.coarsened]
-    if not good:
+    if not summary.coarse:
         return ""
-    header = [
-        "particle",
-        "faces",
-        "vertices",
-        "triangles",
-        *[CATALOGUE[key].symbol for key in LOSS_KEYS],
-        "J",
-    ]
+    symbols = [CATALOGUE[key].symbol for key in LOSS_KEYS]
+    header = ["particle", "faces", "vertices", "triangles", *symbols, "J"]
     rows = [
         [
-            each.name,
-            str(coarse.n_faces),
-            str(coarse.n_vertices),
-            str(coarse.n_triangles),
-            *[f"{coarse.errors[key]:.2%}" for key in LOSS_KEYS],
-            f"{coarse.jaccard_distance:.3f}",
+            each["name"],
+            *[str(each[key]) for key in ("n_faces", "n_vertices", "n_triangles")],
+            *[f"{each['errors'][key]:.2%}" for key in LOSS_KEYS],
+            f"{each['jaccard_distance']:.3f}",
         ]
-        for each, coarse in good
+        for each in summary.coarse
     ]
-    sample = rmsre([coarse.target for _, coarse in good], [coarse.achieved for _, coarse in good])
-    rows.append(["RMSRE (Eq. 10)", "", "", "", *[f"{sample[key]:.2%}" for key in LOSS_KEYS], ""])
+    rows.append(["RMSRE (Eq. 10)", "", "", "", *[f"{summary.rmsre[key]:.2%}" for key in LOSS_KEYS], ""])
     note = (
-        "<p>Relative errors against the imitated surface (Eq. 8); J is the Jaccard distance (paper: IoU).</p>"
+        "<p>Relative errors against the imitated surface (Eq. 8); J is the Jaccard distance (paper: IoU)."
+        f"{_more(summary.n_coarse, 'meshes/coarsening.json')}</p>"
     )
     return "<h2>How well the polyhedra keep the shape</h2>" + note + _table(header, rows)
+
+
+def _more(count: int, file: str) -> str:
+    """Where the rest is, if not everything is shown."""
+    if count <= SHOWN_ROWS:
+        return ""
+    return f" The first {SHOWN_ROWS} of {count:,} are shown; {file} holds all."
 
 
 def _study(kind: str) -> str:
@@ -137,34 +161,40 @@ def _study(kind: str) -> str:
     return f"<h2>{escape(title)}</h2>{_figure(f'studies/{picture}', title)}"
 
 
-def _particles(facts: SummaryFacts) -> str:
-    if not facts.facts:
+def _particles(summary: Summary) -> str:
+    if not summary.described:
         return ""
     header = ["particle", "group"]
     header += [f"{CATALOGUE[key].symbol} {_LENGTH[CATALOGUE[key].dimension]}".strip() for key in _SHOWN]
     header.append("sound")
     rows = [
         [
-            particle.name,
-            particle.group,
-            *[f"{each.descriptors[key]:.4g}" if each.descriptors else "" for key in _SHOWN],
-            "yes" if each.health.sound else " ".join(each.health.problems) or "no",
+            each["name"],
+            each["group"],
+            *[f"{each[key]:.4g}" if key in each else "" for key in _SHOWN],
+            "yes" if each["health"]["sound"] else " ".join(each["health"]["problems"]) or "no",
         ]
-        for particle, each in zip(facts.particles, facts.facts, strict=True)
+        for each in summary.described
     ]
-    return "<h2>The particles as measured</h2>" + _table(header, rows)
+    note = _more(summary.n_particles, "descriptors.csv")
+    return "<h2>The particles as measured</h2>" + (f"<p>{note}</p>" if note else "") + _table(header, rows)
 
 
 def _problems(problems: Sequence[str]) -> str:
     if not problems:
         return ""
-    items = "".join(f"<li>{escape(sentence)}</li>" for sentence in problems)
+    items = "".join(f"<li>{escape(sentence)}</li>" for sentence in problems[:SHOWN_ROWS])
+    if len(problems) > SHOWN_ROWS:
+        items += f"<li>and {len(problems) - SHOWN_ROWS:,} more, in failed.csv.</li>"
     return f"<h2>What could not be done</h2><ul>{items}</ul>"
 
 
 def _provenance(recipe: Recipe) -> str:
     versions = ", ".join(f"{name} {version}" for name, version in software_versions().items())
     inputs = ", ".join(recipe.inputs)
+    if recipe.population is not None:
+        drawn = f"{recipe.population.n:,} particles of the card {recipe.population.card}"
+        inputs = f"{inputs}, {drawn}" if inputs else drawn
     return (
         f"<h2>How to repeat it</h2><p><code>regolith-studio run recipe.json -o FOLDER</code> with the "
         f"recipe beside this page. Inputs: {escape(inputs)}. Software: {escape(versions)}.</p>"

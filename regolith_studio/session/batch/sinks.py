@@ -1,0 +1,237 @@
+"""The files that the records of a batch become, record by record: nothing is gathered whole but fits."""
+
+import csv
+import io
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import IO, Any, Protocol
+
+import numpy as np
+
+from regolith_studio.dataset.streaming import StoredShape
+from regolith_studio.descriptors.catalogue import CATALOGUE
+from regolith_studio.geometry.particle import Source
+from regolith_studio.harmonics.coefficients import ShCoefficients
+from regolith_studio.harmonics.files import fits_from
+from regolith_studio.harmonics.fit import HarmonicFit
+from regolith_studio.jobs.chunked import LOST, Batch
+from regolith_studio.jobs.coarsening import CoarseningOrder
+from regolith_studio.jobs.shards import Record
+from regolith_studio.session.batch.working import COEFFICIENTS, CUT, MESH, SHAPE
+from regolith_studio.session.outputs.coarsening import document_head
+from regolith_studio.session.outputs.descriptors import table_columns, table_row
+from regolith_studio.session.outputs.fits import FittedSample, write_fits
+from regolith_studio.session.outputs.staging import staged_folder, write_bytes
+from regolith_studio.session.outputs.streams import JsonList, staged_file
+
+
+class Sink(Protocol):
+    """Takes the records of a batch in their order."""
+
+    def add(self, record: Record) -> None:
+        """Take one more."""
+
+
+@dataclass(frozen=True)
+class Origin:
+    """What a fit's file says of its particle."""
+
+    name: str
+    group: str
+    source: Source | None
+    notes: tuple[str, ...]
+
+
+@dataclass
+class _Descriptors:
+    """``descriptors.json`` and ``descriptors.csv``; rows wait until it is known which columns there are."""
+
+    entries: JsonList
+    table: IO[bytes]
+    keys: list[str] = field(default_factory=list)
+    waiting: list[dict[str, Any]] = field(default_factory=list)
+
+    def add(self, record: Record) -> None:
+        entry = record.values.get("described")
+        if entry is None:
+            return
+        self.entries.add(entry)
+        self.waiting.append(entry)
+        if not self.keys and (keys := [key for key in CATALOGUE if key in entry]):
+            self.keys = keys
+            self._write([[column.header for column in table_columns(keys)]])
+        if self.keys:
+            self._flush()
+
+    def close(self) -> None:
+        if not self.keys:
+            self._write([[column.header for column in table_columns([])]])
+            self._flush()
+        self.entries.close()
+
+    def _flush(self) -> None:
+        self._write([table_row(entry, self.keys) for entry in self.waiting])
+        self.waiting.clear()
+
+    def _write(self, rows: list[list[Any]]) -> None:
+        self.table.write(_csv_bytes(rows))
+
+
+@contextmanager
+def descriptor_sink(folder: Path) -> Iterator[Sink]:
+    """Writes ``descriptors.json`` and ``descriptors.csv``."""
+    with (
+        staged_file(folder / "descriptors.json") as entries,
+        staged_file(folder / "descriptors.csv") as table,
+    ):
+        sink = _Descriptors(JsonList(entries), table)
+        yield sink
+        sink.close()
+
+
+@dataclass
+class _Meshes:
+    stage: Path
+    entries: JsonList
+    failed: list[dict[str, str]] = field(default_factory=list)
+
+    def add(self, record: Record) -> None:
+        values = record.values
+        if entry := values.get("coarse"):
+            self.entries.add(entry)
+            (self.stage / entry["file"]).write_bytes(record.blobs[MESH])
+        elif reason := reason_of(record):
+            self.failed.append({"name": values["name"], "reason": reason})
+
+
+@contextmanager
+def mesh_sink(folder: Path, order: CoarseningOrder) -> Iterator[Sink]:
+    """Writes one STL a polyhedron, and ``coarsening.json``."""
+    with staged_folder(folder) as stage, (stage / "coarsening.json").open("wb") as stream:
+        sink = _Meshes(stage, JsonList(stream, document_head(order), "particles"))
+        yield sink
+        sink.entries.close({"failed": sink.failed})
+
+
+@dataclass
+class _Fits:
+    origins: list[Origin] = field(default_factory=list)
+    fits: list[HarmonicFit] = field(default_factory=list)
+    failed: list[tuple[str, str]] = field(default_factory=list)
+
+    def add(self, record: Record) -> None:
+        values = record.values
+        if known := values.get("fit"):
+            given = values["origin"]
+            source = None if given["source"] is None else Source(*given["source"])
+            self.origins.append(Origin(values["name"], values["group"], source, tuple(given["notes"])))
+            self.fits.append(_fit(known, record.blobs[COEFFICIENTS]))
+        elif reason := reason_of(record, "fitting"):
+            self.failed.append((values["name"], reason))
+
+
+@contextmanager
+def fit_sink(stem: Path) -> Iterator[Sink]:
+    """Writes the coefficients of all particles: nine kilobytes of memory each."""
+    sink = _Fits()
+    yield sink
+    write_fits(stem, FittedSample(tuple(sink.origins), tuple(sink.fits), tuple(sink.failed)))
+
+
+@dataclass
+class _Failures:
+    rows: list[list[str]] = field(default_factory=list)
+
+    def add(self, record: Record) -> None:
+        name = record.values["name"]
+        self.rows += [[name, each["stage"], each["reason"]] for each in record.values["failures"]]
+
+
+@contextmanager
+def failure_sink(folder: Path) -> Iterator[Sink]:
+    """Writes ``failed.csv`` with everything that went wrong, if anything did."""
+    sink = _Failures()
+    yield sink
+    path = folder / "failed.csv"
+    if sink.rows:
+        write_bytes(path, _csv_bytes([["name", "stage", "reason"], *sink.rows]))
+    else:
+        path.unlink(missing_ok=True)
+
+
+@dataclass
+class Tally:
+    """What has to be known of all particles together.
+
+    Parameters
+    ----------
+    unread
+        One sentence for each particle that could not be read or drawn.
+    problems
+        One sentence for each particle that could not be fitted or coarsened.
+    fitted
+        Coefficients of the coarsened particles at the degree that was coarsened.
+    first_coarse
+        Index of the first particle that could be coarsened.
+    """
+
+    n_read: int = 0
+    n_coarse: int = 0
+    unread: list[str] = field(default_factory=list)
+    problems: list[str] = field(default_factory=list)
+    fitted: list[ShCoefficients] = field(default_factory=list)
+    first_coarse: int | None = None
+
+    def add(self, record: Record) -> None:
+        """Take one more."""
+        values = record.values
+        if reason := reason_of(record, "reading"):
+            self.unread.append(reason)
+            return
+        self.n_read += 1
+        self.problems += [f"{values['name']}: {reason}" for reason in _reasons(record)]
+        if "coarse" in values:
+            self.n_coarse += 1
+            self.first_coarse = record.index if self.first_coarse is None else self.first_coarse
+            if CUT in record.blobs:
+                self.fitted.append(ShCoefficients(np.frombuffer(record.blobs[CUT], dtype="<f8")))
+
+
+def shapes_of(batch: Batch) -> Iterator[StoredShape]:
+    """The shapes of a dataset, one at a time."""
+    for record in batch.records():
+        if shape := record.values.get("shape"):
+            yield StoredShape(shape, record.blobs[SHAPE])
+
+
+def reason_of(record: Record, stage: str = "") -> str:
+    """Why a stage failed, or the last one that did; empty if none has."""
+    failures = record.values["failures"]
+    return next((each["reason"] for each in reversed(failures) if stage in ("", each["stage"])), "")
+
+
+def n_failures(record: Record) -> int:
+    """1 if anything has failed."""
+    return int(bool(record.values.get("failures") or LOST in record.values))
+
+
+def _csv_bytes(rows: Sequence[Sequence[Any]]) -> bytes:
+    text = io.StringIO()
+    filled = [["" if cell is None else cell for cell in row] for row in rows]
+    csv.writer(text, lineterminator="\n").writerows(filled)
+    return text.getvalue().encode("utf-8")
+
+
+def _reasons(record: Record) -> list[str]:
+    return list(dict.fromkeys(each["reason"] for each in record.values["failures"]))
+
+
+def _fit(known: dict[str, Any], content: bytes) -> HarmonicFit:
+    row = np.frombuffer(content, dtype="<f8")
+    point = np.array(known["star_point"])
+    (fit,) = fits_from(
+        {"particles": [known]}, {"coefficients": row[None], "star_points": point[None]}
+    ).values()
+    return fit

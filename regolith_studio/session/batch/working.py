@@ -1,0 +1,169 @@
+"""All that a recipe wants done to one particle, in whatever process; the result is a record on disk."""
+
+import json
+import time
+from collections.abc import Generator, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from regolith_studio.dataset.streaming import stored_shape
+from regolith_studio.errors import Cancelled
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.harmonics.files import fits_document
+from regolith_studio.harmonics.fit import HarmonicFit
+from regolith_studio.imaging.stl import stl_bytes
+from regolith_studio.jobs.batch import call
+from regolith_studio.jobs.coarsening import CoarsenedParticle, CoarseningOrder, coarsen_particle
+from regolith_studio.jobs.events import Ending, Failed, Finished, Job, Progress, Started, Step, Steps
+from regolith_studio.jobs.examining import Examined, examine
+from regolith_studio.jobs.fitting import fit_one
+from regolith_studio.jobs.runners.drive import told
+from regolith_studio.jobs.shards import Record
+from regolith_studio.session.batch.items import Item
+from regolith_studio.session.outputs.coarsening import STL_HEADER, coarsening_entry
+from regolith_studio.session.outputs.descriptors import described
+
+MESH, SHAPE, COEFFICIENTS, CUT = "mesh.stl", "shape.stl", "coefficients.f8", "cut.f8"
+"""Names of the byte strings of a record: polyhedron in place, polyhedron of the dataset, coefficients
+at the degree of all fits, and those at the degree that was coarsened (little-endian float64)."""
+
+
+@dataclass(frozen=True)
+class Wish:
+    """What is to be found out about each particle.
+
+    Parameters
+    ----------
+    order
+        Of the coarsening; ``None`` for none.
+    shapes
+        Whether the polyhedra become a dataset.
+    """
+
+    examine: bool
+    fit: bool
+    order: CoarseningOrder | None
+    shapes: bool
+    box_metric: str
+
+
+@dataclass
+class _Entry:
+    """A record in the making."""
+
+    index: int
+    values: dict[str, Any]
+    blobs: dict[str, bytes] = field(default_factory=dict)
+    failures: list[dict[str, str]] = field(default_factory=list)
+
+    def attempt(self, stage: str, job: Job) -> Generator[Step, None, Any]:
+        """What the job returns, or ``None`` with its sentence noted; the time that it took is noted too."""
+        begun = time.perf_counter()
+        ending: Ending = yield from told(job)
+        self.values["seconds"][stage] = round(time.perf_counter() - begun, 4)
+        match ending:
+            case Finished(value):
+                return value
+            case Failed(sentence):
+                self.failures.append({"stage": stage, "reason": sentence})
+                return None
+            case _:
+                raise Cancelled("The work was stopped.")
+
+
+def work_on(items: Sequence[tuple[int, Item]], wish: Wish) -> Steps:
+    """Read, measure, fit and coarsen particles; returns a tuple of :class:`Record`, one an item.
+
+    Whatever goes wrong with a particle stands in its record, under ``failures``, and stops nothing else.
+    """
+    yield Started("Working on particles", len(items))
+    records = []
+    for index, item in items:
+        records.append((yield from _record(index, item, wish)))
+        yield Progress(len(records), len(items), item.name)
+    return tuple(records)
+
+
+def _record(index: int, item: Item, wish: Wish) -> Generator[Step, None, Record]:
+    entry = _Entry(index, {"name": item.name, "group": "", "seconds": {}})
+    particle = yield from entry.attempt("reading", Job(call, (_particle, item)))
+    if particle is not None:
+        entry.values["group"] = particle.group
+        yield from _results(entry, particle, wish)
+    entry.values["failures"] = entry.failures
+    return Record(index, entry.values, entry.blobs)
+
+
+def _results(entry: _Entry, particle: Particle, wish: Wish) -> Generator[Step, None, None]:
+    if wish.examine:
+        facts = yield from entry.attempt("measuring", Job(_examined, (particle, wish.box_metric)))
+        if facts is not None:
+            entry.values["described"] = facts
+    fit = None
+    if wish.fit or (wish.order and wish.order.target == "fit"):
+        fit = yield from entry.attempt("fitting", Job(fit_one, (particle.mesh,)))
+        if fit is not None and wish.fit:
+            _keep_fit(entry, particle, fit)
+        if fit is None and wish.order and wish.order.target == "fit":
+            return
+    if wish.order:
+        outcome = yield from entry.attempt(
+            "coarsening", Job(coarsen_particle, (particle, wish.order, entry.index, fit))
+        )
+        if outcome is not None:
+            yield from entry.attempt("writing", Job(_keep_coarse, (entry, particle, outcome, wish.shapes)))
+
+
+def _particle(item: Item) -> Particle:
+    return item.particle()
+
+
+def _examined(particle: Particle, box_metric: str) -> Steps:
+    """What ``descriptors.json`` says of the particle; a number that is not finite is a mistake here."""
+    yield Started("Measuring")
+    facts: Examined = examine(particle, box_metric)
+    return _finite(described(particle, facts))
+
+
+def _keep_fit(entry: _Entry, particle: Particle, fit: HarmonicFit) -> None:
+    (known,) = fits_document([particle.name], [fit])["particles"]
+    source = particle.source
+    entry.values["fit"] = _finite(known)
+    entry.values["origin"] = {
+        "source": None if source is None else [source.path, source.sha256, source.unit],
+        "notes": list(particle.notes),
+    }
+    entry.blobs[COEFFICIENTS] = _bytes(fit.coefficients.values)
+
+
+def _keep_coarse(entry: _Entry, particle: Particle, outcome: CoarsenedParticle, shapes: bool) -> Steps:
+    yield Started("Keeping the polyhedron")
+    coarse = outcome.coarsened
+    assert coarse is not None
+    values: dict[str, Any] = {"coarse": _finite(coarsening_entry(outcome, coarse))}
+    blobs = {MESH: stl_bytes(coarse.mesh, STL_HEADER)}
+    if shapes:
+        shape = stored_shape(particle, coarse)
+        values["shape"] = _finite(shape.record)
+        blobs[SHAPE] = shape.mesh
+    if outcome.coefficients is not None:
+        blobs[CUT] = _bytes(outcome.coefficients.values)
+    entry.values.update(values)
+    entry.blobs.update(blobs)
+
+
+def _bytes(values: Any) -> bytes:
+    return np.ascontiguousarray(values, dtype="<f8").tobytes()
+
+
+def _finite(values: Any) -> Any:
+    """Plain values as they are read back from JSON.
+
+    Raises
+    ------
+    ValueError
+        If a number is not finite.
+    """
+    return json.loads(json.dumps(values, allow_nan=False))

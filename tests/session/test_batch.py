@@ -1,0 +1,205 @@
+"""A recipe is the same bytes whoever works on it and however often it is killed; failures are told."""
+
+import csv
+import hashlib
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from regolith_studio.dataset.folder import validate_dataset
+from regolith_studio.errors import FileError, InputError
+from regolith_studio.geometry.directions import icosphere
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.imaging.stl import stl_bytes
+from regolith_studio.jobs.events import Progress
+from regolith_studio.session.performing import Performed, perform
+from regolith_studio.session.recipe import Recipe, recipe_of
+
+BASE: dict[str, Any] = {"method": "quadric", "level": 2, "l_max": 4, "n_faces": 12}
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture(scope="module")
+def grains(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Nine ellipsoids, a flat one and a file that is none."""
+    folder = tmp_path_factory.mktemp("grains")
+    sphere = icosphere(3)
+    for index in range(9):
+        axes = np.random.default_rng(index).uniform(10, 30, 3)
+        content = stl_bytes(Mesh(sphere.vertices * axes, sphere.faces), "test")
+        (folder / f"grain-{index}.stl").write_bytes(content)
+    (folder / "broken.stl").write_bytes(b"solid nothing")
+    return folder
+
+
+def recipe(grains: Path, **entries: Any) -> Recipe:
+    outputs = {"fits": True, **entries.pop("outputs", {})}
+    return recipe_of(**{**BASE, "inputs": [str(grains)], "outputs": outputs, **entries})
+
+
+def done(*arguments: Any, **options: Any) -> Performed:
+    steps = perform(*arguments, **options)
+    while True:
+        try:
+            next(steps)
+        except StopIteration as end:
+            return end.value
+
+
+def digests(folder: Path) -> dict[str, str]:
+    """SHA-256 of every file but the journal's."""
+    files = [path for path in folder.rglob("*") if path.is_file()]
+    names = {path: path.relative_to(folder) for path in files}
+    return {
+        name.as_posix(): hashlib.sha256(path.read_bytes()).hexdigest()
+        for path, name in names.items()
+        if name.parts[0] != "journal"
+    }
+
+
+@pytest.fixture(scope="module")
+def alone(grains: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Performed, dict[str, str]]:
+    """The recipe by one worker, each particle a chunk."""
+    found = done(recipe(grains), grains, tmp_path_factory.mktemp("one") / "out")
+    return found, digests(found.folder)
+
+
+def test_that_failed_particles_are_listed_and_the_rest_goes_on(alone: tuple[Performed, dict]) -> None:
+    found, files = alone
+    (sentence,) = found.problems
+    assert "broken.stl" in sentence
+    with (found.folder / "failed.csv").open() as table:
+        rows = list(csv.DictReader(table))
+    assert [(row["name"], row["stage"]) for row in rows] == [("broken", "reading")]
+    assert rows[0]["reason"] == sentence
+    assert sum(name.startswith("meshes/") and name.endswith(".stl") for name in files) == 9
+    assert validate_dataset(found.folder / "dataset") == []
+    assert "broken.stl" in (found.folder / "summary.html").read_text()
+
+
+@pytest.mark.parametrize(("workers", "chunk"), [(1, 4), (2, 3)])
+def test_that_workers_and_chunks_change_no_byte(
+    grains: Path, tmp_path: Path, alone: tuple[Performed, dict], workers: int, chunk: int
+) -> None:
+    found = done(recipe(grains), grains, tmp_path / "out", workers, chunk=chunk)
+    assert digests(found.folder) == alone[1]
+
+
+@pytest.mark.slow
+def test_that_four_workers_change_no_byte(
+    grains: Path, tmp_path: Path, alone: tuple[Performed, dict]
+) -> None:
+    assert digests(done(recipe(grains), grains, tmp_path / "out", 4).folder) == alone[1]
+
+
+@pytest.mark.parametrize("after", range(0, 12, 3))
+def test_that_a_run_given_up_after_any_particle_goes_on_to_the_same_bytes(
+    grains: Path, tmp_path: Path, alone: tuple[Performed, dict], after: int
+) -> None:
+    steps = perform(recipe(grains), grains, tmp_path / "out")
+    for step in steps:
+        if isinstance(step, Progress) and step.done == after:
+            break
+    steps.close()
+    again = perform(recipe(grains), grains, tmp_path / "out", resume=True)
+    first = next(step for step in again if isinstance(step, Progress))
+    assert first.done == min(after, 10)
+    for _ in again:
+        pass
+    assert digests(tmp_path / "out") == alone[1]
+
+
+def killed(wish: Path, folder: Path, lines: int) -> None:
+    """Start the command and kill it once its journal has so many lines."""
+    command = [sys.executable, "-m", "regolith_studio", "run", str(wish), "-o", str(folder), "--resume"]
+    journal = folder / "journal" / "journal.jsonl"
+    with subprocess.Popen(command, cwd=ROOT, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL) as process:
+        while process.poll() is None:
+            if journal.exists() and journal.read_bytes().count(b"\n") >= lines:
+                process.send_signal(signal.SIGKILL)
+                break
+            time.sleep(0.001)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals are a matter of POSIX")
+def test_that_a_run_killed_again_and_again_ends_with_the_same_bytes(
+    grains: Path, tmp_path: Path, alone: tuple[Performed, dict]
+) -> None:
+    wish = tmp_path / "recipe.json"
+    wish.write_text(recipe(grains).to_json())
+    for lines in (3, 8):
+        killed(wish, tmp_path / "out", lines)
+    before = (tmp_path / "out" / "journal" / "journal.jsonl").read_bytes().count(b"\n") - 1
+    assert before >= 7
+    done(recipe(grains), tmp_path, tmp_path / "out", resume=True)
+    assert digests(tmp_path / "out") == alone[1]
+
+
+def test_that_a_run_that_has_ended_is_not_done_again(grains: Path, tmp_path: Path) -> None:
+    first = done(recipe(grains), grains, tmp_path / "out")
+    stamp = {path: path.stat().st_mtime_ns for path in (tmp_path / "out").rglob("*.stl")}
+    again = done(recipe(grains), grains, tmp_path / "out", resume=True)
+    assert again.problems == first.problems
+    assert again.files == first.files
+    assert {path: path.stat().st_mtime_ns for path in (tmp_path / "out").rglob("*.stl")} == stamp
+    assert [path.name for path in (tmp_path / "out" / "journal").iterdir()] == ["journal.jsonl"]
+
+
+def test_that_an_unfinished_run_is_neither_overwritten_nor_mixed(grains: Path, tmp_path: Path) -> None:
+    steps = perform(recipe(grains), grains, tmp_path / "out")
+    while not (isinstance(step := next(steps), Progress) and step.done == 3):
+        pass
+    steps.close()
+    with pytest.raises(FileError, match="--resume"):
+        done(recipe(grains), grains, tmp_path / "out")
+    with pytest.raises(FileError, match="begun with another recipe"):
+        done(recipe(grains, n_faces=13), grains, tmp_path / "out", resume=True)
+
+
+def test_that_a_changed_input_is_noticed(tmp_path: Path, grains: Path) -> None:
+    (tmp_path / "in").mkdir()
+    for index in range(3):
+        (tmp_path / "in" / f"{index}.stl").write_bytes((grains / f"grain-{index}.stl").read_bytes())
+    wish = recipe(tmp_path / "in")
+    steps = perform(wish, tmp_path, tmp_path / "out")
+    while not (isinstance(step := next(steps), Progress) and step.done == 1):
+        pass
+    steps.close()
+    (tmp_path / "in" / "2.stl").write_bytes((grains / "grain-5.stl").read_bytes() + b" ")
+    with pytest.raises(FileError, match="another set of input files"):
+        done(wish, tmp_path, tmp_path / "out", resume=True)
+
+
+def test_that_nothing_is_left_where_nothing_can_be_read(tmp_path: Path, grains: Path) -> None:
+    with pytest.raises(FileError, match=r"broken\.stl"):
+        done(recipe(grains / "broken.stl"), tmp_path, tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+def test_that_a_population_is_drawn_measured_coarsened_and_written(tmp_path: Path) -> None:
+    entries = {"inputs": [], "population": {"card": "ma165", "n": 4, "l_max": 6}, "target": "particle"}
+    wish = recipe_of(**{**BASE, **entries}, outputs={"fits": False, "summary": False})
+    found = done(wish, tmp_path, tmp_path / "out")
+    names = [entry["name"] for entry in json.loads((tmp_path / "out" / "descriptors.json").read_text())]
+    assert names == [f"ma165-{index:04d}" for index in range(4)]
+    assert validate_dataset(tmp_path / "out" / "dataset") == []
+    longer = recipe_of(**{**wish.model_dump(), "population": {"card": "ma165", "n": 6, "l_max": 6}})
+    more = done(longer, tmp_path, tmp_path / "more")
+    same = {name: digest for name, digest in digests(found.folder).items() if name.startswith("meshes/ma")}
+    assert len(same) == 4
+    assert same.items() <= digests(more.folder).items()
+
+
+def test_that_an_unknown_card_is_an_error_before_any_work(tmp_path: Path) -> None:
+    wish = recipe_of(inputs=[], population={"card": "cheese", "n": 4})
+    with pytest.raises(InputError, match=r"no material card 'cheese'"):
+        done(wish, tmp_path, tmp_path / "out")
+    assert not (tmp_path / "out").exists()
