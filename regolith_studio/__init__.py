@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from regolith_studio.coarsening.coarsen import coarsen
     from regolith_studio.dataset.build import build_dataset
     from regolith_studio.dataset.folder import read_dataset
+    from regolith_studio.dem.repose import measure_repose
     from regolith_studio.descriptors.describe import describe
     from regolith_studio.harmonics.fit import fit_harmonics
     from regolith_studio.model.models.gaussian_field import GaussianFieldModel as GaussianRadiusModel
@@ -31,6 +32,7 @@ __all__ = [
     "coarsen",
     "describe",
     "fit_harmonics",
+    "measure_repose",
     "read_dataset",
     "read_mesh",
 ]
@@ -41,6 +43,7 @@ _DOORS = {
     "coarsen": "coarsening.coarsen:coarsen",
     "describe": "descriptors.describe:describe",
     "fit_harmonics": "harmonics.fit:fit_harmonics",
+    "measure_repose": "dem.repose:measure_repose",
     "read_dataset": "dataset.folder:read_dataset",
     "read_mesh": "readers.registry:read_mesh",
 }

@@ -21,6 +21,29 @@ assert pyshtools.backends.preferred_backend() in ("shtools", "ducc0")
 """
 
 
+THREADS = """
+from concurrent.futures import ThreadPoolExecutor
+import numpy as np
+from regolith_studio.harmonics.coefficients import ShCoefficients
+from regolith_studio.harmonics.transform import evaluate_on_grid, expand, ray_grid
+
+kept = ShCoefficients(np.random.default_rng(0).normal(size=21**2))
+grids = [ray_grid(degree, kind) for kind in ("glq", "dh2") for degree in (20, 24, 31)]
+def there_and_back(grid):
+    return expand(grid, evaluate_on_grid(grid, kept), 20).values
+wanted = [there_and_back(grid) for grid in grids]
+with ThreadPoolExecutor(4) as pool:
+    found = list(pool.map(there_and_back, grids * 100))
+for k, values in enumerate(found):
+    np.testing.assert_array_equal(values, wanted[k % len(grids)])
+"""
+
+
+def test_that_four_threads_get_what_one_gets_and_nothing_crashes() -> None:
+    """In its own process: what this looks for kills the one that it happens in."""
+    subprocess.run([sys.executable, "-c", THREADS], check=True, timeout=120)
+
+
 def test_that_only_the_fortran_is_loaded_and_the_package_can_still_be_imported() -> None:
     subprocess.run([sys.executable, "-W", "ignore", "-c", ALONE], check=True, timeout=120)
 
