@@ -6,6 +6,7 @@ input ends. It kills itself when a request takes too long, so that it cannot out
 
 import contextlib
 import hashlib
+import importlib
 import logging
 import os
 import signal
@@ -44,13 +45,12 @@ def sleep(_request: dict[str, Any]) -> Message:
     return Message({})
 
 
-def volume_task(name: str) -> Task:
-    """A function of ``volume_task``, imported when it is first asked for."""
+def later(module: str, name: str) -> Task:
+    """A function of a module of this package, imported when it is first asked for."""
 
     def run(request: dict[str, Any]) -> Message:
-        from regolith_studio.readers import volume_task as tasks
-
         logging.disable(logging.CRITICAL)
+        tasks = importlib.import_module(f"regolith_studio.readers.{module}")
         return cast(Task, getattr(tasks, name))(request)
 
     return run
@@ -58,9 +58,11 @@ def volume_task(name: str) -> Task:
 
 TASKS: dict[str, Task] = {
     "mesh": read_mesh_file,
-    "volume-prepare": volume_task("prepare_volume"),
-    "volume-open": volume_task("open_volume"),
-    "volume-slices": volume_task("read_slices"),
+    "volume-prepare": later("volume_task", "prepare_volume"),
+    "volume-open": later("volume_task", "open_volume"),
+    "volume-slices": later("volume_task", "read_slices"),
+    "positions": later("position_task", "read_positions_file"),
+    "numbers": later("position_task", "read_number_rows"),
     "sleep": sleep,
 }
 """What the child can be asked for; another kind of file is another row."""

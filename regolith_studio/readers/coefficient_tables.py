@@ -1,0 +1,116 @@
+"""Files of spherical-harmonics coefficients as other programs print them."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+
+from regolith_studio.errors import FileError, InputError
+from regolith_studio.geometry.particle import Source
+from regolith_studio.harmonics.coefficient_tables import from_complex_rows, from_shtools_rows
+from regolith_studio.harmonics.coefficients import ShCoefficients
+from regolith_studio.readers.guard import Guard, shared_guard
+from regolith_studio.readers.hashing import sha256_of
+from regolith_studio.readers.sentences import sentence_about
+from regolith_studio.readers.units import unit_factor
+
+__all__ = ["CoefficientFile", "TableConvention", "read_coefficients"]
+
+TableConvention = Literal["auto", "complex", "shtools-4pi", "shtools-ortho"]
+
+_HEADER_LINES = 2
+"""SHTOOLS' files may begin with two."""
+_GUESSED = (
+    "Taken for a table of SHTOOLS in its usual normalisation (4 pi), since commas separate its columns."
+)
+
+
+@dataclass(frozen=True)
+class CoefficientFile:
+    """One particle's coefficients in micrometres, and where they come from."""
+
+    name: str
+    coefficients: ShCoefficients
+    source: Source
+    notes: tuple[str, ...] = ()
+
+
+def read_coefficients(
+    path: str | Path,
+    unit: str = "um",
+    *,
+    convention: TableConvention = "auto",
+    guard: Guard | None = None,
+) -> CoefficientFile:
+    """The radius function of one particle, from rows ``l m Re Im`` or ``l, m, C, S``.
+
+    Parameters
+    ----------
+    path
+        Text with four columns; more are passed over (SHTOOLS adds errors).
+    unit
+        Unit of the radius.
+    convention
+        ``complex``: orthonormal complex harmonics with the Condon-Shortley phase, as the particle
+        tables of NIST lineage have them. ``shtools-4pi``, ``shtools-ortho``: real ones without the
+        phase. ``auto``: complex if there are rows of m < 0, SHTOOLS with 4 pi if commas separate.
+
+    Raises
+    ------
+    FileError
+        With one sentence if the file is no such table, rows are missing or not finite, or its
+        convention cannot be told.
+    InputError
+        If there is no such unit.
+    """
+    factor = unit_factor(unit)
+    path = Path(path)
+    answer = (guard or shared_guard()).request("numbers", path, headers=_HEADER_LINES)
+    rows = answer.arrays[0]
+    try:
+        if rows.shape[1] < 4:
+            raise InputError(f"has {rows.shape[1]} columns; a table of coefficients has four: l m Re Im.")
+        notes: tuple[str, ...] = ()
+        if convention == "auto":
+            convention = _convention(rows, bool(answer.header["commas"]))
+            notes = (_GUESSED,) if convention != "complex" else ()
+        coefficients = _coefficients(_without_header(rows[:, :4]), convention)
+        if not coefficients.values[0] > 0.0:
+            raise InputError("has no positive mean radius: its row l = 0, m = 0 is missing or not positive.")
+    except InputError as error:
+        raise FileError(sentence_about(path, _as_predicate(str(error)))) from None
+    source = Source(str(path), sha256_of(path), unit)
+    return CoefficientFile(path.stem, coefficients.scaled(factor), source, notes)
+
+
+def _convention(rows: np.ndarray, commas: bool) -> TableConvention:
+    if (rows[:, 1] < 0).any():
+        return "complex"
+    if commas:
+        return "shtools-4pi"
+    raise InputError("does not show its convention: it has no rows of m < 0; say complex or shtools.")
+
+
+def _coefficients(rows: np.ndarray, convention: TableConvention) -> ShCoefficients:
+    if convention == "complex":
+        return from_complex_rows(rows)
+    if convention in ("shtools-4pi", "shtools-ortho"):
+        return from_shtools_rows(rows, convention.removeprefix("shtools-"))
+    raise InputError(f"cannot be read in the convention “{convention}”, which is not known.")
+
+
+def _without_header(rows: np.ndarray) -> np.ndarray:
+    """SHTOOLS' header lines are numbers too: reference radius, constants, degrees."""
+    for _ in range(_HEADER_LINES):
+        degree, order = rows[0, :2]
+        if len(rows) > 1 and np.isfinite(rows[0]).all() and (degree % 1 or order % 1 or abs(order) > degree):
+            rows = rows[1:]
+    return rows
+
+
+def _as_predicate(sentence: str) -> str:
+    """What the tables' own checks say, behind the file's name."""
+    if sentence.startswith(("has ", "does ", "cannot ")):
+        return sentence
+    return f"is no proper table of coefficients: {sentence[0].lower()}{sentence[1:]}"

@@ -1,0 +1,119 @@
+"""Rows of numbers in text, however they are separated; runs in the guarded child process only."""
+
+import re
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from regolith_studio.errors import FileError
+from regolith_studio.readers.sentences import printable
+
+COMMENTS = (b"#", b"%", b"!", b"//")
+MOST_COLUMNS = 1000
+_NUMBER = re.compile(rb"[+-]?(\d|\.\d|nan|inf)", re.IGNORECASE)
+
+
+@dataclass(frozen=True)
+class NumberRows:
+    """A table of text.
+
+    Parameters
+    ----------
+    names
+        The column names of its header line; empty where there is none.
+    numbers
+        Shape (n, columns), float64; whatever is not finite is kept.
+    """
+
+    names: tuple[str, ...]
+    numbers: NDArray[np.float64]
+
+
+def number_rows(data: bytes, skip_headers: int = 1, numeric_headers: int = 0) -> NumberRows:
+    """The rows of a text of numbers with at most `skip_headers` lines of words before them.
+
+    Up to `numeric_headers` first rows of numbers may have another number of columns; they are passed over.
+
+    Spaces, tabs, commas and semicolons separate; where semicolons do, a comma is a decimal comma.
+    Lines that begin with ``#``, ``%``, ``!`` or ``//`` are comments, the last of which may name the columns.
+
+    Raises
+    ------
+    FileError
+        With the second half of a sentence that names the first line that is no row of numbers.
+    """
+    if b"\0" in data[:4096]:
+        raise FileError("is no text of numbers: it holds zero bytes.")
+    header: bytes = b""
+    comment: bytes = b""
+    words: list[list[bytes]] = []
+    width = headers = 0
+    decimal_comma = False
+    for number, raw in enumerate(data.splitlines(), start=1):
+        line = raw.strip()
+        if not line:
+            continue
+        if line.startswith(COMMENTS):
+            comment = line if not words else comment
+            continue
+        if not words and not _NUMBER.match(line):
+            headers += 1
+            header = line
+            if headers > skip_headers:
+                raise FileError(f"is no table of numbers: line {number:,} begins with “{_shown(line)}”.")
+            continue
+        if not words:
+            decimal_comma = b";" in line and b"," in line
+        row = _row(line, decimal_comma)
+        width = width or len(row)
+        if len(row) != width and len(words) <= numeric_headers:
+            words, width = [], len(row)
+        if len(row) != width:
+            raise FileError(f"has {len(row)} columns in line {number:,} and {width} in the first row.")
+        words.append(row)
+    if not words:
+        raise FileError("holds no row of numbers.")
+    if width > MOST_COLUMNS:
+        raise FileError(f"has {width:,} columns; no table here has so many.")
+    return NumberRows(_names(header or comment.lstrip(b"#%!/"), width), _numbers(words, data))
+
+
+def _row(line: bytes, decimal_comma: bool) -> list[bytes]:
+    if decimal_comma:
+        return [word.strip() for word in line.replace(b",", b".").rstrip(b";").split(b";")]
+    if b"," in line or b";" in line:
+        separator = b";" if b";" in line else b","
+        return [word.strip() for word in line.removesuffix(separator).split(separator)]
+    return line.split()
+
+
+def _numbers(words: list[list[bytes]], data: bytes) -> NDArray[np.float64]:
+    try:
+        return np.array([list(map(float, row)) for row in words])
+    except ValueError:
+        pass
+    for row, each in enumerate(words):
+        for column, word in enumerate(each, start=1):
+            try:
+                float(word)
+            except ValueError:
+                raise FileError(
+                    f"has “{_shown(word)}” where a number belongs, in row {row + 1:,}, column {column}"
+                    f"{' (write decimal points, not commas)' if b',' in data else ''}."
+                ) from None
+    raise FileError("is no table of numbers.")
+
+
+def _names(line: bytes, width: int) -> tuple[str, ...]:
+    """The header's words as names, if there are as many as columns."""
+    text = printable(line.decode("utf-8", "replace")).strip()
+    for separator in (",", ";", "\t", None):
+        if separator is None or separator in text:
+            names = tuple(word.strip().strip("\"'") for word in text.split(separator))
+            return names if len(names) == width else ()
+    return ()
+
+
+def _shown(word: bytes) -> str:
+    return printable(word[:24].decode("utf-8", "replace"))
