@@ -1,4 +1,4 @@
-"""``dataset``: build, validate."""
+"""``dataset``: build, validate, sample, export, formats."""
 
 from pathlib import Path
 from typing import Annotated
@@ -20,7 +20,11 @@ from regolith_studio.cli.options import (
     Target,
     Unit,
     Weights,
+    as_bad_use,
+    values,
 )
+
+DatasetFolder = Annotated[Path, typer.Argument(metavar="FOLDER", help="A dataset folder.")]
 
 app = typer.Typer(
     help="Datasets for DEM programs (section 2.5).", no_args_is_help=True, rich_markup_mode=None
@@ -68,7 +72,7 @@ def build(
 
 @app.command("validate")
 def validate(
-    folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="A dataset folder.")],
+    folder: DatasetFolder,
     json: Json = False,
     jobs: Jobs = 1,
     seed: Seed = 0,
@@ -84,3 +88,105 @@ def validate(
     else:
         typer.echo("\n".join(problems) or f"{folder} is a sound dataset.")
     raise typer.Exit(1 if problems else 0)
+
+
+@app.command("sample")
+def sample(
+    folder: DatasetFolder,
+    count: Annotated[int, typer.Option("--number", "-n", min=0, help="Particles to draw.", metavar="N")],
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", help="CSV file; the terminal if left out.", metavar="FILE"),
+    ] = None,
+    json: Json = False,
+    jobs: Jobs = 1,
+    seed: Seed = 0,
+) -> None:
+    """Draw particles: class, equivalent diameter and orientation, the same for the same seed."""
+    from regolith_studio.cli.terminal import print_json
+    from regolith_studio.dataset.folder import read_dataset
+    from regolith_studio.dataset.sample import drawn_csv, drawn_rows, sample_dataset
+    from regolith_studio.session.outputs.staging import write_bytes
+
+    del jobs  # taken by every command
+    dataset = read_dataset(folder)
+    drawn = sample_dataset(dataset, count, seed)
+    if output is not None:
+        write_bytes(output, drawn_csv(dataset, drawn))
+    if json:
+        print_json(drawn_rows(dataset, drawn))
+    elif output is None:
+        typer.echo(drawn_csv(dataset, drawn).decode("utf-8"), nl=False)
+    else:
+        typer.echo(f"{count} particles in {output}")
+
+
+@app.command("formats")
+def formats(json: Json = False, jobs: Jobs = 1, seed: Seed = 0) -> None:
+    """List the formats of exports, with what each carries and loses."""
+    from regolith_studio.cli.terminal import print_json
+    from regolith_studio.dataset.exporters import EXPORTERS
+
+    del jobs, seed  # taken by every command
+    if json:
+        names = ("key", "label", "units", "carries", "loses", "alters", "load_command")
+        print_json([{name: getattr(each, name) for name in names} for each in EXPORTERS.values()])
+        return
+    for each in EXPORTERS.values():
+        changed = f"\n  shapes are changed: {each.alters} Needs --lossy." if each.alters else ""
+        typer.echo(
+            f"{each.key}: {each.label}\n  units: {each.units}\n  carries: {'; '.join(each.carries)}"
+            f"\n  loses: {'; '.join(each.loses)}{changed}"
+        )
+
+
+@app.command("export")
+def export(
+    folder: DatasetFolder,
+    output: Folder,
+    to: Annotated[
+        str, typer.Option("--to", help="Formats: rocky,yade,... or all; see dataset formats.", metavar="LIST")
+    ],
+    coarse_graining: Annotated[
+        float,
+        typer.Option("--coarse-graining", help="Enlarges all particles; the paper has 10.", metavar="F"),
+    ] = 10.0,
+    particles: Annotated[
+        int, typer.Option("--particles", help="Bodies in formats that list single ones.", metavar="N")
+    ] = 200,
+    set_: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set", help="Contact, cylinder or format: density, total_mass, ...", metavar="KEY=VALUE"
+        ),
+    ] = None,
+    lossy: Annotated[bool, typer.Option("--lossy", help="Allow formats that change the shapes.")] = False,
+    json: Json = False,
+    jobs: Jobs = 1,
+    seed: Seed = 0,
+) -> None:
+    """Write a dataset for DEM programs, one folder a format; what a format loses is said."""
+    from regolith_studio.cli.terminal import complain, follow, print_json
+    from regolith_studio.dataset.exporting import ExportOptions
+    from regolith_studio.jobs.exporting import chosen_exporters, export_dataset_folder
+
+    del jobs  # taken by every command
+    with as_bad_use():
+        chosen = chosen_exporters([key.strip() for key in to.split(",") if key.strip()])
+        changes: dict[str, object] = dict(values(set_, "setting"))
+        settings = ExportOptions(coarse_graining_factor=coarse_graining, n_particles=particles, seed=seed)
+        settings = settings.replaced(**changes)
+    keys = [each.key for each in chosen]
+    done = follow(export_dataset_folder(folder, keys, output, settings, lossy))
+    for each in chosen:
+        complain(f"{each.label} does not carry: {lost}." for lost in each.loses)
+    if json:
+        print_json(
+            [
+                {"key": one.key, "folder": str(one.folder), "files": one.files, "load": one.load_command}
+                for one in done
+            ]
+        )
+    else:
+        for one in done:
+            typer.echo(f"{one.key}: {one.folder}\n  {one.load_command}")

@@ -163,8 +163,7 @@ def write_export(
         something cannot be written.
     """
     chosen, target = options or ExportOptions(), Path(folder).resolve()
-    if exporter.alters and not accept_loss:
-        raise DatasetError(f"{exporter.label} cannot hold the shapes as they are: {exporter.alters}")
+    check_consent(exporter, accept_loss)
     try:
         recovered(target)
         _check_replaceable(target)
@@ -175,6 +174,21 @@ def write_export(
             f"The export could not be written to {target}: {error.strerror or error}."
         ) from error
     return Exported(exporter.key, target, tuple(sorted(content)), exporter.load_command.format(folder=target))
+
+
+def check_consent(exporter: Exporter, accept_loss: bool) -> None:
+    """Refuse a format that changes shapes, saying how, unless that was accepted.
+
+    Raises
+    ------
+    DatasetError
+        If it does and was not.
+    """
+    if exporter.alters and not accept_loss:
+        raise DatasetError(
+            f"{exporter.label} cannot hold the shapes as they are: {exporter.alters} "
+            "Allow it if that is what you want."
+        )
 
 
 def _with_words(

@@ -6,8 +6,12 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from regolith_studio.dataset.dataset import Dataset
+from regolith_studio.dataset.export_tables import csv_bytes
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
+
+COLUMNS = ("class", "name", "diameter_um", "scale_um", "qw", "qx", "qy", "qz")
+"""Of the table of drawn particles; `scale_um` is the factor from the unit-volume shape."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,3 +70,17 @@ def random_quaternions(n: int, generator: np.random.Generator) -> FloatArray:
 def rotation_matrices(quaternions: FloatArray) -> FloatArray:
     """Rotation matrices of unit quaternions (w, x, y, z), shape (n, 3, 3); columns are the turned axes."""
     return np.asarray(Rotation.from_quat(quaternions[:, [1, 2, 3, 0]]).as_matrix())
+
+
+def drawn_rows(dataset: Dataset, drawn: DrawnParticles) -> list[dict[str, object]]:
+    """One record a particle: class, name, diameter and scale in micrometres, quaternion."""
+    table = np.column_stack([drawn.diameter, drawn.scale, drawn.orientation]).tolist()
+    return [
+        dict(zip(COLUMNS, (which, dataset.representatives[which].name, *row), strict=True))
+        for which, row in zip(drawn.class_index.tolist(), table, strict=True)
+    ]
+
+
+def drawn_csv(dataset: Dataset, drawn: DrawnParticles) -> bytes:
+    """The same as comma-separated values."""
+    return csv_bytes(COLUMNS, (tuple(row.values()) for row in drawn_rows(dataset, drawn)))

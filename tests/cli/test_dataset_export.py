@@ -1,0 +1,115 @@
+"""``dataset sample``, ``export`` and ``formats``."""
+
+import csv
+import io
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from regolith_studio.dataset.exporters import EXPORTERS
+from regolith_studio.dataset.folder import read_dataset
+from regolith_studio.dataset.reading import dataset_hash
+
+
+@pytest.fixture
+def folder(command, grains: Path, tmp_path: Path) -> Path:
+    assert command("dataset", "build", grains, "-o", tmp_path / "set", "--method", "quadric").code == 0
+    return tmp_path / "set"
+
+
+def test_that_a_sample_is_a_table_and_the_same_for_the_same_seed(
+    command, folder: Path, tmp_path: Path
+) -> None:
+    said = command("dataset", "sample", folder, "-n", 500, "--seed", 4)
+    assert said.code == 0
+    rows = list(csv.DictReader(io.StringIO(said.out)))
+    assert len(rows) == 500
+    assert {row["name"] for row in rows} == {"grain-a", "grain-b", "grain-c"}
+    sizes = {one.name: float(one.sizes.quantile(0.5)) for one in read_dataset(folder).representatives}
+    for row in rows:
+        assert float(row["diameter_um"]) == sizes[row["name"]]
+        assert np.linalg.norm([float(row[key]) for key in ("qw", "qx", "qy", "qz")]) == pytest.approx(1.0)
+    again = command("dataset", "sample", folder, "-n", 500, "--seed", 4, "-o", tmp_path / "drawn.csv")
+    assert again.code == 0
+    assert (tmp_path / "drawn.csv").read_text() == said.out
+    assert command("dataset", "sample", folder, "-n", 500, "--seed", 5).out != said.out
+    assert command("dataset", "sample", folder, "-n", 2, "--json").json[0]["class"] in (0, 1, 2)
+
+
+def test_that_an_export_leaves_one_folder_a_format_that_names_the_dataset(
+    command, folder: Path, tmp_path: Path
+) -> None:
+    said = command("dataset", "export", folder, "--to", "rocky, hoomd", "-o", tmp_path / "out", "--json")
+    assert said.code == 0
+    assert [one["key"] for one in said.json] == ["rocky", "hoomd"]
+    for one in said.json:
+        record = json.loads((Path(one["folder"]) / "export.json").read_text())
+        assert record["dataset_sha256"] == dataset_hash(folder)
+        assert set(one["files"]) == {
+            path.relative_to(one["folder"]).as_posix() for path in files(one["folder"])
+        }
+    assert all(lost in said.err for lost in EXPORTERS["hoomd"].loses)
+
+
+def test_that_all_formats_are_written_when_changed_shapes_are_allowed(
+    command, folder: Path, tmp_path: Path
+) -> None:
+    asked = ("dataset", "export", folder, "--to", "all", "-o", tmp_path / "out", "--particles", 8)
+    refused = command(*asked)
+    assert refused.code == 1
+    assert "cannot hold the shapes as they are" in refused.err
+    assert not (tmp_path / "out").exists()
+    assert command(*asked, "--lossy").code == 0
+    assert {path.name for path in (tmp_path / "out").iterdir()} == set(EXPORTERS)
+
+
+def test_that_settings_reach_the_files(command, folder: Path, tmp_path: Path) -> None:
+    said = command(
+        "dataset", "export", folder, "--to", "rocky", "-o", tmp_path / "out",
+        "--coarse-graining", 5, "--set", "density=2900", "--set", "total_mass=0.01",
+    )  # fmt: skip
+    assert said.code == 0
+    case = json.loads((tmp_path / "out" / "rocky" / "case.json").read_text())
+    assert case["coarse_graining_factor"] == 5.0
+    assert case["contact"]["density"] == 2900
+    assert sum(one["mass"] for one in case["particles"]) == pytest.approx(0.01)
+
+
+@pytest.mark.parametrize(
+    ("extra", "code", "word"),
+    [
+        (("--to", "fluent"), 2, "There is no format 'fluent'"),
+        (("--to", ","), 2, "No format was chosen"),
+        (("--to", "rocky", "--set", "colour=1"), 2, "no setting 'colour'"),
+        (("--to", "rocky", "--coarse-graining", "0"), 2, "must be positive"),
+    ],
+)
+def test_that_bad_use_is_told_in_a_sentence(command, folder: Path, tmp_path: Path, extra, code, word) -> None:
+    said = command("dataset", "export", folder, "-o", tmp_path / "out", *extra)
+    assert said.code == code
+    assert word in " ".join(said.err.replace("│", " ").split())
+    assert not (tmp_path / "out").exists()
+
+
+def test_that_a_folder_without_a_dataset_is_one_sentence(command, tmp_path: Path) -> None:
+    for action in (
+        ("export", tmp_path, "--to", "rocky", "-o", tmp_path / "out"),
+        ("sample", tmp_path, "-n", 3),
+    ):
+        said = command("dataset", *action)
+        assert said.code == 1
+        assert len(said.err.strip().splitlines()) == 1
+
+
+def test_that_formats_are_listed_with_what_they_lose(command) -> None:
+    said = command("dataset", "formats")
+    assert said.code == 0
+    for exporter in EXPORTERS.values():
+        assert all(text in said.out for text in (exporter.label, *exporter.carries, *exporter.loses))
+    assert [one["key"] for one in command("dataset", "formats", "--json").json] == list(EXPORTERS)
+
+
+def files(folder: str) -> list[Path]:
+    return [path for path in Path(folder).rglob("*") if path.is_file()]
