@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from regolith_studio.cli.options import Json, Settings, as_bad_use, values
+from regolith_studio.cli.options import Folder, Json, Seed, Settings, as_bad_use, values
 
 if TYPE_CHECKING:
     from regolith_studio.dem.evaluation.settings import EvaluationSettings
@@ -24,6 +24,88 @@ PositionUnit = Annotated[
 Diameter = Annotated[
     float, typer.Option("--diameter", help="Of all particles, where the file has none.", metavar="D")
 ]
+
+
+@app.command("run")
+def run(
+    dataset: Annotated[Path, typer.Argument(metavar="DATASET", help="A dataset folder.")],
+    output: Folder,
+    particles: Annotated[
+        int, typer.Option("--particles", "-n", help="Simulated particles.", metavar="N")
+    ] = 300,
+    engine: Annotated[
+        str, typer.Option("--engine", help="See the command engines.", metavar="KEY")
+    ] = "mujoco",
+    contact: Annotated[
+        list[str] | None, typer.Option("--contact", help="One value of Table 1, in SI.", metavar="KEY=VALUE")
+    ] = None,
+    test: Annotated[
+        list[str] | None, typer.Option("--test", help="One value of Table 2, in SI.", metavar="KEY=VALUE")
+    ] = None,
+    set_: Settings = None,
+    measure_set: Annotated[
+        list[str] | None,
+        typer.Option("--measure", help="One setting of the evaluation.", metavar="KEY=VALUE"),
+    ] = None,
+    coarse_graining: Annotated[
+        float,
+        typer.Option(
+            "--coarse-graining", help="Factor on sizes; by itself, what the mass asks.", metavar="F"
+        ),
+    ] = 0.0,
+    spheres: Annotated[bool, typer.Option("--spheres", help="Balls instead of the polyhedra.")] = False,
+    cohesion: Annotated[str, typer.Option("--cohesion", help="none, given or scaled.", metavar="C")] = "none",
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace an earlier run.")] = False,
+    json: Json = False,
+    seed: Seed = 0,
+) -> None:
+    """Simulate the lifting cylinder with particles of a dataset and measure the pile (section 2.6)."""
+    from regolith_studio.cli.terminal import complain, follow, print_json
+    from regolith_studio.dem.case import ReposeCase
+    from regolith_studio.dem.engines import engine_named
+    from regolith_studio.dem.parameters import ContactParameters, LiftingCylinderTest
+    from regolith_studio.jobs.repose import ReposeOrder, simulate_repose
+
+    with as_bad_use():
+        code = engine_named(engine)
+        case = ReposeCase(
+            test=filled(LiftingCylinderTest, values(test, "value"), "value of the test"),
+            contact=filled(ContactParameters, values(contact, "value"), "contact parameter"),
+            n_particles=particles,
+            coarse_graining=coarse_graining,
+            shapes="spheres" if spheres else "polyhedra",
+            cohesion=cohesion,  # type: ignore[arg-type]  # checked there
+            seed=seed,
+        )
+    order = ReposeOrder(
+        case,
+        engine,
+        filled(code.Settings, values(set_, "setting"), f"setting of {code.label}"),
+        evaluation_settings(measure_set),
+        overwrite,
+    )
+    done = follow(simulate_repose(dataset, output, order))
+    complain(run_remarks(done.document))
+    if json:
+        print_json(done.document)
+    else:
+        typer.echo(run_in_words(done.document))
+
+
+@app.command("engines")
+def engines(json: Json = False) -> None:
+    """What each engine represents of the paper's contact model, and whether it is here."""
+    from regolith_studio.cli.terminal import print_json
+    from regolith_studio.dem.engine_table import HEADINGS, engine_rows
+
+    rows = engine_rows()
+    if json:
+        print_json(rows)
+        return
+    for row in rows:
+        typer.echo(f"{row['label']} ({row['key']}, {row['licence']}): {row['version'] or row['problem']}")
+        for key, heading in HEADINGS.items():
+            typer.echo(f"  {heading.lower():17}{row[key]}")
 
 
 @app.command("measure")
@@ -118,4 +200,24 @@ def in_words(document: dict[str, Any]) -> str:
         f"the paper's sections asymmetric {paper['asymmetric']['mean_deg']:.1f}  "
         f"symmetric {paper['symmetric']['mean_deg']:.1f}"
     )
+    return "\n".join(lines)
+
+
+def run_remarks(document: dict[str, Any]) -> list[str]:
+    """Sentences about a run that its user should read."""
+    return [*document["particles"]["sentences"], *document["checks"]["problems"]]
+
+
+def run_in_words(document: dict[str, Any]) -> str:
+    """The result of a run in a few lines for a person."""
+    checks, measurement = document["checks"], document["measurement"]
+    angle = in_words(measurement) if measurement["status"] == "pile" else measurement["reason"]
+    lines = [
+        angle,
+        f"filled to            {100 * checks['fill_height']:.2f} cm, packed {checks['solid_fraction']:.2f}",
+        f"particles            {checks['particles_out']} of {checks['particles_in']}",
+        f"overlap at rest      {100 * checks['largest_overlap']:.2f} % of the mean diameter at most",
+        f"energy gained        {checks['energy_gain']:.1e} m g d a particle",
+        f"time                 {document['run']['seconds']:.0f} s",
+    ]
     return "\n".join(lines)

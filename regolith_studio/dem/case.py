@@ -1,0 +1,185 @@
+"""What is simulated: particles drawn from a dataset, coarse-grained to the mass of the test."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, Literal
+
+import numpy as np
+
+from regolith_studio.dataset.dataset import Dataset
+from regolith_studio.dataset.sample import sample_dataset
+from regolith_studio.dem.parameters import PAPER_COARSE_GRAINING, ContactParameters, LiftingCylinderTest
+from regolith_studio.errors import InputError
+from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats, locked_integers
+
+MICROMETRE = 1e-6
+NARROWEST = 3.0
+"""Mean particle diameters that the cylinder must be wide."""
+SOLID_FRACTION = 0.55
+"""Of a settled filling, for estimates before a run."""
+
+ShapeKind = Literal["polyhedra", "spheres"]
+CohesionKind = Literal["none", "given", "scaled"]
+
+
+@dataclass(frozen=True)
+class ReposeCase:
+    """What the user chooses.
+
+    Parameters
+    ----------
+    test, contact
+        Tables 2 and 1.
+    n_particles
+        Simulated particles.
+    coarse_graining
+        Factor on all diameters; 0 for the one with which `n_particles` have the mass of the test.
+    shapes
+        The polyhedra of the dataset, or balls of the same volumes for comparison.
+    cohesion
+        ``none``; the surface energy as ``given``; or ``scaled`` by the square of the coarse graining
+        (relative to the paper's factor 10), which keeps the ratio of cohesion to weight.
+    seed
+        Of sizes, shapes, places and orientations.
+
+    Raises
+    ------
+    InputError
+        If a number is out of its range.
+    """
+
+    test: LiftingCylinderTest = field(default_factory=LiftingCylinderTest)
+    contact: ContactParameters = field(default_factory=ContactParameters)
+    n_particles: int = 1000
+    coarse_graining: float = 0.0
+    shapes: ShapeKind = "polyhedra"
+    cohesion: CohesionKind = "none"
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        if not 10 <= self.n_particles <= 5_000_000:
+            raise InputError(
+                f"The number of particles must lie between 10 and 5,000,000, got {self.n_particles}."
+            )
+        if not 0.0 <= self.coarse_graining <= 1e5:
+            raise InputError(
+                f"The coarse graining must lie between 0 and 100,000, got {self.coarse_graining:g}."
+            )
+        if self.seed < 0:
+            raise InputError(f"The seed must not be negative, got {self.seed}.")
+        if self.shapes not in ("polyhedra", "spheres"):
+            raise InputError(f"Shapes are polyhedra or spheres, got {self.shapes!r}.")
+        if self.cohesion not in ("none", "given", "scaled"):
+            raise InputError(f"Cohesion is none, given or scaled, got {self.cohesion!r}.")
+
+
+@dataclass(frozen=True, eq=False)
+class Prepared:
+    """A case with its particles. SI units.
+
+    Parameters
+    ----------
+    case
+        As chosen.
+    shapes
+        Vertices of each unit-volume shape about its centroid, each of shape (k, 3).
+    class_index
+        Which shape each particle has, shape (n,).
+    diameters
+        Equivalent diameters after coarse graining, in metres, shape (n,).
+    coarse_graining
+        Factor that was applied.
+    dataset_name, dataset_hash
+        What the particles were drawn from; the hash is empty for a dataset that is not on disk.
+    """
+
+    case: ReposeCase
+    shapes: tuple[FloatArray, ...]
+    class_index: IntArray
+    diameters: FloatArray
+    coarse_graining: float
+    dataset_name: str = ""
+    dataset_hash: str = ""
+
+    def __post_init__(self) -> None:
+        n = len(self.diameters)
+        object.__setattr__(self, "diameters", locked_floats(self.diameters, (n,), "diameters"))
+        object.__setattr__(self, "class_index", locked_integers(self.class_index, (n,), "class_index"))
+        shapes = tuple(locked_floats(each, (None, 3), "shapes") for each in self.shapes)
+        object.__setattr__(self, "shapes", shapes)
+
+    def __reduce__(self) -> tuple[Callable[..., "Prepared"], tuple[Any, ...]]:
+        draws = (self.class_index, self.diameters, self.coarse_graining)
+        return Prepared, (self.case, self.shapes, *draws, self.dataset_name, self.dataset_hash)
+
+    def __len__(self) -> int:
+        return len(self.diameters)
+
+    @property
+    def mean_diameter(self) -> float:
+        """Of the simulated particles, in metres."""
+        return float(self.diameters.mean())
+
+    @cached_property
+    def mass(self) -> float:
+        """Of all particles, in kg."""
+        return float(self.case.contact.density * np.pi / 6 * (self.diameters**3).sum())
+
+    @property
+    def scales(self) -> FloatArray:
+        """Factor from the unit-volume shape to each particle, in metres, shape (n,)."""
+        return np.asarray(self.diameters * (np.pi / 6) ** (1 / 3))
+
+    @property
+    def fill_height(self) -> float:
+        """Expected height of the settled filling in metres."""
+        volume = self.mass / self.case.contact.density
+        return volume / SOLID_FRACTION / self.case.test.area
+
+    @property
+    def surface_energy(self) -> float:
+        """Simulated surface energy in J/m^2."""
+        given = self.case.contact.surface_energy
+        ratio = self.coarse_graining / PAPER_COARSE_GRAINING
+        return {"none": 0.0, "given": given, "scaled": given * ratio**2}[self.case.cohesion]
+
+
+def prepare(dataset: Dataset, case: ReposeCase, dataset_hash: str = "") -> Prepared:
+    """Draw the particles of a case.
+
+    Raises
+    ------
+    InputError
+        If the cylinder is too narrow or too low for them.
+    """
+    drawn = sample_dataset(dataset, case.n_particles, case.seed)
+    fine = drawn.diameter * MICROMETRE
+    mass = case.contact.density * np.pi / 6 * float((fine**3).sum())
+    factor = case.coarse_graining or (case.test.mass / mass) ** (1 / 3)
+    prepared = Prepared(
+        case=case,
+        shapes=tuple(each.shape.vertices for each in dataset.representatives),
+        class_index=drawn.class_index,
+        diameters=fine * factor,
+        coarse_graining=float(factor),
+        dataset_name=dataset.name,
+        dataset_hash=dataset_hash,
+    )
+    _check_room(prepared)
+    return prepared
+
+
+def _check_room(prepared: Prepared) -> None:
+    test, mean = prepared.case.test, prepared.mean_diameter
+    widest = float(prepared.diameters.max())
+    if test.diameter < max(NARROWEST * mean, 1.5 * widest):
+        raise InputError(
+            f"The cylinder is {1e3 * test.diameter:.3g} mm wide, but the particles are {1e3 * mean:.3g} mm "
+            f"in the mean and up to {1e3 * widest:.3g} mm; take more particles, less mass, a wider cylinder."
+        )
+    if prepared.fill_height > test.height:
+        raise InputError(
+            f"{1e3 * prepared.mass:.3g} g fill the cylinder to {1e2 * prepared.fill_height:.3g} cm, but it "
+            f"is only {1e2 * test.height:.3g} cm high."
+        )

@@ -1,0 +1,111 @@
+"""What the number of particles means: size, coarse graining, cohesion against weight, stiffness, time."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from regolith_studio.dem.case import Prepared
+from regolith_studio.dem.parameters import PAPER_COARSE_GRAINING, PAPER_FILL_HEIGHT
+
+
+@dataclass(frozen=True)
+class Consequences:
+    """Of a prepared case, before it runs. SI units.
+
+    Parameters
+    ----------
+    mean_diameter, coarse_graining
+        Of the simulated particles, and their size over the dataset's.
+    diameters_across
+        Mean diameters that the cylinder is wide; an experiment wants 20 or more.
+    fill_height
+        Expected, from mass and a packing of 55 %.
+    bond_number
+        Pull-off force of Johnson, Kendall and Roberts over weight, for two mean particles: of the
+        particles of the dataset, of the simulated particles with the given surface energy, and as simulated.
+    full_stiffness_steps
+        Steps a simulated second of a code that resolves the contacts at the given Young's modulus
+        (a fifth of Rayleigh's time of the smallest particle).
+    sentences
+        What a user should know.
+    """
+
+    mean_diameter: float
+    coarse_graining: float
+    diameters_across: float
+    fill_height: float
+    bond_number: tuple[float, float, float]
+    full_stiffness_steps: float
+    sentences: tuple[str, ...]
+
+
+def pull_off_force(surface_energy: float, diameter: float) -> float:
+    """3/2 pi w R* for two equal balls (R* = d/4), in N."""
+    return 1.5 * np.pi * surface_energy * diameter / 4
+
+
+def bond_number(surface_energy: float, diameter: float, density: float, gravity: float) -> float:
+    """Pull-off force of two equal balls over the weight of one."""
+    return pull_off_force(surface_energy, diameter) / (density * np.pi / 6 * diameter**3 * gravity)
+
+
+def rayleigh_time(diameter: float, density: float, youngs_modulus: float, poissons_ratio: float) -> float:
+    """Time of a surface wave around a ball, in s."""
+    shear = youngs_modulus / (2 * (1 + poissons_ratio))
+    return float(np.pi * diameter / 2 * np.sqrt(density / shear) / (0.1631 * poissons_ratio + 0.8766))
+
+
+def consequences(prepared: Prepared) -> Consequences:
+    """What this case stands for."""
+    test, contact = prepared.case.test, prepared.case.contact
+    mean, factor = prepared.mean_diameter, prepared.coarse_graining
+    real = mean / factor
+
+    def bond(energy: float, diameter: float) -> float:
+        return bond_number(energy, diameter, contact.density, test.gravity)
+
+    bonds = (
+        bond(contact.surface_energy, real),
+        bond(contact.surface_energy, mean),
+        bond(prepared.surface_energy, mean),
+    )
+    smallest = float(prepared.diameters.min())
+    rayleigh = rayleigh_time(smallest, contact.density, contact.youngs_modulus, contact.poissons_ratio)
+    return Consequences(
+        mean_diameter=mean,
+        coarse_graining=factor,
+        diameters_across=test.diameter / mean,
+        fill_height=prepared.fill_height,
+        bond_number=bonds,
+        full_stiffness_steps=1.0 / (0.2 * rayleigh),
+        sentences=tuple(_sentences(prepared, bonds)),
+    )
+
+
+def _sentences(prepared: Prepared, bonds: tuple[float, float, float]) -> list[str]:
+    test, mean, factor = prepared.case.test, prepared.mean_diameter, prepared.coarse_graining
+    said = [
+        f"{len(prepared):,} particles of {1e3 * mean:.2g} mm stand for {1e3 * test.mass:.3g} g: "
+        f"{factor:.0f} times the size of the dataset's (the paper: {PAPER_COARSE_GRAINING:.0f})."
+    ]
+    across = test.diameter / mean
+    if across < 20:
+        said.append(f"The cylinder is only {across:.1f} particles wide; walls and single grains matter.")
+    if len(prepared) < 500:
+        said.append(
+            "With fewer than 500 particles the angle is for teaching: expect 3 degrees from run to run."
+        )
+    low, high = PAPER_FILL_HEIGHT
+    if not 0.9 * low <= prepared.fill_height <= 1.1 * high:
+        said.append(
+            f"The filling will be about {100 * prepared.fill_height:.2g} cm high (the paper: 2.5 to 3 cm)."
+        )
+    real, given, simulated = bonds
+    if prepared.case.contact.surface_energy > 0.0:
+        said.append(
+            f"Cohesion over weight is {real:.2g} for the dataset's particles and {given:.2g} for the "
+            f"simulated ones at the given surface energy; this run has {simulated:.2g}."
+        )
+    if prepared.case.contact.static_friction != prepared.case.contact.dynamic_friction:
+        said.append("The constraint solver knows one coefficient of friction; it takes the static one.")
+    return said

@@ -1,0 +1,240 @@
+"""A lifting cylinder in MuJoCo: plate, 32 walls on a moving frame, free convex bodies.
+
+Inside, lengths are in mean diameters d, the density is 1 and gravity is 1; the unit of time is
+sqrt(d / g). Friction, shape and the ratio of cohesion to weight are free of units already.
+"""
+
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from regolith_studio.dem.case import Prepared
+from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
+from regolith_studio.geometry.arrays import FloatArray, IntArray
+
+N_WALLS = 32
+WALL_THICKNESS = 2.0
+PARTICLE, WALL, PLATE = 1, 2, 4
+"""Bits of contact: particles meet all, walls and plate only particles."""
+CONTACT_SOFTNESS = (0.95, 0.99, 0.05, 0.5, 2.0)
+HEADROOM = 1.02
+"""The particles' enclosing balls are so much larger at the start."""
+TRIES = 24
+"""Random seats that a particle chooses from."""
+SIGHT = 600
+"""Particles placed before that a new one can touch."""
+ADHESION_GAP = 0.01
+"""Distance over which cohesion acts, in mean diameters."""
+
+
+@dataclass(frozen=True, eq=False)
+class Units:
+    """From the solver's numbers to SI."""
+
+    length: float
+    time: float
+
+    @classmethod
+    def of(cls, prepared: Prepared) -> "Units":
+        """Mean diameter, and the time in which it is about fallen through."""
+        length = prepared.mean_diameter
+        return cls(length, float(np.sqrt(length / prepared.case.test.gravity)))
+
+    @property
+    def speed(self) -> float:
+        return self.length / self.time
+
+
+@dataclass(frozen=True, eq=False)
+class Built:
+    """A compiled model.
+
+    Parameters
+    ----------
+    model
+        MuJoCo's.
+    walls
+        Identifiers of the walls' geoms.
+    top
+        Height of the highest particle at the start.
+    """
+
+    model: mujoco.MjModel
+    walls: IntArray
+    top: float
+
+
+def build(prepared: Prepared, settings: MujocoSettings) -> Built:
+    """The model with its particles in a loose column above the plate, turned at random."""
+    units = Units.of(prepared)
+    spec = mujoco.MjSpec()
+    _set_options(spec, prepared, settings)
+    radius = prepared.case.test.diameter / 2 / units.length
+    sizes = prepared.scales / units.length
+    places, top = start_places(_reaches(prepared, sizes), radius, _generator(prepared, 0))
+    turns = Rotation.random(len(prepared), random_state=_generator(prepared, 1)).as_quat(scalar_first=True)
+    _add_plate(spec, prepared, settings)
+    _add_walls(spec, prepared, settings, radius, 1.1 * top + 2.0)
+    _add_particles(spec, prepared, settings, sizes, places, turns)
+    model = spec.compile()
+    walls = np.flatnonzero(model.geom_contype == WALL)
+    return Built(model, walls.astype(np.int64), top)
+
+
+def start_places(
+    reach: FloatArray, radius: float, generator: np.random.Generator
+) -> tuple[FloatArray, float]:
+    """Centres that keep the particles' enclosing balls apart; and the height of the highest ball's top.
+
+    Each ball sinks straight down in the cylinder at the best of a few random places until it would touch
+    another; so the column is loose, but not much taller than it need be.
+
+    Parameters
+    ----------
+    reach
+        Radius of each particle's enclosing ball, shape (n,).
+    radius
+        Of the cylinder.
+    """
+    wide = HEADROOM * reach
+    places = np.empty((len(reach), 3))
+    for k in range(len(reach)):
+        room = max(radius - wide[k], 0.0)
+        away, angle = room * np.sqrt(generator.random(TRIES)), generator.uniform(0.0, 2 * np.pi, TRIES)
+        seats = np.column_stack([away * np.cos(angle), away * np.sin(angle)])
+        near = slice(max(0, k - SIGHT), k)
+        heights = _resting_heights(seats, wide[k], places[near], wide[near])
+        best = int(heights.argmin())
+        places[k] = *seats[best], heights[best]
+    return places, float((places[:, 2] + wide).max())
+
+
+def _resting_heights(seats: FloatArray, size: float, others: FloatArray, sizes: FloatArray) -> FloatArray:
+    """Lowest height of a ball's centre at each seat, above the plate and on the other balls, shape (m,)."""
+    reach = sizes + size
+    aside = ((seats[:, None, :] - others[None, :, :2]) ** 2).sum(axis=2)
+    lift = np.sqrt(np.maximum(reach**2 - aside, 0.0))
+    touching = np.where(aside < reach**2, others[:, 2] + lift, size)
+    return np.asarray(np.maximum(touching.max(axis=1, initial=size), size))
+
+
+def _generator(prepared: Prepared, stream: int) -> np.random.Generator:
+    return np.random.default_rng(np.random.SeedSequence(prepared.case.seed, spawn_key=(2, stream)))
+
+
+def _reaches(prepared: Prepared, sizes: FloatArray) -> FloatArray:
+    """Radius of each particle's enclosing ball about its centre, shape (n,)."""
+    if prepared.case.shapes == "spheres":
+        return np.asarray(prepared.diameters / prepared.mean_diameter / 2)
+    furthest = np.array([np.linalg.norm(shape, axis=1).max() for shape in prepared.shapes])
+    return np.asarray(furthest[prepared.class_index] * sizes)
+
+
+def _set_options(spec: mujoco.MjSpec, prepared: Prepared, settings: MujocoSettings) -> None:
+    option = spec.option
+    option.timestep = settings.time_step
+    option.gravity = [0.0, 0.0, -1.0]
+    option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
+    option.solver = mujoco.mjtSolver.mjSOL_CG
+    option.iterations = settings.iterations
+    option.tolerance = settings.tolerance
+    option.jacobian = mujoco.mjtJacobian.mjJAC_SPARSE
+    option.enableflags |= int(mujoco.mjtEnableBit.mjENBL_ENERGY)
+    option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
+    if prepared.surface_energy > 0.0:
+        option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_MULTICCD)
+    spec.stat.extent = 10.0
+    spec.memory = -1
+
+
+def _contact(prepared: Prepared, settings: MujocoSettings, friction: float) -> dict[str, object]:
+    rolling = prepared.case.contact.rolling_friction / 2
+    return {
+        "friction": [friction, max(rolling, 1e-6), max(rolling, 1e-6)],
+        "condim": 6 if rolling > 0.0 else 3,
+        "solref": [settings.contact_steps * settings.time_step, 1.0],
+        "solimp": list(CONTACT_SOFTNESS),
+    }
+
+
+def _add_plate(spec: mujoco.MjSpec, prepared: Prepared, settings: MujocoSettings) -> None:
+    spec.worldbody.add_geom(
+        type=mujoco.mjtGeom.mjGEOM_PLANE,
+        size=[0.0, 0.0, 1.0],
+        contype=PLATE,
+        conaffinity=0,
+        priority=1,
+        **_contact(prepared, settings, prepared.case.test.plate_friction),
+    )
+
+
+def _add_walls(
+    spec: mujoco.MjSpec, prepared: Prepared, settings: MujocoSettings, radius: float, height: float
+) -> None:
+    frame = spec.worldbody.add_body(name="cylinder", mocap=True)
+    half_width = (radius + WALL_THICKNESS) * np.tan(np.pi / N_WALLS)
+    for k in range(N_WALLS):
+        angle = 2 * np.pi * k / N_WALLS
+        distance = radius + WALL_THICKNESS / 2
+        frame.add_geom(
+            type=mujoco.mjtGeom.mjGEOM_BOX,
+            size=[WALL_THICKNESS / 2, half_width, height / 2],
+            pos=[distance * np.cos(angle), distance * np.sin(angle), height / 2],
+            quat=[np.cos(angle / 2), 0.0, 0.0, np.sin(angle / 2)],
+            contype=WALL,
+            conaffinity=0,
+            priority=1,
+            density=0.0,
+            # a surface that never moves would be compiled away
+            surfacevel=[0.0, 0.0, prepared.case.test.lift_speed / Units.of(prepared).speed, 0.0, 0.0, 0.0],
+            **_contact(prepared, settings, prepared.case.test.wall_friction),
+        )
+
+
+def _add_particles(
+    spec: mujoco.MjSpec,
+    prepared: Prepared,
+    settings: MujocoSettings,
+    sizes: FloatArray,
+    places: FloatArray,
+    turns: FloatArray,
+) -> None:
+    contact = _contact(prepared, settings, prepared.case.contact.static_friction)
+    pull = adhesion(prepared)
+    names: dict[tuple[int, float], str] = {}
+    for k in range(len(prepared)):
+        kind, size = int(prepared.class_index[k]), float(sizes[k])
+        if prepared.case.shapes == "spheres":
+            form = {"type": mujoco.mjtGeom.mjGEOM_SPHERE, "size": [size / (np.pi / 6) ** (1 / 3) / 2, 0, 0]}
+        else:
+            name = names.get((kind, size))
+            if name is None:
+                name = names[kind, size] = f"shape{len(names)}"
+                vertices = (prepared.shapes[kind] * size).ravel()
+                spec.add_mesh(
+                    name=name, uservert=vertices, inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_CONVEX
+                )
+            form = {"type": mujoco.mjtGeom.mjGEOM_MESH, "meshname": name}
+        body = spec.worldbody.add_body(pos=places[k], quat=turns[k])
+        body.add_freejoint()
+        body.add_geom(
+            density=1.0,
+            contype=PARTICLE,
+            conaffinity=PARTICLE | WALL | PLATE,
+            gap=ADHESION_GAP if pull.any() else 0.0,
+            adhesion=float(pull[k]),
+            **form,
+            **contact,
+        )
+
+
+def adhesion(prepared: Prepared) -> FloatArray:
+    """Each particle's share of the pull-off force 3/2 pi w R*, in the solver's unit of force, shape (n,).
+
+    The shares of two particles add up to the force exactly if they are equally large (R* = d/4).
+    """
+    test, contact = prepared.case.test, prepared.case.contact
+    force = contact.density * prepared.mean_diameter**3 * test.gravity
+    return np.asarray(0.5 * 1.5 * np.pi * prepared.surface_energy * prepared.diameters / 4 / force)

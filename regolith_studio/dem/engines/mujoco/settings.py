@@ -1,0 +1,64 @@
+"""Settings of the MuJoCo engine; in its own units, where the mean diameter and gravity are 1."""
+
+from dataclasses import dataclass, field, fields
+
+from regolith_studio.errors import InputError
+
+
+@dataclass(frozen=True)
+class MujocoSettings:
+    """Numerics of the constraint solver; times in sqrt(d/g).
+
+    Parameters
+    ----------
+    time_step
+        Of the integration.
+    contact_steps
+        Time constant of a contact in time steps: how soft the constraints are.
+    iterations, tolerance
+        Of the conjugate-gradient solver.
+    fastest
+        Speed limit while the cylinder is being filled, in sqrt(g d).
+    calm
+        Mean kinetic energy of a particle, in units of its weight times d, below which a heap is at rest.
+    calm_time
+        How long it must stay so.
+    longest_rest
+        When waiting for rest ends.
+    snapshots
+        Pictures of a run.
+
+    Raises
+    ------
+    InputError
+        If a value is out of its range.
+    """
+
+    time_step: float = field(
+        default=0.02, metadata={"label": "Time step", "minimum": 1e-4, "maximum": 0.1, "decimals": 4}
+    )
+    contact_steps: float = field(
+        default=2.5, metadata={"label": "Contact time in steps", "minimum": 2.0, "maximum": 20.0}
+    )
+    iterations: int = field(default=50, metadata={"label": "Iterations", "minimum": 1, "maximum": 1000})
+    tolerance: float = field(
+        default=1e-5, metadata={"label": "Tolerance", "minimum": 1e-12, "maximum": 1e-2, "decimals": 12}
+    )
+    fastest: float = field(default=6.0, metadata={"label": "Filling speed", "minimum": 0.1, "maximum": 100.0})
+    calm: float = field(
+        default=2e-4, metadata={"label": "Rest: energy", "minimum": 1e-9, "maximum": 0.1, "decimals": 9}
+    )
+    calm_time: float = field(default=3.0, metadata={"label": "Rest: time", "minimum": 0.1, "maximum": 1000.0})
+    longest_rest: float = field(
+        default=60.0, metadata={"label": "Longest wait", "minimum": 1.0, "maximum": 1e5}
+    )
+    snapshots: int = field(default=120, metadata={"label": "Snapshots", "minimum": 2, "maximum": 10_000})
+
+    def __post_init__(self) -> None:
+        for each in fields(self):
+            value, limits = getattr(self, each.name), each.metadata
+            if not limits["minimum"] <= value <= limits["maximum"]:
+                raise InputError(
+                    f"The MuJoCo setting {each.name} must lie between {limits['minimum']:g} and "
+                    f"{limits['maximum']:g}, got {value:g}."
+                )

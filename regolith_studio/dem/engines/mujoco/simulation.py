@@ -1,0 +1,225 @@
+"""The lifting-cylinder test, step by step: fill, settle, lift, rest."""
+
+from collections.abc import Callable, Generator
+from dataclasses import dataclass, field
+
+import mujoco
+import numpy as np
+
+from regolith_studio.dem.case import Prepared
+from regolith_studio.dem.engine import Checks, Ending, Moment
+from regolith_studio.dem.engines.mujoco.model import Built, Units, build
+from regolith_studio.dem.engines.mujoco.phases import expected_duration
+from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
+from regolith_studio.dem.pile import Pile
+from regolith_studio.errors import RegolithError
+from regolith_studio.geometry.arrays import FloatArray
+
+LOOK = 0.5
+"""Simulated time between two looks at energies and speeds."""
+LARGEST_OVERLAP = 0.02
+"""Mean diameters of overlap at rest from which on a run is not trusted."""
+LARGEST_GAIN = 0.05
+"""Energy that may appear in a look, in units of m g d a particle: rounding of the solver."""
+CLEAR = 0.5
+"""Distance between rim and pile, in mean diameters, at which the cylinder is gone."""
+
+
+@dataclass(eq=False)
+class _Run:
+    """MuJoCo's state with what is noted on the way."""
+
+    prepared: Prepared
+    settings: MujocoSettings
+    built: Built
+    data: mujoco.MjData
+    units: Units
+    phase: str = "fill"
+    energy: float = float("inf")
+    energy_gain: float = 0.0
+    steps: int = 0
+    next_picture: float = 0.0
+    calm_since: float | None = None
+    fill: tuple[float, float] = (0.0, 0.0)
+    expected: float = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.expected = expected_duration(self.prepared)
+
+    @property
+    def time(self) -> float:
+        return float(self.data.time)
+
+    @property
+    def points(self) -> FloatArray:
+        """Centres in mean diameters; a view into the state."""
+        return np.asarray(self.data.qpos.reshape(-1, 7)[:, :3])
+
+    @property
+    def rim(self) -> float:
+        """Height of the cylinder's lower rim."""
+        return float(self.data.mocap_pos[0, 2])
+
+
+def simulate(prepared: Prepared, settings: MujocoSettings) -> Generator[Moment, None, Ending]:
+    """Run the test.
+
+    Raises
+    ------
+    RegolithError
+        If the solver diverges.
+    """
+    built = build(prepared, settings)
+    run = _Run(prepared, settings, built, mujoco.MjData(built.model), Units.of(prepared))
+    yield _moment(run)
+    yield from _fill(run)
+    yield from _lift(run)
+    yield from _rest(run)
+    return Ending(_pile(run), _checks(run), run.steps, run.time * run.units.time)
+
+
+def _fill(run: _Run) -> Generator[Moment, None, None]:
+    """Let the particles fall, with a limit on their speed, until they lie still in the cylinder."""
+    run.built.model.geom_surfacevel[run.built.walls] = 0.0
+    yield from _advance(run, _limit_speed, _is_calm, 40.0 + 2.0 * run.built.top / run.settings.fastest)
+    run.phase, run.calm_since = "settle", None
+    yield from _advance(run, None, _is_calm, run.settings.longest_rest)
+    height = float(np.quantile(run.points[:, 2] + run.prepared.diameters / run.units.length / 2, 0.98))
+    volume = float(np.pi / 6 * (run.prepared.diameters**3).sum()) / run.units.length**3
+    area = run.prepared.case.test.area / run.units.length**2
+    run.fill = (height * run.units.length, volume / (area * height))
+
+
+def _lift(run: _Run) -> Generator[Moment, None, None]:
+    """Raise the walls at constant speed; their surface moves with them, as friction must feel."""
+    run.phase = "lift"
+    speed = run.prepared.case.test.lift_speed / run.units.speed
+    run.built.model.geom_surfacevel[run.built.walls, 2] = speed
+
+    def rise(run: _Run) -> None:
+        run.data.mocap_pos[0, 2] += speed * run.settings.time_step
+
+    longest = 2.0 * run.built.top / speed + 10.0
+    yield from _advance(run, rise, _is_clear, longest)
+    run.data.mocap_pos[0, 2] += 10.0 * run.built.top
+    run.built.model.geom_surfacevel[run.built.walls] = 0.0
+
+
+def _rest(run: _Run) -> Generator[Moment, None, None]:
+    """Wait until the heap stays calm."""
+    run.phase, run.calm_since = "rest", None
+    yield from _advance(run, None, _is_calm, run.settings.longest_rest)
+
+
+def _advance(
+    run: _Run,
+    each_step: Callable[[_Run], None] | None,
+    done: Callable[[_Run], bool],
+    longest: float,
+) -> Generator[Moment, None, None]:
+    """Step until `done` or `longest` is over; `done` is asked and energies are noted once a look."""
+    per_look = max(1, round(LOOK / run.settings.time_step))
+    end = run.time + longest
+    run.energy = float("inf")
+    while run.time < end:
+        if each_step is None:
+            mujoco.mj_step(run.built.model, run.data, per_look)
+        else:
+            for _ in range(per_look):
+                each_step(run)
+                mujoco.mj_step(run.built.model, run.data)
+        run.steps += per_look
+        _check_state(run)
+        if each_step is None:
+            _note_energy(run)
+        if run.time >= run.next_picture:
+            run.next_picture = run.time + run.expected / run.settings.snapshots
+            yield _moment(run)
+        if done(run):
+            return
+
+
+def _limit_speed(run: _Run) -> None:
+    velocity = run.data.qvel.reshape(-1, 6)[:, :3]
+    speed = np.linalg.norm(velocity, axis=1)
+    fast = speed > run.settings.fastest
+    velocity[fast] *= (run.settings.fastest / speed[fast])[:, None]
+
+
+def _is_calm(run: _Run) -> bool:
+    """Whether the mean kinetic energy has been small for long enough."""
+    if run.data.energy[1] / len(run.prepared) > run.settings.calm:
+        run.calm_since = None
+        return False
+    if run.calm_since is None:
+        run.calm_since = run.time
+    return run.time - run.calm_since >= run.settings.calm_time
+
+
+def _is_clear(run: _Run) -> bool:
+    """Whether the rim is above everything."""
+    reach = run.prepared.diameters / run.units.length
+    return bool(run.rim > (run.points[:, 2] + reach).max() + CLEAR)
+
+
+def _note_energy(run: _Run) -> None:
+    total = float(run.data.energy.sum()) / len(run.prepared)
+    run.energy_gain = max(run.energy_gain, total - run.energy)
+    run.energy = total
+
+
+def _check_state(run: _Run) -> None:
+    if not np.isfinite(run.data.qpos).all() or run.data.warning[mujoco.mjtWarning.mjWARN_BADQACC].number:
+        raise RegolithError(
+            f"The simulation diverged after {run.time * run.units.time:.3g} s; take a smaller time step than "
+            f"{run.settings.time_step:g}."
+        )
+
+
+def _moment(run: _Run) -> Moment:
+    share = min(0.99, run.time / run.expected)
+    simulated = run.time * run.units.time
+    return Moment(_pile(run), share, f"{run.phase}, {simulated:.2f} s simulated")
+
+
+def _pile(run: _Run) -> Pile:
+    state = run.data.qpos.reshape(-1, 7)
+    gone = run.phase == "rest"
+    return Pile(
+        points=state[:, :3] * run.units.length,
+        diameters=run.prepared.diameters,
+        orientations=state[:, 3:],
+        class_index=run.prepared.class_index,
+        time=run.time * run.units.time,
+        wall=float("inf") if gone else run.rim * run.units.length,
+        phase=run.phase,
+    )
+
+
+def _checks(run: _Run) -> Checks:
+    overlaps = np.maximum(-run.data.contact.dist, 0.0)
+    kept = int(np.count_nonzero(run.points[:, 2] > -1.0))
+    mean, largest = (float(overlaps.mean()), float(overlaps.max())) if len(overlaps) else (0.0, 0.0)
+    at_rest = run.calm_since is not None and run.time - run.calm_since >= run.settings.calm_time
+    kinetic = float(run.data.energy[1]) / len(run.prepared)
+    problems = []
+    if kept < len(run.prepared):
+        problems.append(f"{len(run.prepared) - kept} particles fell through the plate.")
+    if largest > LARGEST_OVERLAP:
+        problems.append(f"Particles overlap by up to {100 * largest:.1f} % of the mean diameter.")
+    if run.energy_gain > LARGEST_GAIN:
+        problems.append(f"The energy rose by {run.energy_gain:.2g} m g d a particle out of nothing.")
+    if not at_rest:
+        problems.append("The heap was still moving when the longest wait was over.")
+    return Checks(
+        particles_in=len(run.prepared),
+        particles_out=kept,
+        mean_overlap=mean,
+        largest_overlap=largest,
+        energy_gain=run.energy_gain,
+        kinetic_energy=kinetic,
+        at_rest=at_rest,
+        fill_height=run.fill[0],
+        solid_fraction=run.fill[1],
+        problems=tuple(problems),
+    )

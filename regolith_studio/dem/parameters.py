@@ -1,0 +1,133 @@
+"""Tables 1 and 2 of the paper as settings; what the paper does not give is marked, chosen and editable."""
+
+from dataclasses import Field, dataclass, field, fields
+from typing import Any
+
+from regolith_studio.errors import InputError
+
+NOT_GIVEN = "not given in the paper"
+
+GRAVITIES = {"Earth": 9.81, "Moon": 1.62, "Mars": 3.71}
+"""Accelerations at the surface in m/s^2."""
+
+
+def _number(
+    default: float,
+    label: str,
+    unit: str,
+    low: float,
+    high: float,
+    source: str = NOT_GIVEN,
+    factor: float = 1.0,
+) -> Any:
+    """A field in SI; `factor` turns it into the `unit` in which people read and write it."""
+    metadata = {
+        "label": label,
+        "unit": unit,
+        "minimum": low,
+        "maximum": high,
+        "source": source,
+        "factor": factor,
+    }
+    return field(default=default, metadata=metadata)
+
+
+@dataclass(frozen=True)
+class ContactParameters:
+    """Table 1: what happens where two particles touch. SI units.
+
+    Parameters
+    ----------
+    density
+        Of the particles, in kg/m^3.
+    youngs_modulus, poissons_ratio
+        Of their material, in Pa.
+    static_friction, dynamic_friction
+        Coulomb's coefficients.
+    rolling_friction
+        Rolling resistance as a share of the radius.
+    restitution
+        Of a normal impact.
+    surface_energy
+        Of Johnson, Kendall and Roberts, in J/m^2.
+
+    Raises
+    ------
+    InputError
+        If a value is out of its range.
+    """
+
+    density: float = _number(3075.0, "Particle density", "g/cm³", 100.0, 30_000.0, "Table 1", 1e-3)
+    youngs_modulus: float = _number(30e9, "Young's modulus", "GPa", 1e4, 1e13, "Table 1", 1e-9)
+    poissons_ratio: float = _number(0.2, "Poisson's ratio", "", 0.0, 0.49, "Table 1")
+    static_friction: float = _number(0.8, "Static friction", "", 0.0, 5.0, "Table 1")
+    dynamic_friction: float = _number(0.8, "Dynamic friction", "", 0.0, 5.0, "Table 1")
+    rolling_friction: float = _number(0.0, "Rolling resistance", "", 0.0, 2.0)
+    restitution: float = _number(0.3, "Restitution", "", 0.0, 1.0)
+    surface_energy: float = _number(0.010, "Surface energy", "mJ/m²", 0.0, 10.0, "Table 1", 1e3)
+
+    def __post_init__(self) -> None:
+        _check(self, "contact parameter")
+
+
+@dataclass(frozen=True)
+class LiftingCylinderTest:
+    """Table 2: a filled cylinder is lifted off a plate. SI units.
+
+    Parameters
+    ----------
+    diameter, height
+        Of the cylinder.
+    mass
+        Of all particles, in kg.
+    lift_speed
+        In m/s.
+    wall_friction, plate_friction
+        Coulomb's coefficient between particles and cylinder, particles and plate.
+    gravity
+        In m/s^2; :data:`GRAVITIES` names some.
+
+    Raises
+    ------
+    InputError
+        If a value is out of its range.
+    """
+
+    diameter: float = _number(0.02, "Cylinder diameter", "cm", 1e-5, 10.0, "Table 2", 1e2)
+    height: float = _number(0.08, "Cylinder height", "cm", 1e-5, 100.0, "Table 2", 1e2)
+    mass: float = _number(0.015, "Particle mass", "g", 1e-12, 1e6, "Table 2", 1e3)
+    lift_speed: float = _number(0.03, "Lift speed", "cm/s", 1e-5, 10.0, factor=1e2)
+    wall_friction: float = _number(0.3, "Wall friction", "", 0.0, 5.0)
+    plate_friction: float = _number(0.8, "Plate friction", "", 0.0, 5.0)
+    gravity: float = _number(9.81, "Gravity", "m/s²", 1e-4, 1e4)
+
+    def __post_init__(self) -> None:
+        _check(self, "test parameter")
+
+    @property
+    def area(self) -> float:
+        """Cross-section of the cylinder in m^2."""
+        return 3.141592653589793 / 4 * self.diameter**2
+
+
+PAPER_FILL_HEIGHT = (0.025, 0.030)
+"""Fill height of Table 2 in metres; a consequence of mass and packing here, and compared after a run."""
+PAPER_PARTICLES = 378_000
+PAPER_COARSE_GRAINING = 10.0
+
+
+def missing_in_paper(kind: type[Any]) -> tuple[str, ...]:
+    """Names of the fields whose value the paper does not give."""
+    return tuple(each.name for each in fields(kind) if each.metadata["source"] == NOT_GIVEN)
+
+
+def _check(value: Any, what: str) -> None:
+    each: Field[Any]
+    for each in fields(value):
+        number, limits = getattr(value, each.name), each.metadata
+        if not limits["minimum"] <= number <= limits["maximum"]:
+            factor, unit = limits["factor"], f" {limits['unit']}" if limits["unit"] else ""
+            raise InputError(
+                f"The {what} {each.name} must lie between {factor * limits['minimum']:g} and "
+                f"{factor * limits['maximum']:g}{unit}, got {factor * number:g}."
+            )

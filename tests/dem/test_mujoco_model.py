@@ -1,0 +1,99 @@
+"""The model that MuJoCo gets: masses, inertia, places, units."""
+
+import mujoco
+import numpy as np
+import pytest
+from scipy.spatial.distance import pdist, squareform
+
+from regolith_studio.dataset.dataset import Dataset
+from regolith_studio.dem.case import ReposeCase, prepare
+from regolith_studio.dem.engines.mujoco.model import N_WALLS, PARTICLE, Units, adhesion, build, start_places
+from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
+from regolith_studio.dem.parameters import ContactParameters
+from regolith_studio.errors import InputError
+
+
+def test_that_particles_start_apart_and_within_the_cylinder() -> None:
+    generator = np.random.default_rng(1)
+    reach = generator.uniform(0.4, 1.2, 400)
+    places, top = start_places(reach, 5.0, generator)
+    apart = squareform(pdist(places)) - reach[:, None] - reach[None, :] + 10 * np.eye(400)
+    assert apart.min() > 0.0
+    assert (np.hypot(places[:, 0], places[:, 1]) + reach).max() <= 5.0
+    assert (places[:, 2] - reach).min() >= 0.0
+    assert top < 3.5 * (4 / 3 * np.pi * reach**3).sum() / (np.pi * 25)
+
+
+def test_that_bodies_have_the_mass_and_inertia_of_their_polyhedra(boxes: Dataset) -> None:
+    prepared = prepare(boxes, ReposeCase(n_particles=120, seed=2))
+    model = build(prepared, MujocoSettings()).model
+    units = Units.of(prepared)
+    volumes = np.pi / 6 * (prepared.diameters / units.length) ** 3
+    bodies = np.flatnonzero(model.body_jntnum == 1)
+    assert model.body_mass[bodies] == pytest.approx(volumes)
+    edges = np.array([[1, 1, 1], np.array([3, 2, 1.5]) / 9 ** (1 / 3)])[prepared.class_index]
+    squares = (edges * (volumes ** (1 / 3))[:, None]) ** 2
+    inertia = volumes[:, None] / 12 * (squares.sum(axis=1)[:, None] - squares)
+    assert np.sort(model.body_inertia[bodies], axis=1) == pytest.approx(np.sort(inertia, axis=1), rel=1e-6)
+
+
+def test_that_bodies_lie_where_their_shapes_are_drawn(boxes: Dataset) -> None:
+    """Position and quaternion of a body turn the dataset's own shape into what collides."""
+    prepared = prepare(boxes, ReposeCase(n_particles=60, seed=5))
+    model = build(prepared, MujocoSettings()).model
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    geom = int(np.flatnonzero(model.geom_contype == PARTICLE)[7])
+    mesh, body = model.geom_dataid[geom], model.geom_bodyid[geom]
+    first = model.mesh_vertadr[mesh]
+    corners = model.mesh_vert[first : first + model.mesh_vertnum[mesh]].astype(float)
+    shown = corners @ data.geom_xmat[geom].reshape(3, 3).T + data.geom_xpos[geom]
+    scale = prepared.scales[7] / prepared.mean_diameter
+    own = prepared.shapes[prepared.class_index[7]] * scale
+    placed = own @ data.xmat[body].reshape(3, 3).T + data.xpos[body]
+    distance = np.linalg.norm(shown[:, None] - placed[None], axis=2).min(axis=1)
+    assert distance.max() < 1e-6
+
+
+def test_that_the_cylinder_is_round_and_as_wide_as_asked(boxes: Dataset) -> None:
+    prepared = prepare(boxes, ReposeCase(n_particles=60))
+    built = build(prepared, MujocoSettings())
+    assert len(built.walls) == N_WALLS
+    places, sizes = built.model.geom_pos[built.walls], built.model.geom_size[built.walls]
+    inner = np.hypot(places[:, 0], places[:, 1]) - sizes[:, 0]
+    assert inner == pytest.approx(0.01 / prepared.mean_diameter)
+    assert built.model.opt.gravity == pytest.approx([0, 0, -1])
+
+
+def test_that_cohesion_is_the_pull_off_force_in_units_of_the_solver(boxes: Dataset) -> None:
+    prepared = prepare(boxes, ReposeCase(n_particles=100, cohesion="given"))
+    pull = adhesion(prepared)
+    d, mean = prepared.diameters, prepared.mean_diameter
+    force = 1.5 * np.pi * 0.010 * d / 4
+    assert 2 * pull == pytest.approx(force / (3075 * mean**3 * 9.81))
+    assert not adhesion(prepare(boxes, ReposeCase(n_particles=100))).any()
+
+
+def test_that_rolling_resistance_opens_the_dimensions_of_a_contact(boxes: Dataset) -> None:
+    case = ReposeCase(contact=ContactParameters(rolling_friction=0.2), n_particles=60)
+    assert set(build(prepare(boxes, case), MujocoSettings()).model.geom_condim) == {6}
+    assert set(build(prepare(boxes, ReposeCase(n_particles=60)), MujocoSettings()).model.geom_condim) == {3}
+
+
+def test_that_a_moving_wall_drags_what_touches_it() -> None:
+    """The sign of geom_surfacevel: a surface that moves up pulls a body up with it."""
+    spec = mujoco.MjSpec()
+    wall = spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_PLANE, size=[0, 0, 1])
+    wall.surfacevel = [0.5, 0, 0, 0, 0, 0]
+    body = spec.worldbody.add_body(pos=[0, 0, 0.1])
+    body.add_freejoint()
+    body.add_geom(type=mujoco.mjtGeom.mjGEOM_BOX, size=[0.1, 0.1, 0.1], density=1000)
+    model = spec.compile()
+    data = mujoco.MjData(model)
+    mujoco.mj_step(model, data, 500)
+    assert data.qvel[0] == pytest.approx(0.5, abs=0.05)
+
+
+def test_that_bad_settings_are_one_sentence() -> None:
+    with pytest.raises(InputError, match="time_step"):
+        MujocoSettings(time_step=1.0)

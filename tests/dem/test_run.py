@@ -1,0 +1,171 @@
+"""Whole runs on MuJoCo, small enough for every day: finished, repeated, crashed, cancelled."""
+
+import json
+import multiprocessing
+import shutil
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from regolith_studio.cli.entry import run
+from regolith_studio.dataset.folder import read_dataset
+from regolith_studio.dataset.reading import dataset_hash
+from regolith_studio.dem.case import ReposeCase, prepare
+from regolith_studio.dem.engine import Ending, Moment
+from regolith_studio.dem.engines import ENGINES
+from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
+from regolith_studio.dem.host import EngineStopped
+from regolith_studio.dem.parameters import LiftingCylinderTest
+from regolith_studio.dem.pile import read_pile
+from regolith_studio.dem.run_folder import find_runs, read_run, read_shapes, snapshot_files
+from regolith_studio.errors import FileError, InputError
+from regolith_studio.jobs.events import Partial
+from regolith_studio.jobs.repose import ReposeOrder, simulate_prepared, simulate_repose
+
+TEST = LiftingCylinderTest(mass=0.003, lift_speed=0.15)
+CASE = ReposeCase(TEST, n_particles=40, seed=1)
+QUICK = MujocoSettings(time_step=0.04, iterations=15, calm=2e-3, calm_time=1.0, snapshots=20)
+ORDER = ReposeOrder(CASE, settings=QUICK)
+COMMAND = ["-n", "40", "--seed", "1", "--test", "mass=0.003", "--test", "lift_speed=0.15"]
+COMMAND += [word for each in ("time_step=0.04", "iterations=15", "calm=0.002") for word in ("--set", each)]
+COMMAND += ["--set", "calm_time=1", "--set", "snapshots=20"]
+
+
+@pytest.fixture(scope="module")
+def finished(boxes_folder: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("runs") / "small"
+    assert run(["repose", "run", str(boxes_folder), "-o", str(folder), *COMMAND]) == 0
+    return folder
+
+
+def test_that_a_run_leaves_everything_that_it_followed_from(finished: Path, boxes_folder: Path) -> None:
+    document = read_run(finished).document
+    assert document["state"] == "finished"
+    assert document["dataset"]["sha256"] == dataset_hash(boxes_folder)
+    assert document["engine"]["key"] == "mujoco"
+    assert document["engine"]["version"]
+    assert document["case"]["seed"] == 1
+    assert document["case"]["test"]["mass"] == 0.003
+    assert document["checks"]["particles_out"] == 40
+    assert document["checks"]["largest_overlap"] < 0.05
+    assert document["checks"]["energy_gain"] < 0.05
+    assert document["measurement"]["status"] == "too few particles"
+    assert "restitution" in document["not_given_in_the_paper"]
+
+
+def test_that_the_snapshots_tell_the_whole_test(finished: Path) -> None:
+    piles = [read_pile(path) for path in snapshot_files(finished)]
+    assert [pile.time for pile in piles] == sorted(pile.time for pile in piles)
+    assert piles[0].phase == "fill"
+    assert {"fill", "lift"} <= {pile.phase for pile in piles}
+    assert len(read_shapes(finished)) == 2
+    lifted = [pile.wall for pile in piles if pile.phase == "lift"]
+    assert lifted == sorted(lifted)
+    final = read_pile(finished / "final.npz")
+    assert final.points[:, 2].max() < piles[0].points[:, 2].max() / 2
+    assert (final.points[:, 2] > 0.0).all()
+
+
+def test_that_the_same_seed_gives_the_same_pile(finished: Path, boxes_folder: Path) -> None:
+    prepared = prepare(read_dataset(boxes_folder), CASE)
+    steps = ENGINES["mujoco"].simulate(prepared, QUICK)
+    moments = []
+    while True:
+        try:
+            moments.append(next(steps))
+        except StopIteration as end:
+            ending = end.value
+            break
+    assert isinstance(ending, Ending)
+    assert np.array_equal(ending.pile.points.astype(np.float32), read_pile(finished / "final.npz").points)
+    assert [moment.share for moment in moments] == sorted(moment.share for moment in moments)
+
+
+def test_that_a_crash_of_the_engine_is_one_sentence_and_keeps_the_last_snapshot(
+    boxes_folder: Path, tmp_path: Path
+) -> None:
+    steps = simulate_repose(
+        boxes_folder, tmp_path / "run", replace(ORDER, settings=replace(QUICK, snapshots=500))
+    )
+    _until_moment(steps)
+    victim = next(each for each in multiprocessing.active_children() if each.name == "engine mujoco")
+    victim.kill()
+    with pytest.raises(
+        EngineStopped, match=r"MuJoCo was ended by signal 9; the last snapshot \(.* s\) is kept\."
+    ):
+        list(steps)
+    assert read_run(tmp_path / "run").document["state"] == "failed"
+    assert len(read_pile(snapshot_files(tmp_path / "run")[-1])) == 40
+
+
+def test_that_a_cancelled_run_ends_its_process_and_says_so(boxes_folder: Path, tmp_path: Path) -> None:
+    steps = simulate_repose(boxes_folder, tmp_path / "run", ORDER)
+    _until_moment(steps)
+    steps.close()
+    assert not [each for each in multiprocessing.active_children() if each.name == "engine mujoco"]
+    assert read_run(tmp_path / "run").document["state"] == "stopped"
+    assert [summary.angle for summary in find_runs(tmp_path)] == [None]
+
+
+def test_that_a_run_that_cannot_write_says_so(boxes_folder: Path, tmp_path: Path) -> None:
+    prepared = prepare(read_dataset(boxes_folder), CASE)
+    steps = simulate_prepared(
+        prepared, tmp_path / "run", replace(ORDER, settings=replace(QUICK, snapshots=500))
+    )
+    _until_moment(steps)
+    shutil.rmtree(tmp_path / "run" / "snapshots")
+    with pytest.raises(EngineStopped, match="could not go on"):
+        list(steps)
+
+
+def test_that_a_folder_is_not_overwritten_unless_asked(boxes_folder: Path, tmp_path: Path) -> None:
+    (tmp_path / "mine.txt").write_text("mine")
+    with pytest.raises(FileError, match=r"other files \(mine.txt\)"):
+        list(simulate_repose(boxes_folder, tmp_path, ORDER))
+    (tmp_path / "run").mkdir()
+    (tmp_path / "run" / "repose.json").write_text("{}")
+    with pytest.raises(FileError, match="holds a run already"):
+        list(simulate_repose(boxes_folder, tmp_path / "run", ORDER))
+    with pytest.raises(FileError, match="no result"):
+        read_run(tmp_path / "run")
+
+
+def test_that_bad_wishes_are_one_sentence(
+    boxes_folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    where = ["repose", "run", str(boxes_folder), "-o", str(tmp_path / "run")]
+    assert run([*where, "--contact", "static_friction=-1"]) == 2
+    assert run([*where, "--engine", "abacus"]) == 2
+    assert run([*where, "--set", "speed=3"]) == 2
+    assert run([*where, "-n", "12"]) == 1
+    assert run(["repose", "run", str(tmp_path), "-o", str(tmp_path / "run")]) == 1
+    said = capsys.readouterr().err
+    assert "Traceback" not in said
+    assert "wider cylinder" in said
+    assert not (tmp_path / "run").exists()
+
+
+def test_that_an_unknown_engine_is_an_input_error() -> None:
+    from regolith_studio.dem.engines import engine_named
+
+    with pytest.raises(InputError, match="mujoco"):
+        engine_named("abacus")
+
+
+def test_that_the_engines_say_what_they_represent(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["repose", "engines", "--json"]) == 0
+    rows = {row["key"]: row for row in json.loads(capsys.readouterr().out)}
+    assert rows["mujoco"]["version"]
+    assert not rows["mujoco"]["problem"]
+    assert all(row["missing"] for row in rows.values())
+    assert run(["repose", "engines"]) == 0
+    assert "polyhedra" in capsys.readouterr().out
+
+
+def _until_moment(steps: object) -> Moment:
+    for step in steps:  # type: ignore[attr-defined]
+        if isinstance(step, Partial):
+            return step.value
+    raise AssertionError("the run told no moment")
