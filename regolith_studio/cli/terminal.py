@@ -2,6 +2,7 @@
 
 import json
 import sys
+import time
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
@@ -12,15 +13,28 @@ if TYPE_CHECKING:
     from regolith_studio.studies.tables import Table
 
 
+_SILENCE = 30.0
+"""Seconds between two lines of progress where there is no terminal."""
+
+
 def follow(steps: "Steps") -> Any:
-    """Drive a job to its result; on a terminal with a progress bar that disappears in the end."""
-    if sys.stderr.isatty():
-        return _with_bar(steps)
+    """Drive a job to its result; on a terminal with a progress bar, else with a line now and then."""
+    return _with_bar(steps) if sys.stderr.isatty() else _with_lines(steps)
+
+
+def _with_lines(steps: "Steps") -> Any:
+    """Quiet, but for a line about every half minute, as a log wants it."""
+    from regolith_studio.jobs import events
+
+    said = time.monotonic()
     while True:
         try:
-            next(steps)
+            step = next(steps)
         except StopIteration as end:
             return end.value
+        if isinstance(step, events.Progress) and time.monotonic() - said > _SILENCE:
+            said = time.monotonic()
+            complain([f"{step.done:,} of {step.total:,}{': ' if step.message else ''}{step.message}"])
 
 
 def _with_bar(steps: "Steps") -> Any:

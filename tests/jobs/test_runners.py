@@ -3,9 +3,11 @@
 import contextlib
 import os
 import queue
+import signal
 import threading
 import time
 from collections.abc import Callable, Iterator
+from pathlib import Path
 
 import pytest
 
@@ -309,3 +311,87 @@ def test_that_a_partial_result_stands_for_all_before_it(owner: Owner, threads: T
         time.sleep(0.001)
     owner.run_until(ended(heard))
     assert heard == [Partial((1, 2)), Finished((1, 2))]
+
+
+def with_a_lambda() -> Steps:
+    yield Started("Hiding")
+    return lambda: None
+
+
+def hold(megabytes: int) -> Steps:
+    yield Started("Holding")
+    HELD.append(b"x" * (megabytes * 2**20))
+    return os.getpid()
+
+
+HELD: list[bytes] = []
+
+
+def wait_for(path: str) -> Steps:
+    yield Started("Waiting")
+    while not os.path.exists(path):  # noqa: PTH110
+        yield Progress(0, 0)
+        time.sleep(0.005)
+    return path
+
+
+def test_that_what_cannot_be_sent_or_answered_fails_with_a_sentence(pool: ProcessPoolRunner) -> None:
+    jobs = [Job(with_a_lambda), Job(square, (lambda: None,)), Job(square, (3,))]
+    sent, refused, good = [e for e in in_order(pool, jobs, 3) if e]
+    assert isinstance(sent, Failed)
+    assert isinstance(refused, Failed)
+    assert "cannot be sent" in refused.sentence
+    assert good == Finished(9)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="memory is told by POSIX systems")
+def test_that_a_process_that_holds_too_much_memory_is_replaced() -> None:
+    runner = ProcessPoolRunner(1, memory=200 * 2**20)
+    try:
+        first, second, third = [
+            e for e in in_order(runner, [Job(hold, (1,)), Job(hold, (300,)), Job(process_id)], 1) if e
+        ]
+    finally:
+        runner.close()
+    assert isinstance(first, Finished)
+    assert first == second
+    assert isinstance(third, Finished)
+    assert third.value != second.value
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals are a matter of POSIX")
+def test_that_a_process_killed_from_outside_is_replaced_and_its_job_done(tmp_path: Path) -> None:
+    runner = ProcessPoolRunner(2)
+    heard: list[Event] = []
+    other: list[Event] = []
+    try:
+        (first,) = [e for e in in_order(runner, [Job(process_id)], 1) if e]
+        runner.submit(Job(wait_for, (str(tmp_path / "go"),)), heard.append)
+        assert isinstance(first, Finished)
+        os.kill(first.value, signal.SIGKILL)
+        runner.submit(Job(square, (5,)), other.append)
+        (tmp_path / "go").write_text("")
+        end = time.monotonic() + 60
+        while not (heard and other) and time.monotonic() < end:
+            time.sleep(0.01)
+    finally:
+        runner.close()
+    assert heard == [Finished(str(tmp_path / "go"))]
+    assert other == [Finished(25)]
+
+
+def test_that_a_waiting_job_can_be_cancelled_while_all_processes_are_busy() -> None:
+    runner = ProcessPoolRunner(1)
+    busy: list[Event] = []
+    idle: list[Event] = []
+    try:
+        runner.submit(Job(wait_forever), busy.append)
+        runner.submit(Job(square, (2,)), idle.append).cancel()
+        end = time.monotonic() + 20
+        while not idle and time.monotonic() < end:
+            time.sleep(0.01)
+        assert idle == [Stopped()]
+        assert busy == []
+    finally:
+        runner.close()
+    assert busy == [Stopped()]

@@ -3,6 +3,7 @@
 import csv
 import hashlib
 import json
+import multiprocessing
 import os
 import signal
 import subprocess
@@ -203,3 +204,17 @@ def test_that_an_unknown_card_is_an_error_before_any_work(tmp_path: Path) -> Non
     with pytest.raises(InputError, match=r"no material card 'cheese'"):
         done(wish, tmp_path, tmp_path / "out")
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals are a matter of POSIX")
+def test_that_a_worker_killed_in_mid_run_changes_no_byte(
+    grains: Path, tmp_path: Path, alone: tuple[Performed, dict]
+) -> None:
+    steps = perform(recipe(grains), grains, tmp_path / "out", 2, chunk=2)
+    killed_one = False
+    for step in steps:
+        if isinstance(step, Progress) and step.done >= 2 and not killed_one:
+            os.kill(multiprocessing.active_children()[0].pid or 0, signal.SIGKILL)
+            killed_one = True
+    assert killed_one
+    assert digests(tmp_path / "out") == alone[1]

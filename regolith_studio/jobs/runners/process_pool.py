@@ -1,37 +1,24 @@
 """Runs jobs in a few warm processes; for batches."""
 
+import contextlib
 import multiprocessing
+import multiprocessing.util as process_end
 import os
-import queue
-import signal
+import pickle
 import threading
-from concurrent.futures import CancelledError, Future, ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
+from collections import deque
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from multiprocessing.connection import Connection, wait
 from typing import Any
 
-from regolith_studio.jobs.events import Ending, Event, Failed, Finished, Job, Listener, Stopped
-from regolith_studio.jobs.runners.drive import drive
+from regolith_studio.jobs.events import Ending, Failed, Finished, Job, Listener, Stopped
+from regolith_studio.jobs.runners.worker import SLOTS, work
 
-_SLOTS = 4096
 _THREAD_LIMITS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
-
-_flags: Any = None
-"""In a worker: the numbers of the jobs that shall stop, shared with the parent."""
-
-
-def _prepare_worker(flags: Any) -> None:
-    global _flags
-    _flags = flags
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the parent's to handle
-
-
-def _silent(_event: Event) -> None:
-    """Steps are not sent across processes: what counts in a batch is each job's ending."""
-
-
-def _run_whole(job: Job, number: int) -> Ending:
-    return drive(job, _silent, lambda: _flags[number % _SLOTS] == number)
+_LEAST_MEMORY, _MOST_MEMORY, _SHARE_OF_MEMORY = 768 * 1024**2, 2 * 1024**3, 0.6
+_LAST_WAIT = 10.0
+"""Seconds that a closing pool waits for a job that does not stop between two steps."""
 
 
 def cores() -> int:
@@ -41,13 +28,23 @@ def cores() -> int:
     return os.cpu_count() or 1
 
 
+def memory_limit(workers: int) -> int:
+    """Bytes that a worker may hold on to between two jobs, so that all of them fit into the machine."""
+    try:
+        machine = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    except (AttributeError, ValueError, OSError):
+        machine = 8 * 1024**3
+    return int(min(max(_SHARE_OF_MEMORY * machine / workers, _LEAST_MEMORY), _MOST_MEMORY))
+
+
 @dataclass(eq=False)
 class _PoolHandle:
-    job: Job
+    message: bytes
     number: int
     listener: Listener
     flags: Any
-    future: "Future[Ending] | None" = None
+    ring: Callable[[], None]
+    suspect: bool = False
     ended: threading.Event = field(default_factory=threading.Event)
 
     @property
@@ -56,12 +53,11 @@ class _PoolHandle:
 
     @property
     def cancelled(self) -> bool:
-        return bool(self.flags[self.number % _SLOTS] == self.number)
+        return bool(self.flags[self.number % SLOTS] == self.number)
 
     def cancel(self) -> None:
-        self.flags[self.number % _SLOTS] = self.number
-        if self.future is not None:
-            self.future.cancel()
+        self.flags[self.number % SLOTS] = self.number
+        self.ring()
 
     def finish(self, ending: Ending) -> None:
         if self.cancelled and isinstance(ending, Finished):
@@ -70,97 +66,193 @@ class _PoolHandle:
         self.listener(ending)
 
 
+@dataclass(eq=False)
+class _Worker:
+    """One process, the pipe to it, and the job that it has."""
+
+    process: Any
+    pipe: Connection
+    handle: _PoolHandle | None = None
+
+    def dismiss(self) -> None:
+        """Let it end by itself, as soon as it has answered."""
+        with contextlib.suppress(OSError):
+            self.pipe.send_bytes(b"")
+        self.pipe.close()
+
+
 class ProcessPoolRunner:
     """Each job runs whole in one process; listeners are called in a thread of the pool, endings only.
 
-    The processes are spawned, not forked (no locks or OpenGL contexts come along), start with the
-    first job, stay warm and keep to one thread each. When one dies, the jobs that were under way
-    are run again, one at a time; only the job that dies alone has failed.
+    The processes are spawned, not forked (no locks or OpenGL contexts come along), start when there is
+    work for them, stay warm and keep to one thread each. One that holds more memory than it may is
+    replaced after its job. One that dies is replaced too, and its job is run again while nothing else
+    runs; only a job that dies alone has failed.
 
     Parameters
     ----------
     workers
         Number of processes; 0 for one a core.
+    memory
+        Bytes that a process may hold on to between two jobs; by default :func:`memory_limit`.
     """
 
-    def __init__(self, workers: int = 0) -> None:
+    def __init__(self, workers: int = 0, memory: int | None = None) -> None:
         self.workers = workers or cores()
+        self.memory = memory or memory_limit(self.workers)
         self._context = multiprocessing.get_context("spawn")
-        self._flags: Any = self._context.Array("q", _SLOTS, lock=False)
+        self._flags: Any = self._context.Array("q", SLOTS, lock=False)
         self._number = 0
         self._closed = False
         self._lock = threading.Lock()
-        self._pool = self._new_pool(self.workers)
-        self._suspects: queue.SimpleQueue[_PoolHandle | None] = queue.SimpleQueue()
-        self._judge: threading.Thread | None = None
+        self._waiting: deque[_PoolHandle] = deque()
+        self._team: list[_Worker] = []
+        self._retired: list[Any] = []
+        self._bell, self._rope = self._context.Pipe(duplex=False)
+        self._manager: threading.Thread | None = None
+        self._at_exit: Any = None
 
     def submit(self, job: Job, listener: Listener, lane: str = "") -> _PoolHandle:  # noqa: ARG002
         if self._closed:
             raise RuntimeError("the runner is closed")
         self._number += 1
-        handle = _PoolHandle(job, self._number, listener, self._flags)
+        handle = _PoolHandle(b"", self._number, listener, self._flags, self._ring)
         try:
-            handle.future = self._send(self._pool, handle)
-        except BrokenProcessPool:
-            self._pool.shutdown(wait=False)
-            self._pool = self._new_pool(self.workers)
-            handle.future = self._send(self._pool, handle)
-        handle.future.add_done_callback(lambda future: self._conclude(handle, future))
+            handle.message = pickle.dumps((self._number, job))
+        except Exception as error:  # noqa: BLE001  whatever an argument's pickling raises
+            handle.finish(Failed(f"The work cannot be sent to a process ({error}).", repr(error)))
+            return handle
+        with self._lock:
+            self._waiting.append(handle)
+            if self._manager is None:
+                self._at_exit = process_end.Finalize(self, self.close, exitpriority=100)
+                self._manager = threading.Thread(target=self._manage, name="process pool", daemon=True)
+                self._manager.start()
+        self._ring()
         return handle
 
     def close(self) -> None:
         """Stop the jobs between two of their steps and end the processes."""
+        if self._closed:
+            return
         self._closed = True
-        for number in range(max(1, self._number - _SLOTS + 1), self._number + 1):
-            self._flags[number % _SLOTS] = number
-        self._pool.shutdown(wait=True, cancel_futures=True)
-        if self._judge:
-            self._suspects.put(None)
-            self._judge.join()
+        for number in range(max(1, self._number - SLOTS + 1), self._number + 1):
+            self._flags[number % SLOTS] = number
+        if self._manager is not None:
+            self._at_exit.cancel()
+            self._ring()
+            self._manager.join()
+        self._bell.close()
+        self._rope.close()
 
-    def _new_pool(self, workers: int) -> ProcessPoolExecutor:
-        return ProcessPoolExecutor(
-            workers, mp_context=self._context, initializer=_prepare_worker, initargs=(self._flags,)
-        )
+    def _ring(self) -> None:
+        with contextlib.suppress(OSError):
+            self._rope.send_bytes(b"!")
 
-    def _send(self, pool: ProcessPoolExecutor, handle: _PoolHandle) -> "Future[Ending]":
+    def _manage(self) -> None:
+        """In a thread: hand out jobs, hear answers, replace who dies, until closed and all have ended."""
+        while True:
+            self._drop_cancelled()
+            if self._closed and not self._busy:
+                break
+            self._hand_out()
+            ready = wait([self._bell, *[worker.pipe for worker in self._team]], self._patience)
+            if not ready:
+                for worker in self._busy:
+                    worker.process.kill()
+            while self._bell.poll():
+                self._bell.recv_bytes()
+            for worker in [each for each in self._team if each.pipe in ready]:
+                self._hear(worker)
+        for worker in self._team:
+            worker.dismiss()
+        for process in [*self._retired, *[worker.process for worker in self._team]]:
+            _end(process)
+        self._team.clear()
+
+    @property
+    def _busy(self) -> list[_Worker]:
+        return [worker for worker in self._team if worker.handle]
+
+    @property
+    def _patience(self) -> float | None:
+        return _LAST_WAIT if self._closed else None
+
+    def _drop_cancelled(self) -> None:
+        with self._lock:
+            dropped = [each for each in self._waiting if each.cancelled]
+            for handle in dropped:
+                self._waiting.remove(handle)
+        for handle in dropped:
+            handle.finish(Stopped())
+
+    def _hand_out(self) -> None:
+        """Give waiting jobs to idle processes; a suspect only while nobody else works."""
+        while len(self._busy) < self.workers and (handle := self._next()):
+            idle = next((worker for worker in self._team if not worker.handle), None) or self._hire()
+            idle.handle = handle
+            with contextlib.suppress(OSError):  # it has died idle: its pipe tells so in a moment
+                idle.pipe.send_bytes(handle.message)
+
+    def _next(self) -> _PoolHandle | None:
+        """The job whose turn it is, if there is one."""
+        with self._lock:
+            if not self._waiting:
+                return None
+            alone = self._waiting[0].suspect or any(w.handle and w.handle.suspect for w in self._team)
+            return None if alone and self._busy else self._waiting.popleft()
+
+    def _hire(self) -> _Worker:
+        here, there = self._context.Pipe()
+        process = self._context.Process(target=work, args=(there, self._flags), name="worker")
         with _one_thread_each():
-            return pool.submit(_run_whole, handle.job, handle.number)
+            process.start()
+        there.close()
+        worker = _Worker(process, here)
+        self._team.append(worker)
+        return worker
 
-    def _conclude(self, handle: _PoolHandle, future: "Future[Ending]") -> None:
-        ending = _ending_of(future)
-        if ending is None:
-            self._suspect(handle)
-        else:
+    def _hear(self, worker: _Worker) -> None:
+        """Take an answer, or find that the process is dead."""
+        try:
+            answer = worker.pipe.recv_bytes()
+        except (EOFError, OSError):
+            self._bury(worker)
+            return
+        try:
+            ending, memory = pickle.loads(answer)
+        except Exception as error:  # noqa: BLE001  whatever an answer's unpickling raises
+            ending, memory = Failed(f"A worker process could not answer ({error}).", repr(error)), 0
+        handle, worker.handle = worker.handle, None
+        if memory > self.memory:
+            self._retire(worker)
+        if handle:
             handle.finish(ending)
 
-    def _suspect(self, handle: _PoolHandle) -> None:
+    def _bury(self, worker: _Worker) -> None:
+        """Take a dead process off the team; its job gets a second chance, alone."""
+        handle = worker.handle
+        self._retire(worker)
+        if handle is None:
+            return
+        if handle.suspect:
+            handle.finish(Failed("A worker process died of it; it may have run out of memory."))
+            return
+        handle.suspect = True
         with self._lock:
-            if not self._judge:
-                self._judge = threading.Thread(target=self._try_suspects, name="suspects", daemon=True)
-                self._judge.start()
-        self._suspects.put(handle)
+            self._waiting.appendleft(handle)
 
-    def _try_suspects(self) -> None:
-        while handle := self._suspects.get():
-            if handle.cancelled:
-                handle.finish(Stopped())
-                continue
-            with self._new_pool(1) as alone:
-                ending = _ending_of(self._send(alone, handle))
-            handle.finish(ending or Failed("A worker process died of it; it may have run out of memory."))
+    def _retire(self, worker: _Worker) -> None:
+        self._team.remove(worker)
+        worker.dismiss()
+        self._retired = [process for process in [*self._retired, worker.process] if process.is_alive()]
 
 
-def _ending_of(future: "Future[Ending]") -> Ending | None:
-    """How a job ended; ``None`` if a process died, this job's or another's."""
-    try:
-        return future.result()
-    except CancelledError:
-        return Stopped()
-    except BrokenProcessPool:
-        return None
-    except Exception as error:  # noqa: BLE001  for example a result that cannot be pickled
-        return Failed(f"A worker process could not answer ({error}).", repr(error))
+def _end(process: Any) -> None:
+    process.join(_LAST_WAIT)
+    if process.is_alive():
+        process.kill()
+        process.join()
 
 
 class _one_thread_each:  # noqa: N801  a context, read like a sentence

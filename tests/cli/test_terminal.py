@@ -1,0 +1,22 @@
+"""What a command says while it works."""
+
+import pytest
+
+from regolith_studio.cli import terminal
+from regolith_studio.jobs.events import Progress, Started, Steps
+
+
+def story() -> Steps:
+    yield Started("Counting", 2000)
+    yield Progress(1500, 2000, "5 a second, 1 min 40 s left")
+    return 7
+
+
+def test_that_a_log_gets_a_line_now_and_then(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert terminal.follow(story()) == 7
+    assert capsys.readouterr().err == ""
+    monkeypatch.setattr(terminal, "_SILENCE", -1.0)
+    assert terminal.follow(story()) == 7
+    assert capsys.readouterr().err == "1,500 of 2,000: 5 a second, 1 min 40 s left\n"
