@@ -3,27 +3,26 @@
 A binary mask contoured as it is overstates the surface area by up to 9 % at any resolution. Each
 contour is therefore smoothed (windowed sinc) and scaled back to the volume of its voxels; on
 spheres, ellipsoids and polyhedra of 24 voxels a diameter and more the area is then right within 2 %.
+
+The volume is seen slab by slab: once for the sizes and boxes of the labels, once to cut them out.
 """
 
 from collections.abc import Generator
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from regolith_studio.errors import InputError
+from regolith_studio.geometry.arrays import BoolArray, FloatArray
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle, Source
+from regolith_studio.imaging.bodies import largest_body, pores_filled
+from regolith_studio.imaging.boxes import Box, touches
 from regolith_studio.imaging.contour import contour
+from regolith_studio.imaging.label_table import label_masks, label_table
+from regolith_studio.imaging.slabs import SlabSource
 from regolith_studio.imaging.smoothing import windowed_sinc, with_volume
-from regolith_studio.imaging.volume import Volume
-
-HIGHEST_LABEL = 20_000_000
-"""Beyond this the list of boxes alone would fill the memory."""
-
-Box = tuple[slice, slice, slice]
 
 
 @dataclass(frozen=True)
@@ -34,8 +33,8 @@ class ExtractionSettings:
     ----------
     exclude_border
         Leave out what touches the border of the volume, and so is cut.
-    min_diameter
-        Leave out what has fewer voxels than a ball of this diameter, in voxels.
+    min_voxels
+        Leave out what has fewer voxels; 268 are those of a ball of 8 voxels in diameter.
     warn_diameter
         Note on particles below this diameter, in voxels, that their shape is coarse.
     fill_pores
@@ -45,15 +44,15 @@ class ExtractionSettings:
     """
 
     exclude_border: bool = True
-    min_diameter: float = 8.0
+    min_voxels: int = 268
     warn_diameter: float = 12.0
     fill_pores: bool = True
     iterations: int = 20
     pass_band: float = 0.1
 
     def __post_init__(self) -> None:
-        if not self.min_diameter >= 0.0:
-            raise InputError(f"The smallest diameter must not be negative, got {self.min_diameter}.")
+        if self.min_voxels < 0:
+            raise InputError(f"The smallest number of voxels must not be negative, got {self.min_voxels}.")
         if self.iterations < 0 or not 0.0 < self.pass_band <= 2.0:
             raise InputError(
                 f"Smoothing takes 0 or more iterations and a pass band up to 2, got {self.iterations} "
@@ -62,13 +61,32 @@ class ExtractionSettings:
 
 
 @dataclass(frozen=True)
+class Extracted:
+    """One label that became a particle.
+
+    Parameters
+    ----------
+    particle
+        In micrometres, at its place in the volume.
+    label, n_voxels
+        Its number in the volume, and its size there.
+    weight
+        Miles-Lantuejoul weight (:func:`border_weight`), 1 where border grains are kept.
+    """
+
+    particle: Particle
+    label: int
+    n_voxels: int
+    weight: float
+
+
+@dataclass(frozen=True)
 class ExtractionProgress:
-    """One label is done: its particle, or None where it was left out."""
+    """One label is done; `extracted` is its particle."""
 
     done: int
     total: int
-    label: int
-    particle: Particle | None
+    extracted: Extracted
 
 
 @dataclass(frozen=True)
@@ -77,35 +95,47 @@ class Extraction:
 
     Parameters
     ----------
-    particles
-        In the order of their labels, in micrometres, at their place in the volume.
-    labels
-        Label of each particle.
-    weights
-        Miles-Lantuejoul weight of each particle (:func:`border_weight`), 1 where border grains are kept.
+    found
+        In the order of their labels; empty where they were not collected.
     border
         Labels left out because they touch the border.
     small
         Labels left out because they are too small.
+    n_found
+        Labels that became particles.
     """
 
-    particles: tuple[Particle, ...]
-    labels: tuple[int, ...]
-    weights: tuple[float, ...]
+    found: tuple[Extracted, ...]
     border: tuple[int, ...]
     small: tuple[int, ...]
+    n_found: int
+
+    @property
+    def particles(self) -> tuple[Particle, ...]:
+        """The particles alone."""
+        return tuple(each.particle for each in self.found)
+
+    @property
+    def labels(self) -> tuple[int, ...]:
+        """Label of each particle."""
+        return tuple(each.label for each in self.found)
+
+    @property
+    def weights(self) -> tuple[float, ...]:
+        """Weight of each particle."""
+        return tuple(each.weight for each in self.found)
 
     @property
     def summary(self) -> str:
         """One sentence for the user."""
         return (
-            f"{len(self.particles)} particles; left out: {len(self.border)} at the border, "
+            f"{self.n_found} particles; left out: {len(self.border)} at the border, "
             f"{len(self.small)} too small."
         )
 
 
 def extract_particles(
-    volume: Volume,
+    volume: SlabSource,
     settings: ExtractionSettings | None = None,
     group: str = "",
     source: Source | None = None,
@@ -121,63 +151,48 @@ def extract_particles(
 
 
 def extraction_steps(
-    volume: Volume,
+    volume: SlabSource,
     settings: ExtractionSettings | None = None,
     group: str = "",
     source: Source | None = None,
+    collect: bool = True,
 ) -> Generator[ExtractionProgress, None, Extraction]:
     """Make a particle of each label, telling after each how far it is.
 
     Parameters
     ----------
+    volume
+        Labels, in memory or not.
     group, source
         Passed on to each particle.
+    collect
+        Keep the particles for the result; otherwise each is only in the step that made it, which
+        samples need that are larger than the memory.
 
     Raises
     ------
     InputError
-        If the volume holds grey values, no label, or labels beyond :data:`HIGHEST_LABEL`.
+        If the volume holds grey values, no label, or labels beyond
+        :data:`~regolith_studio.imaging.label_table.HIGHEST_LABEL`.
     """
     settings = settings or ExtractionSettings()
-    boxes = label_boxes(volume)
+    table = label_table(volume)
+    boxes, sizes = table.boxes(), table.sizes()
     width = max(4, len(str(max(boxes))))
-    particles: list[Particle] = []
-    labels, weights, border, small = list[int](), list[float](), list[int](), list[int]()
-    for done, (label, box) in enumerate(boxes.items(), start=1):
-        mask = volume.array[box] == label
-        particle = None
-        if settings.exclude_border and _at_border(box, volume):
-            border.append(label)
-        elif voxel_diameter(int(np.count_nonzero(mask))) < settings.min_diameter:
-            small.append(label)
-        else:
-            mesh, notes = mask_surface(mask, box, volume, settings)
-            particle = Particle(f"particle_{label:0{width}d}", mesh, group, source, notes)
-            particles.append(particle)
-            labels.append(label)
-            weights.append(border_weight(box, volume) if settings.exclude_border else 1.0)
-        yield ExtractionProgress(done, len(boxes), label, particle)
-    return Extraction(tuple(particles), tuple(labels), tuple(weights), tuple(border), tuple(small))
-
-
-def label_boxes(volume: Volume) -> dict[int, Box]:
-    """Smallest box around each label, in the order of labels.
-
-    Raises
-    ------
-    InputError
-        As :func:`extraction_steps`.
-    """
-    if volume.kind != "labels":
-        raise InputError(f"{volume.name} holds grey values; segment it before particles can be extracted.")
-    array = volume.array.view(np.uint8) if volume.array.dtype.kind == "b" else volume.array
-    highest = int(array.max())
-    if highest > HIGHEST_LABEL:
-        raise InputError(f"The labels of {volume.name} go up to {highest}; number them from 1 without gaps.")
-    if highest <= 0:
-        raise InputError(f"{volume.name} holds no particle: every label is 0.")
-    found: list[Any] = ndimage.find_objects(array)
-    return {label: box for label, box in enumerate(found, start=1) if box is not None}
+    border = [k for k, box in boxes.items() if settings.exclude_border and touches(box, volume.shape)]
+    small = [k for k in set(boxes).difference(border) if sizes[k] < settings.min_voxels]
+    wanted = {k: box for k, box in boxes.items() if k not in {*border, *small}}
+    found: list[Extracted] = []
+    for done, (label, mask) in enumerate(label_masks(volume, wanted), start=1):
+        mesh, notes = mask_surface(mask, boxes[label], np.asarray(volume.voxel_size, float), settings)
+        particle = Particle(f"particle_{label:0{width}d}", mesh, group, source, notes)
+        weight = border_weight(boxes[label], volume.shape) if settings.exclude_border else 1.0
+        extracted = Extracted(particle, label, sizes[label], weight)
+        if collect:
+            found.append(extracted)
+        yield ExtractionProgress(done, len(wanted), extracted)
+    ordered = tuple(sorted(found, key=lambda each: each.label))
+    return Extraction(ordered, tuple(border), tuple(sorted(small)), len(wanted))
 
 
 def voxel_diameter(n_voxels: int) -> float:
@@ -185,26 +200,31 @@ def voxel_diameter(n_voxels: int) -> float:
     return float((6.0 * n_voxels / np.pi) ** (1 / 3))
 
 
-def border_weight(box: Box, volume: Volume) -> float:
-    """Weight that undoes the bias of leaving out border grains: 1 / prod(1 - (box + 2) / N).
+def border_weight(box: Box, shape: tuple[int, int, int]) -> float:
+    """Weight that undoes the bias of leaving out border grains: 1 / prod(1 - (b + 1) / N).
 
-    A grain whose box has b voxels along an axis of N keeps clear of both borders with probability
-    1 - (b + 2) / N, so big grains are missed more often (Miles and Lantuejoul).
+    A grain whose box has b voxels along an axis of N can lie in N + b - 1 places that show any of
+    it, and in N - b - 1 that keep clear of both borders: big grains are missed more often. Counting
+    all grains whose first voxel lies in the scan, each side keeps a share of (N - b - 1) / N (Miles
+    1974, Lantuejoul 1980).
     """
     lengths = np.array([side.stop - side.start for side in box], dtype=np.float64)
-    return float(
-        1.0 / np.prod(np.maximum(1.0 - (lengths + 2.0) / volume.shape, 1.0 / np.array(volume.shape)))
-    )
-
-
-def _at_border(box: Box, volume: Volume) -> bool:
-    return any(side.start == 0 or side.stop == n for side, n in zip(box, volume.shape, strict=True))
+    size = np.array(shape, dtype=np.float64)
+    return float(1.0 / np.prod(np.maximum(1.0 - (lengths + 1.0) / size, 1.0 / size)))
 
 
 def mask_surface(
-    mask: NDArray[np.bool_], box: Box, volume: Volume, settings: ExtractionSettings
+    mask: NDArray[np.bool_], box: Box, voxel_size: FloatArray, settings: ExtractionSettings
 ) -> tuple[Mesh, tuple[str, ...]]:
-    """Surface of one label's mask at its place in the volume, in micrometres, and notes on it."""
+    """Surface of one label's mask at its place in the volume, in micrometres, and notes on it.
+
+    Parameters
+    ----------
+    mask, box
+        The label in its box, and the box.
+    voxel_size
+        Edges of a voxel along x, y, z, in micrometres, shape (3,).
+    """
     body, notes = _one_body(mask, settings.fill_pores)
     padded = np.pad(body, 1).astype(np.float32)
     smooth = windowed_sinc(contour(padded, 0.5, (1.0, 1.0, 1.0)), settings.iterations, settings.pass_band)
@@ -216,23 +236,19 @@ def mask_surface(
             f"below {settings.warn_diameter:g}."
         )
     corner = np.array([side.start for side in box]) - 1.0
-    return Mesh((restored.vertices + corner) * volume.voxel_size, restored.faces), tuple(notes)
+    return Mesh((restored.vertices + corner) * voxel_size, restored.faces), tuple(notes)
 
 
-def _one_body(mask: NDArray[np.bool_], fill_pores: bool) -> tuple[NDArray[np.bool_], list[str]]:
+def _one_body(mask: BoolArray, fill_pores: bool) -> tuple[BoolArray, list[str]]:
     """The largest face-connected body, its closed pores filled, and a note for each change."""
     notes = []
-    bodies, count = ndimage.label(mask)
-    body = mask
+    body, count = largest_body(mask)
     if count > 1:
-        sizes = np.bincount(bodies.ravel())[1:]
-        body = bodies == sizes.argmax() + 1
-        dropped = int(sizes.sum() - sizes.max())
+        dropped = int(np.count_nonzero(mask) - np.count_nonzero(body))
         notes.append(f"The label had {count} separate parts; the largest was kept, {dropped} voxels dropped.")
     if fill_pores:
-        filled = ndimage.binary_fill_holes(body)
-        closed = int(np.count_nonzero(filled) - np.count_nonzero(body))
-        if closed:
+        filled = pores_filled(body)
+        if closed := int(np.count_nonzero(filled) - np.count_nonzero(body)):
             notes.append(f"Closed pores of {closed} voxels were filled.")
         body = filled
-    return np.asarray(body, dtype=np.bool_), notes
+    return body, notes

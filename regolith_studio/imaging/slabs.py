@@ -6,13 +6,14 @@ what is written slab by slab lies in a :class:`Scratch`, in memory or in files t
 
 import shutil
 import tempfile
-from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import DTypeLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
+
+from regolith_studio.imaging.volume import VolumeKind
 
 SLAB_VOXELS = 2**24
 """Voxels that are worked on at a time, unless a few slices are more."""
@@ -20,10 +21,11 @@ _THINNEST = 8
 
 
 class SlabSource(Protocol):
-    """Anything that gives slices of a volume.
+    """Anything that gives slices of a volume: a :class:`~regolith_studio.imaging.volume.Volume`, a file.
 
-    `shape` is (nx, ny, nz) and `dtype` that of the voxels; ``read(first, stop)`` gives the slices
-    ``first <= z < stop``, shape (nx, ny, stop - first).
+    `shape` is (nx, ny, nz), `dtype` the type of a voxel, `voxel_size` its edges along x, y, z in
+    micrometres, and `kind` says ``labels`` or ``grey``. ``read(z0, z1)`` gives the slices
+    ``z0 <= z < z1``, shape (nx, ny, z1 - z0).
     """
 
     @property
@@ -32,29 +34,16 @@ class SlabSource(Protocol):
     @property
     def dtype(self) -> np.dtype[Any]: ...
 
-    def read(self, first: int, stop: int, /) -> NDArray[Any]: ...
-
-
-@dataclass(frozen=True, eq=False)
-class ArraySlabs:
-    """Slabs of an array in memory, or of a memory map; shape (nx, ny, nz)."""
-
-    array: NDArray[Any]
+    @property
+    def voxel_size(self) -> ArrayLike: ...
 
     @property
-    def shape(self) -> tuple[int, int, int]:
-        """Voxels along x, y and z."""
-        nx, ny, nz = self.array.shape
-        return nx, ny, nz
+    def kind(self) -> VolumeKind: ...
 
     @property
-    def dtype(self) -> np.dtype[Any]:
-        """Type of the voxels."""
-        return self.array.dtype
+    def name(self) -> str: ...
 
-    def read(self, first: int, stop: int, /) -> NDArray[Any]:
-        """The slices ``first <= z < stop``."""
-        return self.array[:, :, first:stop]
+    def read(self, z0: int, z1: int, /) -> NDArray[Any]: ...
 
 
 def slab_ranges(shape: tuple[int, int, int], voxels: int = SLAB_VOXELS) -> list[tuple[int, int]]:

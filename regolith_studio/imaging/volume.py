@@ -68,6 +68,15 @@ class Volume:
         return nx, ny, nz
 
     @property
+    def dtype(self) -> np.dtype[Any]:
+        """Type of a voxel."""
+        return self.array.dtype
+
+    def read(self, z0: int, z1: int, /) -> NDArray[Any]:
+        """The slices ``z0 <= z < z1``, as every :class:`~regolith_studio.imaging.slabs.SlabSource` has it."""
+        return self.array[:, :, z0:z1]
+
+    @property
     def voxel_volume(self) -> float:
         """Volume of one voxel, in cubic micrometres."""
         return float(np.prod(self.voxel_size))

@@ -3,11 +3,14 @@
 import numpy as np
 import pytest
 import tifffile
+from scipy import ndimage
 from scipy.spatial import ConvexHull, HalfspaceIntersection
 from scipy.special import ellipeinc, ellipkinc
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.imaging import slabs
+from regolith_studio.imaging.boxes import touches
 from regolith_studio.imaging.extraction import (
     ExtractionSettings,
     border_weight,
@@ -16,10 +19,11 @@ from regolith_studio.imaging.extraction import (
     voxel_diameter,
 )
 from regolith_studio.imaging.grains import even_sphere, random_rotation
+from regolith_studio.imaging.label_table import label_table
 from regolith_studio.imaging.sample_volumes import sample_volume
 from regolith_studio.imaging.volume import Volume
 
-ALL = ExtractionSettings(exclude_border=False, min_diameter=0.0)
+ALL = ExtractionSettings(exclude_border=False, min_voxels=0)
 
 
 def grid(half: float, step=(1.0, 1.0, 1.0)) -> np.ndarray:
@@ -132,8 +136,8 @@ def test_that_extraction_tells_how_far_it_is() -> None:
     array[2:14, 2:14, 2:14] = 1
     array[16:28, 16:28, 16:28] = 2
     story = list(extraction_steps(Volume(array, (1.0, 1.0, 1.0), "labels", "t")))
-    assert [(step.done, step.total, step.label) for step in story] == [(1, 2, 1), (2, 2, 2)]
-    assert all(step.particle is not None for step in story)
+    assert [(step.done, step.total, step.extracted.label) for step in story] == [(1, 2, 1), (2, 2, 2)]
+    assert [step.extracted.n_voxels for step in story] == [12**3, 12**3]
 
 
 @pytest.mark.parametrize(
@@ -150,6 +154,8 @@ def test_that_volumes_without_usable_labels_are_refused(volume: Volume, message:
 
 
 def test_that_settings_without_meaning_are_refused() -> None:
+    with pytest.raises(InputError, match="number of voxels"):
+        ExtractionSettings(min_voxels=-1)
     with pytest.raises(InputError, match="pass band"):
         ExtractionSettings(pass_band=0.0)
 
@@ -163,23 +169,71 @@ def test_that_a_mask_of_one_type_or_another_gives_the_same_particle() -> None:
     assert len(hashes) == 1
 
 
-def test_that_the_border_weight_undoes_the_loss_of_big_grains() -> None:
-    """Boxes dropped at random: the weighted mean size of those inside is that of all."""
-    generator = np.random.default_rng(3)
-    volume = Volume(np.zeros((50, 50, 50), dtype=np.uint8), (1, 1, 1), "labels", "t")
-    sizes = generator.choice([6, 24], 20_000)
-    low = np.floor(generator.uniform(-24, 50, (20_000, 3))).astype(int)
-    inside = ((low >= 1) & (low + sizes[:, None] <= 49)).all(axis=1)
-    boxes = [tuple(slice(0, int(s)) for _ in range(3)) for s in sizes[inside]]
-    weights = np.array([border_weight(box, volume) for box in boxes])
-    share_by_number = np.mean(sizes[inside] == 24)
-    share_weighted = weights[sizes[inside] == 24].sum() / weights.sum()
-    assert share_by_number < 0.3
-    assert share_weighted == pytest.approx(0.5, abs=0.06)
+def test_that_the_border_weight_counts_the_places_of_a_grain() -> None:
+    """Of N places of its first voxel along an axis, those that keep the whole grain off both borders."""
+    n = 20
+    for length in (1, 5, 17):
+        kept = sum(first >= 1 and first + length <= n - 1 for first in range(n))
+        box = (slice(3, 3 + length), slice(0, 1), slice(0, 1))
+        assert border_weight(box, (n, 10**9, 10**9)) == pytest.approx(n / kept)
+
+
+def scattered_grains(generator: np.random.Generator, size: int = 64, rim: int = 24) -> tuple[Volume, list]:
+    """A scan cut out of a field of separate ellipsoids, and the voxels of each whose centre is in it."""
+    field = np.zeros((size + 2 * rim,) * 3, dtype=np.uint16)
+    counts = []
+    for label, small in enumerate(generator.random(60) < 0.5, start=1):
+        axes = (2.4 if small else 9.0) * generator.uniform(0.8, 1.25, 3)
+        centre = generator.uniform(12, size + 2 * rim - 13, 3)
+        low, high = np.ceil(centre - axes).astype(int), np.floor(centre + axes).astype(int) + 1
+        points = np.stack(np.meshgrid(*map(np.arange, low, high), indexing="ij"), axis=-1)
+        mask = (((points - centre) / axes) ** 2).sum(axis=-1) <= 1.0
+        box = tuple(map(slice, low, high))
+        if not field[box][mask].any():
+            field[box][mask] = label
+            if ((centre >= rim) & (centre < rim + size)).all():
+                counts.append(np.count_nonzero(mask))
+    return Volume(field[(slice(rim, -rim),) * 3], (1, 1, 1), "labels", "t"), counts
+
+
+def test_that_weighted_grains_have_the_mean_volume_of_all() -> None:
+    """Monte Carlo: 300 scans of a mixture of small and large grains."""
+    generator = np.random.default_rng(0)
+    truth, volumes, weights = [], [], []
+    for _ in range(300):
+        volume, counts = scattered_grains(generator)
+        truth.extend(counts)
+        table = label_table(volume)
+        for box, n_voxels in zip(table.boxes().values(), table.counts, strict=True):
+            if not touches(box, volume.shape):
+                volumes.append(n_voxels)
+                weights.append(border_weight(box, volume.shape))
+    expected = np.mean(truth)
+    assert np.mean(volumes) < 0.7 * expected
+    assert np.average(volumes, weights=weights) == pytest.approx(expected, rel=0.04)
 
 
 def test_that_voxel_diameter_is_that_of_a_ball() -> None:
     assert voxel_diameter(1000) == pytest.approx(2 * (3000 / 4 / np.pi) ** (1 / 3))
+
+
+def test_that_slabs_give_the_particles_of_the_whole(monkeypatch: pytest.MonkeyPatch) -> None:
+    volume = sample_volume("labels")
+    whole = extract_particles(volume)
+    monkeypatch.setattr(slabs.slab_ranges, "__defaults__", (1,))
+    thin = extract_particles(volume)
+    assert (thin.labels, thin.border, thin.small) == (whole.labels, whole.border, whole.small)
+    assert [p.mesh.content_hash for p in thin.particles] == [p.mesh.content_hash for p in whole.particles]
+    story = list(extraction_steps(volume, collect=False))
+    assert [step.done for step in story] == list(range(1, 48))
+
+
+def test_that_the_table_of_labels_is_that_of_scipy() -> None:
+    volume = sample_volume("labels")
+    table = label_table(volume)
+    expected = ndimage.find_objects(volume.array.astype(int))
+    assert table.boxes() == dict(enumerate(expected, start=1))
+    assert table.counts.tolist() == np.bincount(volume.array.ravel())[1:].tolist()
 
 
 def test_that_the_shipped_scan_gives_47_closed_particles() -> None:

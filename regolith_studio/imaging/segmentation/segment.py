@@ -29,7 +29,7 @@ from regolith_studio.imaging.segmentation.thresholding import (
     span,
 )
 from regolith_studio.imaging.segmentation.tiles import BodySplitter, TileSettings
-from regolith_studio.imaging.slabs import ArraySlabs, Scratch, SlabSource, read_with_margin, slab_ranges
+from regolith_studio.imaging.slabs import Scratch, SlabSource, read_with_margin, slab_ranges
 from regolith_studio.imaging.volume import Volume
 
 
@@ -99,7 +99,7 @@ Steps = Generator[SegmentationProgress, None, Segmentation]
 
 def segment(volume: Volume, settings: SegmentationSettings | None = None) -> Segmentation:
     """Run :func:`segmentation_steps` on a volume in memory to its end."""
-    steps = segmentation_steps(ArraySlabs(volume.array), volume.voxel_size, volume.name, settings)
+    steps = segmentation_steps(volume, settings)
     while True:
         try:
             next(steps)
@@ -110,8 +110,6 @@ def segment(volume: Volume, settings: SegmentationSettings | None = None) -> Seg
 
 def segmentation_steps(
     source: SlabSource,
-    voxel_size: FloatArray,
-    name: str,
     settings: SegmentationSettings | None = None,
     scratch: Scratch | None = None,
 ) -> Steps:
@@ -121,8 +119,6 @@ def segmentation_steps(
     ----------
     source
         The grey values, or the probabilities of voxels to be grain.
-    voxel_size
-        Edges of a voxel, in micrometres, shape (3,).
     scratch
         Where arrays as large as the volume lie, the result among them; in memory by default.
 
@@ -132,24 +128,25 @@ def segmentation_steps(
         If the volume is too uniform for an automatic threshold, or no grain is found.
     """
     settings, scratch = settings or SegmentationSettings(), scratch or Scratch()
+    edges = np.asarray(source.voxel_size, dtype=np.float64)
     values, seen = yield from _denoised(source, settings, scratch)
     level = level_of(seen, settings.threshold, source.dtype)
     numbers: NDArray[np.int32] = scratch.zeros(source.shape, np.int32)
     bodies = yield from _numbered(values, level, settings, numbers)
     least = settings.cleaning.min_voxels
     splitter = BodySplitter(
-        numbers, bodies, voxel_size, settings.splitting, settings.cleaning.fill_pores, settings.tiles
+        numbers, bodies, edges, settings.splitting, settings.cleaning.fill_pores, settings.tiles
     )
     for done, total in splitter.steps(least):
         yield SegmentationProgress("Parting touching grains", done, total)
     sizes = yield from _renumbered(numbers, splitter.n_grains, least)
     if not len(sizes):
         raise InputError(
-            f"No grain of {least} voxels or more was found in {name} at grey level {level:g}; "
+            f"No grain of {least} voxels or more was found in {source.name} at grey level {level:g}; "
             "is the threshold right, and are grains brighter than what is between them?"
         )
     small = int((bodies.sizes < least).sum()) + splitter.n_grains - len(sizes)
-    labels = Volume(numbers, voxel_size, "labels", f"{name}, labels")
+    labels = Volume(numbers, edges, "labels", f"{source.name}, labels")
     return Segmentation(labels, sizes, level, seen, int((bodies.sizes >= least).sum()), small)
 
 
@@ -191,7 +188,9 @@ def _denoised(source: SlabSource, settings: SegmentationSettings, scratch: Scrat
             values[:, :, first:stop] = slab
         seen = seen + histogram(slab, edges)
         yield SegmentationProgress("Denoising", done, len(ranges))
-    return source if values is None else ArraySlabs(values), seen
+    if values is None:
+        return source, seen
+    return Volume(values, np.asarray(source.voxel_size), "grey", source.name), seen
 
 
 def _first_look(source: SlabSource) -> tuple[FloatArray, float]:

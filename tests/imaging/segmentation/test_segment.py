@@ -20,7 +20,7 @@ from regolith_studio.imaging.segmentation.segment import (
 from regolith_studio.imaging.segmentation.splitting import SplittingSettings
 from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
 from regolith_studio.imaging.segmentation.tiles import TileSettings
-from regolith_studio.imaging.slabs import ArraySlabs, Scratch
+from regolith_studio.imaging.slabs import Scratch
 from regolith_studio.imaging.volume import Volume
 
 PLAIN = SegmentationSettings(
@@ -128,7 +128,7 @@ def test_that_slabs_on_disk_give_the_same_grains_as_memory(tmp_path) -> None:
     settings = SegmentationSettings(DenoiseSettings("gaussian"), cleaning=CleaningSettings(1, 1))
     stages = []
     with Scratch(tmp_path) as scratch:
-        steps = segmentation_steps(ArraySlabs(volume.array), volume.voxel_size, "t", settings, scratch)
+        steps = segmentation_steps(volume, settings, scratch)
         while True:
             try:
                 stages.append(next(steps))

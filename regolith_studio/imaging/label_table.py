@@ -1,0 +1,134 @@
+"""The labels of a volume, found in one pass over its slabs: how large each is, and where.
+
+A second pass, :func:`label_masks`, cuts each label out as soon as its last slab has been seen, so
+that only labels that lie across two slabs are kept in the meantime.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import cc3d
+import numpy as np
+from numpy.typing import NDArray
+
+from regolith_studio.errors import InputError
+from regolith_studio.geometry.arrays import BoolArray, IntArray
+from regolith_studio.imaging.boxes import Box, box_between
+from regolith_studio.imaging.slabs import SlabSource, slab_ranges
+
+HIGHEST_LABEL = 20_000_000
+"""Beyond this the table alone would fill the memory."""
+
+_statistics: Any = cc3d.statistics
+
+
+@dataclass(frozen=True, eq=False)
+class LabelTable:
+    """Labels in ascending order, their voxels and boxes.
+
+    Parameters
+    ----------
+    labels, counts
+        Shape (n,).
+    low, high
+        First voxel of the box, and the one after its last, along x, y, z; shape (n, 3).
+    """
+
+    labels: IntArray
+    counts: IntArray
+    low: IntArray
+    high: IntArray
+
+    def boxes(self) -> dict[int, Box]:
+        """Box of each label."""
+        rows = zip(self.labels.tolist(), self.low.tolist(), self.high.tolist(), strict=True)
+        return {label: box_between(low, high) for label, low, high in rows}
+
+    def sizes(self) -> dict[int, int]:
+        """Voxels of each label."""
+        return dict(zip(self.labels.tolist(), self.counts.tolist(), strict=True))
+
+
+def label_table(source: SlabSource) -> LabelTable:
+    """The labels of a volume; 0 and less is no particle.
+
+    Raises
+    ------
+    InputError
+        If the volume holds grey values, no label, or labels beyond :data:`HIGHEST_LABEL`.
+    """
+    if source.kind != "labels":
+        raise InputError(f"{source.name} holds grey values; segment it before particles can be extracted.")
+    found = [
+        row
+        for first, stop in slab_ranges(source.shape)
+        if (row := _table_of(source.read(first, stop), first, source.name)) is not None
+    ]
+    if not found:
+        raise InputError(f"{source.name} holds no particle: every label is 0.")
+    labels = np.concatenate([part.labels for part in found])
+    highest = int(labels.max()) + 1
+    counts = np.zeros(highest, dtype=np.int64)
+    low, high = np.full((highest, 3), np.iinfo(np.int64).max), np.zeros((highest, 3), dtype=np.int64)
+    for part in found:
+        counts[part.labels] += part.counts
+        low[part.labels] = np.minimum(low[part.labels], part.low)
+        high[part.labels] = np.maximum(high[part.labels], part.high)
+    present = np.flatnonzero(counts)
+    return LabelTable(present, counts[present], low[present], high[present])
+
+
+def label_masks(source: SlabSource, boxes: Mapping[int, Box]) -> Iterator[tuple[int, BoolArray]]:
+    """Each label with its mask in its box, in the order in which the slabs complete them."""
+    waiting = sorted(boxes.items(), key=lambda entry: entry[1][2].start)
+    begun: dict[int, BoolArray] = {}
+    for first, stop in slab_ranges(source.shape):
+        count = sum(1 for _, box in _until(waiting, stop))
+        active, waiting = [*begun, *(label for label, _ in waiting[:count])], waiting[count:]
+        if not active:
+            continue
+        slab = source.read(first, stop)
+        for label in active:
+            x, y, z = boxes[label]
+            here = slice(max(z.start, first), min(z.stop, stop))
+            part = slab[x, y, here.start - first : here.stop - first] == label
+            if z.start >= first and z.stop <= stop:
+                yield label, np.ascontiguousarray(part)
+                continue
+            if label not in begun:
+                begun[label] = np.zeros([side.stop - side.start for side in (x, y, z)], dtype=bool)
+            begun[label][:, :, here.start - z.start : here.stop - z.start] = part
+            if z.stop <= stop:
+                yield label, begun.pop(label)
+
+
+def _until(waiting: list[tuple[int, Box]], stop: int) -> Iterator[tuple[int, Box]]:
+    """The labels that begin before the slice `stop`."""
+    for entry in waiting:
+        if entry[1][2].start >= stop:
+            return
+        yield entry
+
+
+def _table_of(slab: NDArray[Any], first: int, name: str) -> LabelTable | None:
+    highest = int(slab.max())
+    if highest > HIGHEST_LABEL:
+        raise InputError(f"The labels of {name} go up to {highest}; number them from 1 without gaps.")
+    if highest <= 0:
+        return None
+    seen = _statistics(_unsigned(slab), no_slice_conversion=True)
+    counts = np.asarray(seen["voxel_counts"], dtype=np.int64)
+    counts[0] = 0
+    labels = np.flatnonzero(counts)
+    box = np.asarray(seen["bounding_boxes"], dtype=np.int64)[labels]
+    shift = np.array([0, 0, first])
+    return LabelTable(labels, counts[labels], box[:, 0::2] + shift, box[:, 1::2] + 1 + shift)
+
+
+def _unsigned(slab: NDArray[Any]) -> NDArray[Any]:
+    if slab.dtype.kind == "b":
+        return slab.view(np.uint8)
+    if slab.dtype.kind == "u":
+        return slab
+    return np.asarray(np.maximum(slab, 0), dtype=np.uint32)

@@ -1,0 +1,130 @@
+"""``extract`` from grey and label volumes of several formats, as a user would call it."""
+
+import csv
+import hashlib
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import tifffile
+import trimesh
+
+from regolith_studio.imaging.sample_volumes import sample_volume
+from regolith_studio.resources import resource
+
+GREY = resource("samples", "ct", "synthetic-grey.tif")
+PART = (slice(0, 80), slice(0, 80), slice(0, 80))
+
+
+def part_of_scan(folder: Path, kind: str) -> Path:
+    """A corner of the shipped scan, slices first."""
+    np.save(folder / f"{kind}.npy", np.ascontiguousarray(sample_volume(kind).array[PART].T))
+    return folder / f"{kind}.npy"
+
+
+def two_balls() -> np.ndarray:
+    """Slices first: balls of radius 9 and 12 voxels."""
+    z, y, x = np.mgrid[:40, :44, :60]
+    volume = np.full(z.shape, 40, dtype=np.uint8)
+    volume[(x - 15) ** 2 + (y - 21) ** 2 + (z - 20) ** 2 <= 9**2] = 180
+    volume[(x - 42) ** 2 + (y - 21) ** 2 + (z - 20) ** 2 <= 12**2] = 180
+    noise = np.random.default_rng(0).integers(0, 20, volume.shape)
+    return (volume + noise).astype(np.uint8)
+
+
+def rows_of(folder: Path) -> list[dict[str, str]]:
+    return list(csv.DictReader((folder / "particles.csv").read_text(encoding="utf-8").splitlines()))
+
+
+def test_that_a_grey_scan_becomes_particles_with_a_recipe(command, tmp_path: Path) -> None:
+    scan, x = part_of_scan(tmp_path, "grey"), tmp_path / "x"
+    said = command("extract", scan, "-o", x, "--denoise", "gaussian", "--voxel-size", 2.3, "--json")
+    assert said.code == 0
+    rows, recipe = rows_of(x), json.loads((x / "extraction.json").read_text())
+    assert recipe["volume"]["sha256"] == hashlib.sha256(scan.read_bytes()).hexdigest()
+    assert recipe["segmentation"]["denoise"]["method"] == "gaussian"
+    assert len(rows) == recipe["n_particles"] == len(said.json["particles"]) > 3
+    assert len(rows) + len(recipe["border"]) + len(recipe["small"]) == recipe["segmented"]["n_grains"]
+    assert len(list(x.glob("*.stl"))) == len(rows)
+    for row in rows:
+        mesh = trimesh.load_mesh(x / f"{row['name']}.stl")
+        assert mesh.is_volume
+        assert mesh.volume == pytest.approx(float(row["volume [um^3]"]), rel=1e-4)
+        assert float(row["volume [um^3]"]) == pytest.approx(int(row["voxels"]) * 2.3**3, rel=0.02)
+        assert float(row["weight"]) > 1.0
+
+
+def test_that_keeping_the_border_of_labels_gives_all_grains(command, tmp_path: Path) -> None:
+    scan, x = part_of_scan(tmp_path, "labels"), tmp_path / "x"
+    said = command("extract", scan, "-o", x, "--border", "keep", "--voxel-size", 1, "--min-voxels", 600)
+    assert said.code == 0
+    sizes = np.bincount(sample_volume("labels").array[PART].ravel())[1:]
+    assert [int(row["voxels"]) for row in rows_of(x)] == sizes[sizes >= 600].tolist()
+    assert {row["weight"] for row in rows_of(x)} == {"1.0"}
+    assert "segmentation" not in json.loads((x / "extraction.json").read_text())
+
+
+def test_that_a_raw_file_needs_its_shape_and_gives_balls_of_the_right_size(command, tmp_path: Path) -> None:
+    two_balls().tofile(tmp_path / "scan.raw")
+    call = ("extract", tmp_path / "scan.raw", "-o", tmp_path / "x", "--voxel-size", 0.002, "--unit", "mm")
+    assert command(*call).code == 1
+    said = command(*call, "--shape", "60,44,40", "--kind", "grey")
+    assert said.code == 0
+    radii = sorted(float(row["equivalent_radius [um]"]) for row in rows_of(tmp_path / "x"))
+    assert radii == pytest.approx([18.0, 24.0], rel=0.02)
+
+
+def test_that_voxels_may_be_longer_one_way(command, tmp_path: Path) -> None:
+    np.save(tmp_path / "scan.npy", two_balls()[::2])
+    said = command(
+        "extract", tmp_path / "scan.npy", "-o", tmp_path / "x", "--kind", "grey", "--voxel-size", "1,1,2",
+        "--threshold", 110, "--min-voxels", 100,
+    )  # fmt: skip
+    assert said.code == 0
+    radii = sorted(float(row["equivalent_radius [um]"]) for row in rows_of(tmp_path / "x"))
+    assert radii == pytest.approx([9.0, 12.0], rel=0.03)
+
+
+def test_that_a_probability_map_of_an_hdf5_file_is_taken(command, tmp_path: Path) -> None:
+    h5py = pytest.importorskip("h5py")
+    with h5py.File(tmp_path / "scan.h5", "w") as file:
+        file["raw"] = two_balls()
+        file["likely"] = (two_balls() > 100).astype(np.float32)
+    said = command(
+        "extract", tmp_path / "scan.h5", "-o", tmp_path / "x", "--dataset", "likely", "--kind", "grey",
+        "--threshold", "probability:0.5", "--voxel-size", 1,
+    )  # fmt: skip
+    assert said.code == 0, said.err
+    assert "2 particles" in said.out
+
+
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        (("--threshold", "bright"), "A threshold is otsu"),
+        (("--denoise", "wavelets"), "Denoise by one of"),
+        (("--border", "cut"), "to exclude or to keep"),
+        (("--kind", "colour"), "labels or grey values"),
+        (("--voxel-size", "1,2"), "three as X,Y,Z"),
+        (("--voxel-size", "-1"), "positive number"),
+        (("--shape", "3x4"), "NX,NY,NZ"),
+        (("--h-maxima", "-1"), "h-maxima"),
+        (("--min-voxels", "-1"), "number of voxels"),
+    ],
+)
+def test_that_bad_options_are_bad_use(command, tmp_path: Path, options, sentence: str) -> None:
+    said = command("extract", GREY, "-o", tmp_path / "x", *options)
+    assert said.code == 2
+    assert sentence in " ".join(said.err.split())
+
+
+def test_that_grey_values_without_grains_are_one_sentence(command, tmp_path: Path) -> None:
+    noise = np.random.default_rng(0).integers(0, 255, (20, 20, 20)).astype(np.uint8)
+    tifffile.imwrite(tmp_path / "noise.tif", noise)
+    said = command(
+        "extract", tmp_path / "noise.tif", "-o", tmp_path / "x", "--voxel-size", 1, "--kind", "grey"
+    )
+    assert said.code == 1
+    assert len(said.err.strip().splitlines()) == 1
+    assert not (tmp_path / "x").exists()

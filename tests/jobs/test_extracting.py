@@ -1,0 +1,127 @@
+"""The jobs from volumes to particles: their story, their result, and that large ones go by files."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from regolith_studio.errors import InputError
+from regolith_studio.imaging.extraction import ExtractionSettings
+from regolith_studio.imaging.sample_volumes import sample_volume
+from regolith_studio.imaging.segmentation.denoising import DenoiseSettings
+from regolith_studio.imaging.segmentation.segment import SegmentationSettings
+from regolith_studio.jobs import extracting
+from regolith_studio.jobs.events import Progress, Started, Step, Steps
+from regolith_studio.jobs.extracting import (
+    GrainRecipe,
+    VolumeInput,
+    extract_file,
+    extract_labels,
+    extract_measured,
+    fingerprint,
+    segment_volume,
+)
+from regolith_studio.readers.hashing import sha256_of
+from regolith_studio.resources import resource
+
+GREY = resource("samples", "ct", "synthetic-grey.tif")
+PART = (slice(0, 80), slice(0, 80), slice(0, 80))
+QUICK = GrainRecipe(SegmentationSettings(DenoiseSettings("none")))
+
+
+def played(steps: Steps) -> tuple[list[Step], Any]:
+    heard = []
+    while True:
+        try:
+            heard.append(next(steps))
+        except StopIteration as end:
+            return heard, end.value
+
+
+def test_that_a_grey_file_tells_its_stages_and_gives_particles() -> None:
+    heard, done = played(extract_file(VolumeInput(GREY), QUICK))
+    titles = [step.title for step in heard if isinstance(step, Started)]
+    assert titles[0] == "Reading synthetic-grey.tif"
+    assert titles[1:] == [
+        "Denoising",
+        "Finding bodies",
+        "Parting touching grains",
+        "Numbering grains",
+        "Extracting particles",
+    ]
+    assert heard[-1] == Progress(done.extraction.n_found, done.extraction.n_found, heard[-1].message)
+    assert done.facts.n_grains == 60
+    assert done.kind == "grey"
+    assert len(done.extraction.particles) == done.extraction.n_found
+    assert done.sha256 == sha256_of(GREY)
+
+
+@pytest.fixture
+def part(tmp_path: Path) -> VolumeInput:
+    """A corner of the shipped grey scan, and an empty folder ``scratch`` beside it."""
+    np.save(tmp_path / "part.npy", np.ascontiguousarray(sample_volume("grey").array[PART].T))
+    (tmp_path / "scratch").mkdir()
+    return VolumeInput(tmp_path / "part.npy", 2.3, kind="grey")
+
+
+def test_that_temporary_files_give_the_same_particles_and_vanish(
+    part: VolumeInput, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scratch = part.path.parent / "scratch"
+    _, memory = played(extract_file(part, QUICK))
+    monkeypatch.setattr(extracting, "IN_MEMORY", 0)
+    steps = extract_file(part, QUICK, scratch)
+    while next(steps) != Started("Extracting particles"):
+        pass
+    assert list(scratch.iterdir())
+    _, files = played(steps)
+    assert not list(scratch.iterdir())
+    hashes = [[p.mesh.content_hash for p in done.extraction.particles] for done in (memory, files)]
+    assert hashes[0] == hashes[1]
+    assert len(hashes[0]) > 3
+
+
+def test_that_a_cancelled_run_leaves_no_temporary_files(
+    part: VolumeInput, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(extracting, "IN_MEMORY", 0)
+    steps = extract_file(part, QUICK, part.path.parent / "scratch")
+    for _ in range(4):
+        next(steps)
+    assert list((part.path.parent / "scratch").iterdir())
+    steps.close()
+    assert not list((part.path.parent / "scratch").iterdir())
+
+
+def test_that_measured_particles_are_handed_over_and_not_kept(part: VolumeInput) -> None:
+    seen = []
+    _, kept = played(extract_file(part, QUICK))
+    _, done = played(extract_measured(part, QUICK, None, lambda *pair: seen.append(pair), workers=1))
+    assert done.extraction.n_found == len(seen) == len(kept.extraction.found)
+    assert done.extraction.found == ()
+    for found, facts in seen:
+        assert facts.descriptors["volume"] == pytest.approx(found.particle.mesh.volume)
+        assert facts.health.sound
+
+
+def test_that_segmentation_and_extraction_can_be_run_one_after_the_other() -> None:
+    _, segmentation = played(segment_volume(sample_volume("grey"), QUICK.segmentation))
+    _, extraction = played(extract_labels(segmentation.labels, ExtractionSettings(), "scan"))
+    assert segmentation.n_grains == 60
+    assert {particle.group for particle in extraction.particles} == {"scan"}
+
+
+def test_that_a_volume_without_whole_grains_says_what_to_do(tmp_path: Path) -> None:
+    np.save(tmp_path / "full.npy", np.ones((20, 20, 20), dtype=np.uint8))
+    with pytest.raises(InputError, match="keep grains at the border"):
+        played(extract_file(VolumeInput(tmp_path / "full.npy", 1.0, kind="labels"), QUICK))
+
+
+def test_that_the_fingerprint_of_a_folder_depends_on_every_slice(tmp_path: Path) -> None:
+    tifffile = pytest.importorskip("tifffile")
+    for number in range(4):
+        tifffile.imwrite(tmp_path / f"slice_{number}.tif", np.full((5, 5), number, dtype=np.uint8))
+    before = fingerprint(tmp_path)
+    tifffile.imwrite(tmp_path / "slice_2.tif", np.full((5, 5), 9, dtype=np.uint8))
+    assert fingerprint(tmp_path) != before
