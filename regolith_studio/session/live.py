@@ -8,6 +8,7 @@ from regolith_studio.jobs.coarsening import coarsen_one
 from regolith_studio.jobs.events import Failed, Job
 from regolith_studio.jobs.fitting import describe_meshes, draw_surface, fit_one
 from regolith_studio.session.choices import Choices
+from regolith_studio.session.grown import Grown
 from regolith_studio.session.plan import LIVE, Kind, needs, plan
 from regolith_studio.session.results import ParticleEntry, Results
 from regolith_studio.session.tasks import Reactions, TaskBoard
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from regolith_studio.coarsening.progress import CoarseningProgress
     from regolith_studio.coarsening.result import Coarsened
     from regolith_studio.descriptors.describe import Descriptors
+    from regolith_studio.geometry.mesh import Mesh
     from regolith_studio.harmonics.fit import HarmonicFit
 
 _TITLES = {
@@ -26,7 +28,7 @@ _TITLES = {
 }
 _EMPTY: Mapping[Kind, Mapping[str, Any]] = {
     Kind.FIT: {"fit": None},
-    Kind.SURFACE: {"surface": None},
+    Kind.SURFACE: {"surface": None, "surface_l_max": 0},
     Kind.DESCRIPTORS: {"particle_descriptors": None, "fit_descriptors": None, "fit_errors": {}},
     Kind.COARSENING: {"best": None, "coarsening_progress": None, "coarsened": None, "loss_history": ()},
 }
@@ -55,6 +57,8 @@ class LiveResults:
         self._due: set[Kind] = set()
         self._fits: dict[str, HarmonicFit] = {}
         self._measured: dict[tuple[str, str], Descriptors] = {}
+        self._losses: list[tuple[int, float]] = []
+        self._has_shown = False
 
     def forget(self) -> None:
         """Drop what is kept of each particle, because ids have got another meaning."""
@@ -67,12 +71,20 @@ class LiveResults:
         if before is None or before.selected != after.selected:
             self._show_nothing(*LIVE)
             self._owner.update("fit", fit=self._fits.get(after.selected))
+        same = before is not None and before.selected == after.selected
         for request in requests:
-            self._board.stop_lane(request.kind)
+            if not (same and self._may_finish(request.kind)):
+                self._board.stop_lane(request.kind)
         self._due = {request.kind for request in requests} | (self._due if after.selected else set())
         if self._owner.results.fit is None and not self._is_open(Kind.FIT):
             self._drop_dependents(Kind.FIT)
         self._advance()
+
+    def _may_finish(self, kind: Kind) -> bool:
+        """Whether older work shall still be shown: else nothing would be seen while a slider is dragged."""
+        return self._board.is_running(kind) and (
+            kind is Kind.SURFACE or (kind is Kind.COARSENING and not self._has_shown)
+        )
 
     def _show_nothing(self, *kinds: Kind) -> None:
         for kind in kinds:
@@ -81,7 +93,8 @@ class LiveResults:
 
     def _advance(self) -> None:
         for kind in LIVE:
-            if kind in self._due and not any(map(self._is_open, needs(kind, self._owner.choices))):
+            waits = self._board.is_running(kind) or any(map(self._is_open, needs(kind, self._owner.choices)))
+            if kind in self._due and not waits:
                 self._due.discard(kind)
                 self._start(kind)
 
@@ -96,6 +109,9 @@ class LiveResults:
             self._advance()
 
         def failed(failure: Failed) -> None:
+            if kind in self._due:  # what was asked for meanwhile may well succeed
+                self._advance()
+                return
             self._drop_dependents(kind)
             self._show_nothing(kind)
             self._owner.tell_failure(_TITLES[kind])(failure)
@@ -128,7 +144,11 @@ class LiveResults:
     def _surface(self) -> "_Work":
         choices = self._owner.choices
         job = Job(draw_surface, (self._owner.results.fit, choices.l_max, choices.level))
-        return job, lambda mesh: self._owner.update("surface", surface=mesh), _ignore
+
+        def keep(mesh: "Mesh") -> None:
+            self._owner.update("surface", surface=mesh, surface_l_max=choices.l_max)
+
+        return job, keep, _ignore
 
     def _descriptors(self) -> "_Work":
         entry, metric = self._entry(), self._owner.choices.box_metric
@@ -149,15 +169,21 @@ class LiveResults:
     def _coarsening(self) -> "_Work":
         choices, entry = self._owner.choices, self._entry()
         target = self._owner.results.surface if choices.target == "fit" else entry.particle.mesh
+        self._has_shown = False
+        self._losses = []
         self._owner.update("coarsening", coarsened=None, coarsening_progress=None, loss_history=())
         job = Job(coarsen_one, (target, choices.order, self._owner.particles.index(entry)))
         return job, self._keep_coarsened, self._keep_progress
 
     def _keep_progress(self, step: "CoarseningProgress") -> None:
-        results = self._owner.results
-        history = (*results.loss_history, (step.step, step.loss))
-        best = step if step.polyhedron else results.best
+        self._losses.append((step.step, step.loss))
+        best = step if step.polyhedron else self._owner.results.best
+        history = Grown(self._losses)
         self._owner.update("coarsening", coarsening_progress=step, best=best, loss_history=history)
+        self._has_shown = self._has_shown or step.polyhedron is not None
+        if self._has_shown and Kind.COARSENING in self._due:
+            self._board.stop_lane(Kind.COARSENING)
+            self._advance()
 
     def _keep_coarsened(self, done: "Coarsened") -> None:
         history = tuple(enumerate(done.loss_history))

@@ -1,6 +1,6 @@
 """What is true of the selected particle at the moment, and of the studies that have been run."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -36,8 +36,9 @@ class Results:
     ----------
     fit
         Coefficients up to degree 30; hidden surface share and warnings with them.
-    surface
-        The fit's surface cut at the chosen l_max, in the particle's frame, micrometres.
+    surface, surface_l_max
+        The fit's surface in the particle's frame, micrometres, and the degree at which it is cut: the
+        chosen one when nothing runs; while a slider is dragged, one that it has passed.
     particle_descriptors, fit_descriptors, fit_errors
         Of the CT particle, of `surface`, and the relative errors (Eq. 8) of the second.
     coarsening_progress
@@ -55,13 +56,14 @@ class Results:
 
     fit: "HarmonicFit | None" = None
     surface: Mesh | None = None
+    surface_l_max: int = 0
     particle_descriptors: "Descriptors | None" = None
     fit_descriptors: "Descriptors | None" = None
     fit_errors: Mapping[str, float] = field(default_factory=dict)
     best: "CoarseningProgress | Coarsened | None" = None
     coarsening_progress: "CoarseningProgress | None" = None
     coarsened: "Coarsened | None" = None
-    loss_history: tuple[tuple[int, float], ...] = ()
+    loss_history: Sequence[tuple[int, float]] = ()
     lmax_study: "LmaxStudy | None" = None
     coarsening_study: "CoarseningStudy | None" = None
     outdated: frozenset[str] = frozenset()

@@ -70,15 +70,26 @@ def open_window(
     poster = Poster()
     runner = ThreadRunner(poster.post)
     session = Session(runner)
+    found = [Path(path) for path in paths]
+    if not found:
+        session.open_sample()  # is read while the window is built
     window = MainWindow(session, preferences or Preferences.load(), views or best_kind())
     poster.setParent(window)
-    runner.submit(Job(warm_up, (1,)), lambda _event: None, "warm-up")
-    found = [Path(path) for path in paths]
     if found:
         QTimer.singleShot(0, window, lambda: window.commands.open_paths(found, unit))
-    else:
-        session.open_sample()
+    _warm_up_later(session, runner)
     return window
+
+
+def _warm_up_later(session: Session, runner: ThreadRunner) -> None:
+    """Compile, or load, what the other methods need, but not before the first polyhedron is there."""
+
+    def begin() -> None:
+        if session.results.coarsened is not None:
+            cut()
+            runner.submit(Job(warm_up, (1,)), lambda _event: None, "warm-up")
+
+    cut = session.topics.coarsening.connect(begin)
 
 
 Hook = Callable[[type[BaseException], BaseException, TracebackType | None], Any]

@@ -72,7 +72,7 @@ class ExplorePage(PageWidget):
         self.plots.wire(session, wiring, context.commands)
 
     def _show_fit(self) -> None:
-        self.triptych.show_fit(self._session.results.surface, self._session.choices.l_max)
+        self.triptych.show_fit(self._session.results.surface, self._session.results.surface_l_max)
 
     def _show_coarsening(self) -> None:
         results = self._session.results

@@ -1,0 +1,141 @@
+"""What is shown while choices change faster than work is done; the test decides when which job runs."""
+
+from collections.abc import Callable
+
+import pytest
+
+from regolith_studio.geometry.directions import icosphere
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.jobs.events import Job, Listener
+from regolith_studio.jobs.runners.drive import drive
+from regolith_studio.session.choices import Choices
+from regolith_studio.session.grown import Grown
+from regolith_studio.session.session import Session
+
+
+class Held:
+    """A runner whose jobs wait until the test lets the newest of a lane run."""
+
+    def __init__(self) -> None:
+        self.waiting: dict[str, list[Held.Handle]] = {}
+
+    def submit(self, job: Job, listener: Listener, lane: str = "") -> "Held.Handle":
+        handle = Held.Handle(job, listener)
+        self.waiting.setdefault(lane, []).append(handle)
+        return handle
+
+    def let(self, lane: str, between: Callable[[], None] = lambda: None) -> bool:
+        """Run the oldest job of a lane to its end; says whether there was one that was not cancelled."""
+        if not self.waiting.get(lane):
+            return False
+        handle = self.waiting[lane].pop(0)
+
+        def hear(event: object) -> None:
+            handle.listener(event)  # type: ignore[arg-type]
+            between()
+
+        handle.listener(drive(handle.job, hear, lambda: handle.cancelled))
+        return not handle.cancelled
+
+    def all(self) -> None:
+        while any(self.waiting.values()):
+            for lane in list(self.waiting):
+                self.let(lane)
+
+    def close(self) -> None: ...
+
+    class Handle:
+        done = False
+
+        def __init__(self, job: Job, listener: Listener) -> None:
+            self.job, self.listener, self.cancelled = job, listener, False
+
+        def cancel(self) -> None:
+            self.cancelled = True
+
+
+@pytest.fixture
+def held() -> Held:
+    return Held()
+
+
+@pytest.fixture
+def session(held: Held) -> Session:
+    made = Session(held, Choices(method="quadric", level=2, l_max=4))
+    egg = icosphere(3)
+    made.adopt([Particle("egg", egg.moved(scale=20.0))])
+    held.all()
+    assert made.results.coarsened is not None
+    return made
+
+
+def test_that_a_surface_under_way_is_shown_although_the_slider_has_gone_on(
+    session: Session, held: Held
+) -> None:
+    for l_max in (5, 6, 7):
+        session.choose("drag", l_max=l_max)
+    assert held.let("surface")
+    assert session.results.surface_l_max == 5
+    assert len(held.waiting["surface"]) == 1
+    session.choose("drag", l_max=9)
+    assert held.let("surface")
+    assert session.results.surface_l_max == 7
+    held.all()
+    assert session.results.surface_l_max == 9
+    assert session.results.coarsened is not None
+
+
+def test_that_a_coarsening_shows_its_first_polyhedron_before_it_makes_room(
+    session: Session, held: Held
+) -> None:
+    session.choose("drag", n_faces=12)
+    for n_faces in (13, 14):
+        session.choose("drag", n_faces=n_faces)
+    shown: list[int] = []
+    session.topics.coarsening.connect(
+        lambda: shown.append(session.results.polyhedron.n_faces if session.results.polyhedron else 0)
+    )
+    assert not held.let("coarsening")  # stopped as soon as it had shown something
+    assert 12 in shown
+    held.all()
+    assert session.results.coarsened is not None
+    assert session.results.coarsened.n_faces_asked == 14
+
+
+def test_that_another_particle_never_waits_for_the_surface_of_the_last(session: Session, held: Held) -> None:
+    session.adopt([Particle("pea", icosphere(2).moved(scale=3.0))], add=True)
+    held.all()
+    session.choose(l_max=6)
+    session.select("egg")
+    held.all()
+    assert session.selected is not None
+    assert session.results.surface is not None
+    volume = session.selected.particle.mesh.volume
+    assert session.results.surface.volume == pytest.approx(volume, rel=0.05)
+
+
+def test_that_an_outdated_failure_is_not_told(session: Session, held: Held) -> None:
+    failures: list[str] = []
+    session.topics.failed.connect(lambda failure: failures.append(failure.sentence))
+    session.choose(l_max=5)
+    handle = held.waiting["surface"][0]
+    handle.job = Job(_refuse)
+    session.choose(l_max=6)
+    held.all()
+    assert failures == []
+    assert session.results.surface_l_max == 6
+
+
+def _refuse():  # type: ignore[no-untyped-def]
+    raise ValueError("an old degree")
+    yield
+
+
+def test_that_a_snapshot_of_a_growing_list_stays_what_it_was() -> None:
+    items = [1, 2]
+    then = Grown(items)
+    items.append(3)
+    assert list(then) == [1, 2] == then
+    assert (then[-1], then[:1], len(Grown(items))) == (2, (1,), 3)
+    with pytest.raises(IndexError):
+        then[2]
