@@ -20,8 +20,8 @@ SLAB = 64 * 1024**2
 """Bytes that the child hands over at a time, or one slice where that has more."""
 LARGEST_LAYER = 256 * 1024**2
 """Bytes that may be handed over at once where a file is packed in chunks of so many slices."""
-OPEN_SECONDS, OPEN_BYTES_A_SECOND = 2.0, 2e7
-SLAB_SECONDS, SLAB_BYTES_A_SECOND, SKIPPED_BYTES_A_SECOND = 2.0, 1e7, 3e7
+OPEN_SECONDS, OPEN_BYTES_A_SECOND = 1.5, 2e7
+SLAB_SECONDS, SLAB_BYTES_A_SECOND, SKIPPED_BYTES_A_SECOND = 1.5, 1e7, 3e7
 LEAST_MEMORY = 512 * 1024**2
 
 Progress = Callable[[int, int], None]

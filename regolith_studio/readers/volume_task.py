@@ -45,8 +45,7 @@ def read_slices(request: dict[str, Any]) -> Message:
     try:
         volume, _ = _open_one(request)
         z0, z1 = int(request["z0"]), int(request["z1"])
-        with np.errstate(all="ignore"):
-            voxels = checked_slices(volume, z0, z1)
+        voxels = checked_slices(volume, z0, z1)
     except FileError as error:
         raise FileError(sentence_about(path, str(error))) from None
     return Message({}, (_little(voxels),))
@@ -60,7 +59,8 @@ def checked_slices(volume: OpenVolume, z0: int, z1: int) -> NDArray[Any]:
     FileError
         If the file holds something else.
     """
-    voxels = volume.read(z0, z1)
+    with np.errstate(all="ignore"):
+        voxels = volume.read(z0, z1)
     header = volume.header
     if voxels.shape != (z1 - z0, *header.shape[1:]) or voxels.dtype != header.dtype:
         raise FileError("is damaged: its slices are not of the size and type that its header says.")

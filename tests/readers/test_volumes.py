@@ -280,3 +280,17 @@ def test_that_real_volumes_come_in_as_what_they_are(name, shape, kind, real_data
     assert (header.shape, header.kind) == (shape, kind)
     volume = read_volume(real_data(name), voxel_size=1.0)
     assert np.array_equal(volume.array.T, tifffile.imread(real_data(name)))
+
+
+def test_that_imagej_slices_that_are_called_channels_come_in_with_a_note(tmp_path) -> None:
+    many, few = np.repeat(SLICES, 2, axis=0), SLICES[:3]
+    tifffile.imwrite(tmp_path / "many.tif", many, imagej=True, metadata={"axes": "CYX"})
+    tifffile.imwrite(tmp_path / "few.tif", few, imagej=True, metadata={"axes": "CYX"})
+    tifffile.imwrite(tmp_path / "times.tif", few, imagej=True, metadata={"axes": "TYX"})
+    assert describe_volume(tmp_path / "many.tif").notes == (
+        "The file calls its 14 images channels; they were taken for slices.",
+    )
+    assert np.array_equal(read_volume(tmp_path / "many.tif", voxel_size=1.0).array.T, many)
+    assert np.array_equal(read_volume(tmp_path / "times.tif", voxel_size=1.0).array.T, few)
+    with pytest.raises(FileError, match="holds 3 colours or channels"):
+        read_volume(tmp_path / "few.tif", voxel_size=1.0)

@@ -200,7 +200,7 @@ def _whole_numbers(fields: dict[str, str], name: str, count: int | None = None) 
         or not all(re.fullmatch(r"\d{1,18}", word) for word in words)
     ):
         raise FileError(
-            f"is a broken NRRD: its field “{name}” is not {'a' if count else 'of'} whole number(s)."
+            f"is a broken NRRD: its field “{name}” is not {'a whole number' if count else 'whole numbers'}."
         )
     return [int(word) for word in words]
 

@@ -21,6 +21,7 @@ from regolith_studio.readers.volume_format import (
     voxel_type,
 )
 
+MOST_CHANNELS = 8
 _CHANNELS = re.compile(r"<Pixels\b[^>]*\bSize[CT]=\"(?!1\")(\d+)\"")
 
 
@@ -80,9 +81,9 @@ def open_tiff(path: Path, _options: Mapping[str, Any]) -> OpenVolume:
 def _stack(path: Path, file: Any) -> OpenVolume:
     series = max(file.series, key=lambda each: each.size)
     page = series.keyframe
-    _check_colours(series, page)
-    shape = three_dimensions(tuple(series.shape))
     size, unit, notes = stated_size(file)
+    notes += _check_colours(series, page)
+    shape = three_dimensions(tuple(series.shape))
     if len(file.series) > 1:
         notes += (f"The file holds {len(file.series)} series of images; the largest was read.",)
     header = VoxelHeader(shape, voxel_type(np.dtype(series.dtype)), size, unit, None, notes)
@@ -98,13 +99,19 @@ def _stack(path: Path, file: Any) -> OpenVolume:
     return TiffPages(file, pages, header)
 
 
-def _check_colours(series: Any, page: Any) -> None:
+def _check_colours(series: Any, page: Any) -> tuple[str, ...]:
+    """Refuse colours; more channels than any microscope has are slices that were named so by mistake."""
+    others = [edge for axis, edge in zip(series.axes, series.shape, strict=True) if axis not in "SCYX"]
+    notes: tuple[str, ...] = ()
     for axis, edge in zip(series.axes, series.shape, strict=True):
-        if axis in "SC" and edge > 1:
+        if axis == "C" and edge > MOST_CHANNELS and max(others, default=1) == 1:
+            notes = (f"The file calls its {edge} images channels; they were taken for slices.",)
+        elif axis in "SC" and edge > 1:
             raise FileError(f"holds {edge} colours or channels; save one of them as greys.")
     channels = _CHANNELS.search(page.description[:100_000])
     if channels:
         raise FileError(f"holds {channels[1]} channels or times; save one of them alone.")
+    return notes
 
 
 def _prepare() -> None:

@@ -1,0 +1,191 @@
+"""Volumes with bytes changed at random: every parser gives voxels or one sentence, nothing else.
+
+The program's own parsers are asked directly, so that nothing but the error of a bad file passes for an
+answer; TIFF and HDF5, whose libraries are compiled, through the guard, as users meet them.
+"""
+
+import gzip
+import io
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+import tifffile
+
+from regolith_studio.errors import FileError
+from regolith_studio.readers.guard import Guard
+from regolith_studio.readers.volume_task import checked_slices, opened_volume
+from regolith_studio.readers.volumes import describe_volume, open_slabs
+
+SLICES = np.random.default_rng(1).integers(0, 9, (4, 5, 6)).astype(np.uint16)
+FOREIGN = Path(__file__).with_name("foreign_volumes")
+WORDS = [b"", b"\0", b"\xff\xff\xff\xff", b"-1", b"1e999", b"nan", b"9" * 12, b"\n", b" ", b"#", b":", b"="]
+WORDS += [b"raw", b"gzip", b"LOCAL", b"double", b"MET_LONG", b"../x", b"(1,0,0)", b"\x7f\xff\xff\xff"]
+LONGEST = 2.0
+"""Seconds that a file may take; a child that takes longer is ended, which the sentence says."""
+
+
+def tiff(**options: object) -> bytes:
+    file = io.BytesIO()
+    tifffile.imwrite(file, SLICES, photometric="minisblack", **options)
+    return file.getvalue()
+
+
+def hdf5(**options: object) -> bytes:
+    file = io.BytesIO()
+    with h5py.File(file, "w") as stored:
+        data = stored.create_dataset("exported_data", data=SLICES, **options)
+        data.attrs["axistags"] = '{"axes": [{"key": "z"}, {"key": "y"}, {"key": "x"}]}'
+        data.attrs["element_size_um"] = (3.0, 2.0, 1.0)
+    return file.getvalue()
+
+
+def npy() -> bytes:
+    file = io.BytesIO()
+    np.save(file, SLICES)
+    return file.getvalue()
+
+
+def foreign(name: str) -> Callable[[], bytes]:
+    return (FOREIGN / name).read_bytes
+
+
+def nii_gz() -> bytes:
+    return gzip.compress((FOREIGN / "nib1.nii").read_bytes(), mtime=0)
+
+
+OWN = {
+    "a.npy": npy,
+    "raw.nrrd": foreign("pynrrd-raw.nrrd"),
+    "gzip.nrrd": foreign("pynrrd-gzip-be.nrrd"),
+    "raw.mha": foreign("itk-raw.mha"),
+    "zlib.mha": foreign("itk-zlib.mha"),
+    "one.nii": foreign("nib1.nii"),
+    "two.nii": foreign("nib2.nii"),
+    "one.nii.gz": nii_gz,
+}
+LIBRARIES = {
+    "plain.tif": tiff,
+    "lzw.tif": lambda: tiff(compression="lzw"),
+    "zlib.tif": lambda: tiff(compression="zlib", predictor=True),
+    "imagej.tif": lambda: tiff(imagej=True, metadata={"axes": "ZYX", "unit": "um", "spacing": 2.0}),
+    "big.tif": lambda: tiff(bigtiff=True, tile=(16, 16), compression="packbits"),
+    "plain.h5": hdf5,
+    "gzip.h5": lambda: hdf5(chunks=(2, 3, 3), compression="gzip", shuffle=True),
+}
+
+
+def mutated(data: bytes, rng: np.random.Generator) -> bytes:
+    """`data` with one to four bytes changed, left out, doubled or replaced by a word that hurts.
+
+    Half of the changes are within the first 400 bytes, where headers are.
+    """
+    for _ in range(rng.integers(1, 5)):
+        reach = len(data) if rng.random() < 0.5 else min(len(data), 400)
+        place = int(rng.integers(0, reach + 1))
+        end = place + int(rng.choice([0, 0, 1, 1, 4, 4, 20, len(data)]))
+        change = [
+            bytes(rng.integers(0, 256, end - place if end - place < 30 else 1, dtype=np.uint8)),
+            WORDS[rng.integers(len(WORDS))],
+            data[place:end] * 2,
+            b"",
+        ][rng.integers(4)]
+        data = data[:place] + change + data[end:]
+    return data
+
+
+def answer_of(path: Path) -> str:
+    """What a parser says to a file, in this process: its sentence, or nothing if it gives voxels."""
+    try:
+        volume, _ = opened_volume(path, {})
+        try:
+            header = volume.header
+            checked_slices(volume, 0, min(header.shape[0], 2))
+        finally:
+            volume.close()
+    except FileError as error:
+        return str(error)
+    return ""
+
+
+def guarded_answer_of(path: Path, guard: Guard) -> str:
+    """The same through the child."""
+    start = time.monotonic()
+    try:
+        header = describe_volume(path, guard=guard)
+        open_slabs(path, voxel_size=1.0, kind="grey", guard=guard).read(0, min(header.shape[2], 2))
+    except FileError as error:
+        sentence = str(error)
+    else:
+        sentence = f"{path.name}."
+    assert sentence.startswith(path.name), sentence
+    assert time.monotonic() - start < 60.0
+    return sentence.removeprefix(f"{path.name}.")
+
+
+def check_sentence(sentence: str) -> None:
+    assert not sentence or sentence.endswith("."), sentence
+    assert "\n" not in sentence, sentence
+    assert len(sentence) < 250, sentence
+
+
+def run_own(name: str, count: int, seed: int, path: Path) -> None:
+    rng = np.random.default_rng(seed)
+    data = OWN[name]()
+    path.write_bytes(data)
+    assert answer_of(path) == ""
+    for _ in range(count):
+        path.write_bytes(mutated(data, rng))
+        check_sentence(answer_of(path))
+
+
+def run_guarded(name: str, count: int, seed: int, path: Path) -> int:
+    """How many files ended the child that read them."""
+    rng = np.random.default_rng(seed)
+    data = LIBRARIES[name]()
+    path.write_bytes(data)
+    guard = Guard()
+    guard.warm_up()
+    assert guarded_answer_of(path, guard) == ""
+    ended = 0
+    for _ in range(count):
+        path.write_bytes(mutated(data, rng))
+        sentence = guarded_answer_of(path, guard)
+        check_sentence(sentence)
+        ended += "ended the process" in sentence or "given up" in sentence
+    path.write_bytes(data)
+    assert guarded_answer_of(path, guard) == ""
+    guard.close()
+    return ended
+
+
+@pytest.mark.parametrize("name", OWN)
+def test_that_four_hundred_mutations_give_voxels_or_a_sentence(name, tmp_path) -> None:
+    run_own(name, 400, 21, tmp_path / name)
+
+
+@pytest.mark.parametrize("name", LIBRARIES)
+def test_that_two_hundred_mutations_of_library_formats_give_voxels_or_a_sentence(name, tmp_path) -> None:
+    assert run_guarded(name, 200, 22, tmp_path / name) <= 10
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", OWN)
+def test_that_forty_thousand_mutations_give_voxels_or_a_sentence(name, tmp_path) -> None:
+    run_own(name, 40_000, 23, tmp_path / name)
+
+
+CRASHES = sorted(Path(__file__).with_name("crashes_volumes").iterdir())
+"""Found by atheris and by the mutations above."""
+
+
+@pytest.mark.parametrize("path", CRASHES, ids=lambda path: path.name)
+def test_that_files_that_once_broke_a_parser_give_voxels_or_a_sentence(path) -> None:
+    guard = Guard()
+    check_sentence(guarded_answer_of(path, guard))
+    if path.suffix not in (".h5", ".tif"):
+        check_sentence(answer_of(path))
+    guard.close()
