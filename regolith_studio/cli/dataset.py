@@ -42,6 +42,30 @@ def build(
     set_: Settings = None,
     target: Target = "fit",
     l_max: LMax = 10,
+    representatives: Annotated[
+        int,
+        typer.Option(
+            "--representatives", min=0, help="Particles that stand for all; 0 for each.", metavar="N"
+        ),
+    ] = 0,
+    weighting: Annotated[
+        str, typer.Option("--weighting", help="What representatives count: number or volume.", metavar="W")
+    ] = "number",
+    size_importance: Annotated[
+        float, typer.Option("--size-importance", min=0.0, help="Of size in their choice.", metavar="X")
+    ] = 0.0,
+    sizes: Annotated[
+        str,
+        typer.Option(
+            "--sizes",
+            help="measured classes:25,37,... fitted:log-normal log-normal:50,0.4 ...",
+            metavar="SPEC",
+        ),
+    ] = "measured",
+    quality_curve: Annotated[
+        Path | None,
+        typer.Option("--quality-curve", help="CSV of the error over the number of them.", metavar="FILE"),
+    ] = None,
     name: Annotated[str, typer.Option("--name", help="Name of the dataset; the folder's if left out.")] = "",
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace what is in the folder.")] = False,
     unit: Unit = "um",
@@ -49,24 +73,36 @@ def build(
     jobs: Jobs = 1,
     seed: Seed = 0,
 ) -> None:
-    """Coarsen the meshes and write them as a dataset folder."""
+    """Coarsen the meshes, or N that stand for all of them, and write a dataset folder."""
     from regolith_studio.cli.inputs import exit_code, read_inputs
     from regolith_studio.cli.terminal import complain, follow, print_json
+    from regolith_studio.dataset.size_spec import parse_sizes
     from regolith_studio.jobs.building import DatasetOptions, build_dataset_folder, check_place
+    from regolith_studio.jobs.representing import RepresentativesOrder, measure_population, measure_quality
     from regolith_studio.session.outputs.coarsening import coarsening_document
+    from regolith_studio.session.outputs.staging import write_bytes
+    from regolith_studio.studies.representatives import quality_table
+    from regolith_studio.studies.tables import csv_text
 
     wish = choices_from(faces, method, preset, weight, set_, target, l_max, seed)
+    with as_bad_use():
+        parse_sizes(sizes)
+        chosen = RepresentativesOrder.of(representatives or 10, weighting, size_importance, seed)
     check_place(output, overwrite)
     loaded = read_inputs(meshes, unit)
+    if quality_curve is not None:
+        population = follow(measure_population(loaded.particles, jobs))
+        curve = follow(measure_quality(population, chosen))
+        write_bytes(quality_curve, csv_text(quality_table(curve)).encode("utf-8"))
     known = None if wish.preset_modified else wish.preset
-    options = DatasetOptions(name, known, overwrite, jobs)
+    options = DatasetOptions(name, known, overwrite, jobs, chosen if representatives else None, sizes)
     built = follow(build_dataset_folder(loaded.particles, wish.order, output, options))
     failed = [each for each in built.outcomes if each.coarsened is None]
     complain(f"{each.name}: {each.problem}" for each in failed)
     if json:
         print_json({"folder": str(output)} | coarsening_document(wish.order, built.outcomes))
     else:
-        typer.echo(f"{len(built.dataset)} of {len(built.outcomes)} particles in the dataset {output}")
+        typer.echo(f"{len(built.dataset)} of {len(loaded.particles)} particles in the dataset {output}")
     raise typer.Exit(exit_code(meshes, loaded, len(failed)))
 
 

@@ -4,6 +4,8 @@ BUILD (Kaufman and Rousseeuw 1990) finds a start, eager swaps (FasterPAM, Schube
 2021) improve it: each candidate's gain against all medoids at once in one pass over the points.
 """
 
+from collections.abc import Iterator, Sequence
+
 import numpy as np
 from scipy.spatial.distance import cdist
 
@@ -42,22 +44,38 @@ def k_medoids(
     InputError
         If k is not between 1 and n.
     """
+    return next(medoid_series(points, (k,), weights, seed))
+
+
+def medoid_series(
+    points: FloatArray, counts: Sequence[int], weights: FloatArray | None = None, seed: int = 0
+) -> Iterator[tuple[IntArray, IntArray]]:
+    """As :func:`k_medoids` for each k of `counts`, with one table of distances and one BUILD for all.
+
+    Raises
+    ------
+    InputError
+        If a count is not between 1 and n.
+    """
     n = len(points)
-    if not 1 <= k <= n:
-        raise InputError(f"Between 1 and {n} representatives can be chosen from {n} particles, got {k}.")
+    for k in counts:
+        if not 1 <= k <= n:
+            raise InputError(f"Between 1 and {n} representatives can be chosen from {n} particles, got {k}.")
     counted = np.ones(n) if weights is None else np.asarray(weights, dtype=np.float64)
     subset = np.arange(n)
     if n > LARGEST_TABLE:
         generator = np.random.default_rng(np.random.SeedSequence(seed))
-        subset = np.sort(generator.choice(n, max(LARGEST_TABLE, k), replace=False))
+        subset = np.sort(generator.choice(n, max(LARGEST_TABLE, *counts), replace=False))
     table = cdist(points[subset], points[subset])
-    chosen = build_medoids(table, counted[subset], k)
-    if 1 < k < len(subset):
-        swap_medoids(table, counted[subset], chosen)
-    medoids = np.sort(subset[chosen])
-    nearest = cdist(points, points[medoids]).argmin(axis=1)
-    nearest[medoids] = np.arange(k)
-    return medoids.astype(np.int64), nearest.astype(np.int64)
+    built = build_medoids(table, counted[subset], max(counts))
+    for k in counts:
+        chosen = built[:k].copy()
+        if 1 < k < len(subset):
+            swap_medoids(table, counted[subset], chosen)
+        medoids = np.sort(subset[chosen])
+        nearest = cdist(points, points[medoids]).argmin(axis=1)
+        nearest[medoids] = np.arange(k)
+        yield medoids.astype(np.int64), nearest.astype(np.int64)
 
 
 @kernel

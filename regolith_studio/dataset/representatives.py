@@ -1,19 +1,22 @@
 """Chooses the particles that stand for a population, with their shares and sizes (section 2.5)."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.stats import wasserstein_distance
 
 from regolith_studio.dataset.build import ShapeClass
-from regolith_studio.dataset.medoids import k_medoids
+from regolith_studio.dataset.medoids import medoid_series
 from regolith_studio.dataset.size_distribution import DiscreteSizes, Weighting
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 
 NEEDED = ("volume", "sphericity", "aspect_ratio", "min_diameter", "convex_hull_volume")
 """Descriptors that the choice looks at."""
+
+LENGTHS = ("min_diameter", "max_diameter")
+"""Compared descriptors that grow with the particle."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,17 +68,44 @@ def choose_representatives(
     InputError
         If there are fewer than `n` particles, or a descriptor is missing or makes no sense.
     """
+    return next(
+        representative_series(
+            population, (n,), weighting=weighting, size_importance=size_importance, seed=seed
+        )
+    )
+
+
+def representative_series(
+    population: Sequence[Mapping[str, float]],
+    counts: Sequence[int],
+    *,
+    weighting: Weighting = "number",
+    size_importance: float = 0.0,
+    seed: int = 0,
+) -> Iterator[Representatives]:
+    """As :func:`choose_representatives` for each number of `counts`, much faster than one by one.
+
+    Raises
+    ------
+    InputError
+        As there.
+    """
     features = shape_features(population)
-    diameters = np.cbrt(6 / np.pi * _column(population, "volume"))
+    diameters = equivalent_diameters(population)
     if size_importance > 0.0:
         features = np.column_stack([features, size_importance * _standardised(np.log(diameters))])
     counted = np.ones(len(diameters)) if weighting == "number" else (diameters / diameters.max()) ** 3
-    chosen, labels = k_medoids(features, n, counted, seed)
-    classes = tuple(
-        _shape_class(diameters[labels == index], counted[labels == index], weighting)
-        for index in range(len(chosen))
-    )
-    return Representatives(chosen, labels, classes, weighting)
+    for chosen, labels in medoid_series(features, counts, counted, seed):
+        classes = tuple(
+            _shape_class(diameters[labels == index], counted[labels == index], weighting)
+            for index in range(len(chosen))
+        )
+        yield Representatives(chosen, labels, classes, weighting)
+
+
+def equivalent_diameters(population: Sequence[Mapping[str, float]]) -> FloatArray:
+    """Diameter of the ball of each particle's volume, in micrometres, shape (n,)."""
+    return np.asarray(np.cbrt(6 / np.pi * _column(population, "volume")))
 
 
 def shape_features(population: Sequence[Mapping[str, float]]) -> FloatArray:
@@ -98,13 +128,21 @@ def representation_error(
 ) -> dict[str, float]:
     """Wasserstein distance between population and its representatives, per descriptor, in its deviations.
 
-    Each descriptor of the population is compared with that of the chosen particles by their weights,
-    both counted as the choice was.
+    Ratios of the population are compared with those of the chosen particles by their weights; lengths
+    with those that its particles have once each has the shape of its representative and keeps its
+    equivalent diameter. Both are counted as the choice was.
     """
     values, counted = _compared(population, representatives.weighting)
     weights = [one.weight for one in representatives.classes]
-    chosen = representatives.chosen
-    return {key: _distance(each, each[chosen], counted, weights) for key, each in values.items()}
+    chosen, diameters = representatives.chosen, equivalent_diameters(population)
+    errors = {}
+    for key, each in values.items():
+        if key in LENGTHS:
+            stands = (each / diameters)[chosen][representatives.labels] * diameters
+            errors[key] = _distance(each, stands, counted, counted)
+        else:
+            errors[key] = _distance(each, each[chosen], counted, weights)
+    return errors
 
 
 def sampling_noise(
@@ -126,7 +164,7 @@ def sampling_noise(
         one, other = order[: len(order) // 2], order[len(order) // 2 :]
         for key, each in values.items():
             distance = wasserstein_distance(each[one], each[other], counted[one], counted[other])
-            total[key] += distance / _spread(each) / repeats
+            total[key] += float(distance) / _spread(each) / repeats
     return total
 
 
@@ -137,10 +175,14 @@ def _compared(
     volume = _column(population, "volume")
     values = {key: _column(population, key) for key in ("aspect_ratio", "sphericity")}
     values["convexity"] = volume / _column(population, "convex_hull_volume")
+    values["min_diameter"] = _column(population, "min_diameter")
+    values["max_diameter"] = values["min_diameter"] * values["aspect_ratio"]
     return values, np.ones(len(volume)) if weighting == "number" else volume
 
 
-def _distance(values: FloatArray, chosen: FloatArray, counted: FloatArray, weights: Sequence[float]) -> float:
+def _distance(
+    values: FloatArray, chosen: FloatArray, counted: FloatArray, weights: Sequence[float] | FloatArray
+) -> float:
     return float(wasserstein_distance(values, chosen, counted, weights)) / _spread(values)
 
 

@@ -1,18 +1,27 @@
 """Coarsens a sample and writes it as a dataset folder (section 2.5)."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Generator, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-from regolith_studio.dataset.build import build_dataset
+from regolith_studio.dataset.build import ShapeClass, build_dataset, own_class
 from regolith_studio.dataset.dataset import CoarseningRecord, Dataset, Provenance
 from regolith_studio.dataset.folder import write_dataset
+from regolith_studio.dataset.size_distribution import Weighting
+from regolith_studio.dataset.size_spec import Sizing, parse_sizes
 from regolith_studio.errors import DatasetError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.sample_spectrum import sample_spectrum
 from regolith_studio.jobs.coarsening import CoarsenedParticle, CoarseningOrder, coarsen_sample
-from regolith_studio.jobs.events import Progress, Started, Steps
+from regolith_studio.jobs.events import Progress, Started, Step, Steps
+from regolith_studio.jobs.representing import (
+    ChosenParticles,
+    Population,
+    RepresentativesOrder,
+    choose,
+    measure_population,
+)
 
 
 @dataclass(frozen=True)
@@ -29,12 +38,18 @@ class DatasetOptions:
         Whether a dataset that is there already may be replaced.
     workers
         Processes that coarsen at the same time; 0 for one a core.
+    representatives
+        How particles that stand for all are chosen; ``None`` lets every particle stand for itself.
+    sizes
+        Size distributions of the classes, as :mod:`regolith_studio.dataset.size_spec` writes them.
     """
 
     name: str = ""
     preset: str | None = None
     overwrite: bool = False
     workers: int = 1
+    representatives: RepresentativesOrder | None = None
+    sizes: str = "measured"
 
 
 @dataclass(frozen=True)
@@ -49,20 +64,60 @@ class Built:
 def build_dataset_folder(
     particles: Sequence[Particle], order: CoarseningOrder, folder: Path, options: DatasetOptions
 ) -> Steps:
-    """Coarsen every particle and write those that succeeded as a dataset; returns :class:`Built`.
+    """Coarsen the particles, or those that stand for all, and write a dataset; returns :class:`Built`.
 
     Raises
     ------
     DatasetError
         If the folder holds a dataset that may not be replaced, or no particle could be coarsened.
+    InputError
+        If more representatives are asked for than there are particles, or the sizes make no sense.
     """
     check_place(folder, options.overwrite)
-    outcomes = yield from coarsen_sample(particles, order, options.workers)
+    sizing = parse_sizes(options.sizes)
+    if options.representatives is None:
+        chosen, outcomes = None, (yield from coarsen_sample(particles, order, options.workers))
+    else:
+        population = yield from measure_population(particles, options.workers)
+        chosen, outcomes = yield from coarsen_chosen(particles, population, order, options)
     yield Started("Writing the dataset")
-    dataset = dataset_of(particles, outcomes, order, options.name or folder.name, options.preset)
+    name = options.name or folder.name
+    dataset = dataset_of(particles, outcomes, order, name, options.preset, chosen, sizing)
     write_dataset(folder, dataset, overwrite=options.overwrite)
     yield Progress(1, 1, folder.name)
     return Built(folder, dataset, outcomes)
+
+
+def coarsen_chosen(
+    particles: Sequence[Particle], population: Population, order: CoarseningOrder, options: DatasetOptions
+) -> Generator[Step, None, tuple[ChosenParticles, tuple[CoarsenedParticle, ...]]]:
+    """Choose representatives and coarsen them; one that fails makes way, and the choice is made anew.
+
+    Returns
+    -------
+    tuple
+        The choice, and what became of its particles, in its order.
+
+    Raises
+    ------
+    DatasetError
+        If so many fail that too few particles are left.
+    """
+    wish = options.representatives or RepresentativesOrder()
+    known: dict[int, CoarsenedParticle] = {}
+    while True:
+        chosen = choose(population, wish)
+        fresh = [at for at in chosen.places if at not in known]
+        wanted = [particles[at] for at in fresh]
+        outcomes = yield from coarsen_sample(wanted, order, options.workers, fresh)
+        known |= {one.index: one for one in outcomes}
+        failed = {at for at in chosen.places if known[at].coarsened is None}
+        if not failed:
+            return chosen, tuple(known[at] for at in chosen.places)
+        if len(population.kept) - len(failed) < wish.count:
+            first = known[min(failed)]
+            raise DatasetError(f"Too few particles can be coarsened; {first.name}: {first.problem}")
+        population = population.without(failed)
 
 
 def check_place(folder: Path, overwrite: bool) -> None:
@@ -83,8 +138,17 @@ def dataset_of(
     order: CoarseningOrder,
     name: str,
     preset: str | None = None,
+    chosen: ChosenParticles | None = None,
+    sizing: Sizing | None = None,
 ) -> Dataset:
-    """The dataset in which every particle that could be coarsened stands for itself.
+    """The dataset of the particles that could be coarsened.
+
+    Parameters
+    ----------
+    chosen
+        What `outcomes` stand for, in their order; each for itself if not given.
+    sizing
+        From measured sizes to those that are written.
 
     Raises
     ------
@@ -95,7 +159,19 @@ def dataset_of(
     if not good:
         first = next((each.problem for each in outcomes), "there are no particles")
         raise DatasetError(f"No particle could be coarsened, so there is no dataset: {first}")
-    return build_dataset(good, name=name, provenance=provenance(outcomes, order, preset))
+    told = provenance(outcomes, order, preset)
+    weighting: Weighting = "number"
+    classes: list[ShapeClass] = [own_class(particle) for particle, _ in good]
+    if chosen is not None:
+        weighting, classes = chosen.representatives.weighting, list(chosen.representatives.classes)
+        step = (
+            f"{len(classes)} representatives of {chosen.n_particles} particles by k-medoids on shape "
+            f"descriptors, weighted by {weighting}."
+        )
+        told = replace(told, processing_steps=(told.processing_steps[0], step, *told.processing_steps[1:]))
+    if sizing is not None:
+        classes = [replace(one, sizes=sizing(one)) for one in classes]
+    return build_dataset(good, classes, name=name, weighting=weighting, provenance=told)
 
 
 def provenance(

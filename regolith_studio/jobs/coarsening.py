@@ -101,17 +101,25 @@ def coarsen_particle(
     return CoarsenedParticle(particle.name, index, coarsened, "", coefficients, notes, seconds)
 
 
-def coarsen_sample(particles: Sequence[Particle], order: CoarseningOrder, workers: int | Crew = 1) -> Steps:
+def coarsen_sample(
+    particles: Sequence[Particle],
+    order: CoarseningOrder,
+    workers: int | Crew = 1,
+    indices: Sequence[int] | None = None,
+) -> Steps:
     """Fit and coarsen every particle; returns a tuple of :class:`CoarsenedParticle`.
 
     A particle that fails is told with its sentence and does not stop the others. The results do not
-    depend on `workers` (0: one process a core).
+    depend on `workers` (0: one process a core), and with their `indices` in a larger sample (by default
+    0, 1, 2 ...) not on which of its particles are coarsened.
     """
     yield Started("Coarsening", len(particles))
-    jobs = [Job(coarsen_particle, (particle, order, at)) for at, particle in enumerate(particles)]
+    places = range(len(particles)) if indices is None else indices
+    pairs = list(zip(particles, places, strict=True))
+    jobs = [Job(coarsen_particle, (particle, order, at)) for particle, at in pairs]
     with hired(workers) as crew:
         endings = yield from crew.all(jobs, [particle.name for particle in particles])
-    return tuple(_outcome(at, p, endings[at]) for at, p in enumerate(particles))
+    return tuple(_outcome(at, p, ending) for (p, at), ending in zip(pairs, endings, strict=True))
 
 
 def _outcome(at: int, particle: Particle, ending: Ending) -> CoarsenedParticle:

@@ -1,0 +1,121 @@
+"""How many representatives are enough: the error of their number, against the population's own noise."""
+
+from collections.abc import Generator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from regolith_studio.dataset.representatives import (
+    Representatives,
+    representation_error,
+    representative_series,
+    sampling_noise,
+)
+from regolith_studio.dataset.size_distribution import Weighting
+
+COUNTS = (1, 2, 3, 4, 5, 6, 8, 10, 12, 15, 20, 25, 30, 40, 50, 70, 100, 140, 200)
+"""Numbers of representatives that a curve looks at; the paper has 10."""
+
+
+@dataclass(frozen=True)
+class QualityPoint:
+    """The error of one number of representatives: Wasserstein distance per descriptor, in deviations."""
+
+    count: int
+    errors: Mapping[str, float]
+
+    @property
+    def mean(self) -> float:
+        """Over the descriptors."""
+        return float(np.mean(list(self.errors.values())))
+
+
+@dataclass(frozen=True)
+class QualityCurve:
+    """Errors over the number of representatives.
+
+    Parameters
+    ----------
+    points
+        By ascending number.
+    noise
+        The same distance between random halves of the population: below it, more representatives
+        reproduce the sample and no longer the material.
+    n_particles
+        Of the population.
+    """
+
+    points: tuple[QualityPoint, ...]
+    noise: Mapping[str, float]
+    n_particles: int
+    weighting: Weighting = "number"
+    choices: tuple[Representatives, ...] = field(default=(), compare=False, repr=False)
+
+    @property
+    def noise_mean(self) -> float:
+        """Over the descriptors."""
+        return float(np.mean(list(self.noise.values())))
+
+    @property
+    def enough(self) -> int | None:
+        """The smallest number at which the mean error is no larger than the noise; ``None`` if none is."""
+        return next((point.count for point in self.points if point.mean <= self.noise_mean), None)
+
+
+def curve_counts(n_particles: int, wanted: int | None = None) -> tuple[int, ...]:
+    """Numbers worth looking at for a population, with the wanted one among them."""
+    fitting = {count for count in COUNTS if count <= n_particles}
+    return tuple(sorted(fitting | ({wanted} if wanted else set())))
+
+
+def quality_steps(
+    population: Sequence[Mapping[str, float]],
+    counts: Sequence[int],
+    *,
+    weighting: Weighting = "number",
+    size_importance: float = 0.0,
+    seed: int = 0,
+) -> Generator[QualityPoint, None, QualityCurve]:
+    """Choose representatives for each number and measure them; yields each point, returns the curve.
+
+    Raises
+    ------
+    InputError
+        If a number is larger than the population, or descriptors are missing.
+    """
+    ascending = sorted(set(counts))
+    points, choices = [], []
+    series = representative_series(
+        population, ascending, weighting=weighting, size_importance=size_importance, seed=seed
+    )
+    for representatives in series:
+        errors = representation_error(population, representatives)
+        points.append(QualityPoint(len(representatives.chosen), errors))
+        choices.append(representatives)
+        yield points[-1]
+    noise = sampling_noise(population, weighting, seed=seed)
+    return QualityCurve(tuple(points), noise, len(population), weighting, tuple(choices))
+
+
+def quality_curve(
+    population: Sequence[Mapping[str, float]],
+    counts: Sequence[int] | None = None,
+    *,
+    weighting: Weighting = "number",
+    size_importance: float = 0.0,
+    seed: int = 0,
+) -> QualityCurve:
+    """As :func:`quality_steps`, at once; by default for :func:`curve_counts`."""
+    steps = quality_steps(
+        population,
+        counts or curve_counts(len(population)),
+        weighting=weighting,
+        size_importance=size_importance,
+        seed=seed,
+    )
+    while True:
+        try:
+            next(steps)
+        except StopIteration as end:
+            curve: QualityCurve = end.value
+            return curve

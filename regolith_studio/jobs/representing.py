@@ -1,0 +1,151 @@
+"""Which particles stand for a sample: descriptors of all, then representatives for one number or for many."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from regolith_studio.dataset.quality import QualityCurve, curve_counts, quality_steps
+from regolith_studio.dataset.representatives import Representatives, choose_representatives
+from regolith_studio.dataset.size_distribution import Weighting
+from regolith_studio.descriptors.describe import Descriptors
+from regolith_studio.errors import InputError
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.jobs.crew import Crew
+from regolith_studio.jobs.events import Partial, Progress, Started, Steps
+from regolith_studio.jobs.examining import examine_sample
+
+
+@dataclass(frozen=True)
+class RepresentativesOrder:
+    """What is asked of a choice; picklable.
+
+    Parameters
+    ----------
+    count
+        Number of representatives.
+    weighting
+        Whether classes and sizes count particles or their volume.
+    size_importance
+        How much a standard deviation of ln d counts against one of a shape feature.
+    seed
+        Only for populations too large for a table of distances.
+    """
+
+    count: int = 10
+    weighting: Weighting = "number"
+    size_importance: float = 0.0
+    seed: int = 0
+
+    @classmethod
+    def of(
+        cls, count: int, weighting: str, size_importance: float = 0.0, seed: int = 0
+    ) -> "RepresentativesOrder":
+        """From what a user has typed.
+
+        Raises
+        ------
+        InputError
+            If the weighting is none, or a number makes no sense.
+        """
+        if not (count >= 1 and size_importance >= 0.0):
+            raise InputError(f"At least one representative is needed, got {count}.")
+        match weighting:
+            case "number" | "volume":
+                return cls(count, weighting, size_importance, seed)
+        raise InputError(f"Representatives count number or volume, got {weighting!r}.")
+
+
+@dataclass(frozen=True)
+class Population:
+    """The particles of a sample that can be described.
+
+    Parameters
+    ----------
+    kept
+        Their places in the sample.
+    descriptors
+        Of each of them.
+    omitted
+        Name of each other particle, and why it has no descriptors.
+    """
+
+    kept: tuple[int, ...]
+    descriptors: tuple[Descriptors, ...]
+    omitted: tuple[tuple[str, str], ...] = ()
+
+    def without(self, places: set[int]) -> "Population":
+        """The population without the particles at these places of the sample."""
+        pairs = [pair for pair in zip(self.kept, self.descriptors, strict=True) if pair[0] not in places]
+        return Population(tuple(at for at, _ in pairs), tuple(one for _, one in pairs), self.omitted)
+
+
+@dataclass(frozen=True)
+class ChosenParticles:
+    """Representatives of a population, with their places in the sample."""
+
+    places: tuple[int, ...]
+    representatives: Representatives
+    n_particles: int
+
+
+def measure_population(particles: Sequence[Particle], workers: int | Crew = 1) -> Steps:
+    """Descriptors of every particle; returns :class:`Population`.
+
+    Raises
+    ------
+    InputError
+        If no particle has descriptors.
+    """
+    examined = yield from examine_sample(particles, workers=workers)
+    found = [(at, one.descriptors) for at, one in enumerate(examined) if one.descriptors is not None]
+    if not found:
+        raise InputError("No particle can be described, so none can stand for the others.")
+    return Population(
+        tuple(at for at, _ in found),
+        tuple(descriptors for _, descriptors in found),
+        tuple(
+            (particles[at].name, one.problem) for at, one in enumerate(examined) if one.descriptors is None
+        ),
+    )
+
+
+def measure_quality(population: Population, order: RepresentativesOrder) -> Steps:
+    """Errors over the number of representatives; partial results are points, returns ``QualityCurve``."""
+    counts = curve_counts(len(population.kept), order.count)
+    yield Started("Choosing representatives", len(counts))
+    steps = quality_steps(
+        population.descriptors,
+        counts,
+        weighting=order.weighting,
+        size_importance=order.size_importance,
+        seed=order.seed,
+    )
+    done = 0
+    while True:
+        try:
+            point = next(steps)
+        except StopIteration as end:
+            curve: QualityCurve = end.value
+            return curve
+        done += 1
+        yield Partial(point)
+        yield Progress(done, len(counts), f"{point.count} representatives")
+
+
+def choose(population: Population, order: RepresentativesOrder) -> ChosenParticles:
+    """The particles that stand for a population.
+
+    Raises
+    ------
+    InputError
+        If it has fewer particles than are asked for.
+    """
+    found = choose_representatives(
+        population.descriptors,
+        order.count,
+        weighting=order.weighting,
+        size_importance=order.size_importance,
+        seed=order.seed,
+    )
+    return ChosenParticles(
+        tuple(population.kept[index] for index in found.chosen), found, len(population.kept)
+    )
