@@ -4,7 +4,7 @@ from dataclasses import asdict
 from typing import Any
 
 import regolith_studio
-from regolith_studio.dem.case import Prepared
+from regolith_studio.dem.case import Prepared, ReposeCase
 from regolith_studio.dem.consequences import consequences
 from regolith_studio.dem.engine import Checks, Ending, Engine
 from regolith_studio.dem.evaluation.refusal import NoPile
@@ -54,15 +54,7 @@ def run_document(
         },
         "software": {"regolith-studio": regolith_studio.__version__},
         "length_unit": "m",
-        "case": {
-            "test": asdict(case.test),
-            "contact": asdict(case.contact),
-            "n_particles": case.n_particles,
-            "coarse_graining_asked": case.coarse_graining or None,
-            "shapes": case.shapes,
-            "cohesion": case.cohesion,
-            "seed": case.seed,
-        },
+        "case": case_document(case),
         "not_given_in_the_paper": [
             *missing_in_paper(LiftingCylinderTest),
             *missing_in_paper(ContactParameters),
@@ -80,6 +72,19 @@ def run_document(
         },
         "checks": _checks(ending.checks) if ending else None,
         "measurement": _measurement(measured),
+    }
+
+
+def case_document(case: ReposeCase) -> dict[str, Any]:
+    """What was chosen, as plain JSON."""
+    return {
+        "test": asdict(case.test),
+        "contact": asdict(case.contact),
+        "n_particles": case.n_particles,
+        "coarse_graining_asked": case.coarse_graining or None,
+        "shapes": case.shapes,
+        "cohesion": case.cohesion,
+        "seed": case.seed,
     }
 
 

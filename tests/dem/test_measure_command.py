@@ -36,6 +36,30 @@ def test_that_a_saved_pile_is_measured_and_drawn(
     assert json.loads((tmp_path / "out" / "repose.json").read_text("utf-8")) == document
 
 
+def test_that_positions_of_other_programs_are_measured(
+    pile_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    points = 2.0 * cone(32, 1500, 1)
+    table = tmp_path / "rocky.csv"
+    np.savetxt(table, np.column_stack([points, np.full(1500, 2.0)]), delimiter=",", header="x,y,z,diameter")
+    bare = tmp_path / "pile.xyz"
+    rows = "\n".join(f"A {x:.6f} {y:.6f} {z:.6f}" for x, y, z in points)
+    bare.write_text(f"1500\npile\n{rows}\n")
+    found = []
+    for arguments in (["repose", "measure", str(pile_file), "--json"], [*_measure(table)]):
+        assert run(arguments) == 0
+        found.append(json.loads(capsys.readouterr().out)["angle_deg"])
+    assert run([*_measure(bare)]) == 1
+    assert "--diameter" in capsys.readouterr().err
+    assert run([*_measure(bare), "--diameter", "2"]) == 0
+    found.append(json.loads(capsys.readouterr().out)["angle_deg"])
+    assert found == pytest.approx([found[0]] * 3, abs=0.05)
+
+
+def _measure(path: Path) -> list[str]:
+    return ["repose", "measure", str(path), "--unit", "mm", "--json"]
+
+
 def test_that_settings_reach_the_evaluation_and_bad_ones_are_bad_use(
     pile_file: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

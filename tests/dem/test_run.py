@@ -17,12 +17,19 @@ from regolith_studio.dem.engine import Ending, Moment
 from regolith_studio.dem.engines import ENGINES
 from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
 from regolith_studio.dem.host import EngineStopped
-from regolith_studio.dem.parameters import LiftingCylinderTest
+from regolith_studio.dem.parameters import ContactParameters, LiftingCylinderTest
 from regolith_studio.dem.pile import read_pile
 from regolith_studio.dem.run_folder import find_runs, read_run, read_shapes, snapshot_files
 from regolith_studio.errors import FileError, InputError
-from regolith_studio.jobs.events import Partial
-from regolith_studio.jobs.repose import ReposeOrder, simulate_prepared, simulate_repose
+from regolith_studio.jobs.events import Partial, Progress
+from regolith_studio.jobs.repose import (
+    ReposeOrder,
+    StudyRow,
+    simulate_prepared,
+    simulate_repose,
+    study_repose,
+)
+from regolith_studio.studies.repose import write_repose_study
 
 TEST = LiftingCylinderTest(mass=0.003, lift_speed=0.15)
 CASE = ReposeCase(TEST, n_particles=40, seed=1)
@@ -81,6 +88,32 @@ def test_that_the_same_seed_gives_the_same_pile(finished: Path, boxes_folder: Pa
     assert isinstance(ending, Ending)
     assert np.array_equal(ending.pile.points.astype(np.float32), read_pile(finished / "final.npz").points)
     assert [moment.share for moment in moments] == sorted(moment.share for moment in moments)
+
+
+def test_that_a_study_goes_on_where_it_was(finished: Path, boxes_folder: Path, tmp_path: Path) -> None:
+    """The folder holds the run already, so nothing is simulated; a changed case would be."""
+    shutil.copytree(finished, tmp_path / "static_friction_0.8_seed1")
+    row = StudyRow("static_friction", 0.8, boxes_folder, ORDER)
+    steps = study_repose([row], tmp_path)
+    told = list(steps)
+    assert not [step for step in told if isinstance(step, Progress) and "simulated" in step.message]
+    study = told[-1].value
+    assert [each.document["measurement"]["status"] for each in study.runs] == ["too few particles"]
+    files = {path.name for path in write_repose_study(study, tmp_path / "figures")}
+    assert files == {f"repose_study.{kind}" for kind in ("csv", "json", "png", "svg")}
+    other = replace(ORDER, case=replace(CASE, contact=ContactParameters(static_friction=0.1)))
+    fresh = study_repose([replace(row, order=other)], tmp_path)
+    assert any(isinstance(step, Progress) and "simulated" in step.message for step in fresh)
+    fresh.close()
+
+
+def test_that_a_study_s_wishes_are_checked(
+    boxes_folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    where = ["repose", "study", str(boxes_folder), "-o", str(tmp_path / "study")]
+    for wrong in ("static_friction", "static_friction=-1", "colour=red", "static_friction=,2"):
+        assert run([*where, "--vary", wrong]) == 2
+    assert "Traceback" not in capsys.readouterr().err
 
 
 def test_that_a_crash_of_the_engine_is_one_sentence_and_keeps_the_last_snapshot(

@@ -35,12 +35,12 @@ class MujocoSettings:
     """
 
     time_step: float = field(
-        default=0.02, metadata={"label": "Time step", "minimum": 1e-4, "maximum": 0.1, "decimals": 4}
+        default=0.025, metadata={"label": "Time step", "minimum": 1e-4, "maximum": 0.1, "decimals": 4}
     )
     contact_steps: float = field(
-        default=2.5, metadata={"label": "Contact time in steps", "minimum": 2.0, "maximum": 20.0}
+        default=2.0, metadata={"label": "Contact time in steps", "minimum": 2.0, "maximum": 20.0}
     )
-    iterations: int = field(default=50, metadata={"label": "Iterations", "minimum": 1, "maximum": 1000})
+    iterations: int = field(default=25, metadata={"label": "Iterations", "minimum": 1, "maximum": 1000})
     tolerance: float = field(
         default=1e-5, metadata={"label": "Tolerance", "minimum": 1e-12, "maximum": 1e-2, "decimals": 12}
     )
