@@ -1,11 +1,15 @@
 """``run``: a recipe, as the window saves it."""
 
+import contextlib
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from regolith_studio.cli.options import Folder, Jobs, Json
+from regolith_studio.cli.options import Folder, Jobs, Json, as_bad_use
+
+if TYPE_CHECKING:
+    from regolith_studio.jobs.crew import Crew
 
 
 def run(
@@ -26,6 +30,30 @@ def run(
             show_default=False,
         ),
     ] = None,
+    runner: Annotated[
+        str,
+        typer.Option(
+            "--runner", help="Who works: processes of this machine, or a dask cluster.", metavar="NAME"
+        ),
+    ] = "processes",
+    address: Annotated[
+        str,
+        typer.Option(
+            "--address",
+            help="Of the dask scheduler: tcp://HOST:8786 or tls://HOST:8786; without it one is started here.",
+            metavar="URL",
+            show_default=False,
+        ),
+    ] = "",
+    tls: Annotated[
+        Path | None,
+        typer.Option(
+            "--tls",
+            help="Folder with ca.pem, cert.pem and key.pem for a tls:// address.",
+            metavar="DIR",
+            show_default=False,
+        ),
+    ] = None,
     seed: Annotated[
         int | None, typer.Option("--seed", help="Seed in place of the recipe's.", metavar="N")
     ] = None,
@@ -38,10 +66,30 @@ def run(
     wish = read_recipe(recipe)
     if seed is not None:
         wish = wish.model_copy(update={"seed": seed})
-    done = follow(perform(wish, recipe.parent, output, jobs, resume, chunk))
+    with contextlib.closing(_crew(runner, jobs, address, tls)) as crew:
+        done = follow(perform(wish, recipe.parent, output, crew, resume, chunk))
     complain(done.problems)
     if json:
         print_json({"folder": str(output), "files": done.files, "problems": list(done.problems)})
     else:
         typer.echo(f"{len(done.files)} files in {output}")
     raise typer.Exit(1 if done.problems else 0)
+
+
+def _crew(runner: str, jobs: int, address: str, tls: Path | None) -> "Crew":
+    """Who is to work, as the options say it."""
+    from regolith_studio.cli.terminal import complain
+    from regolith_studio.jobs.crew import Crew
+    from regolith_studio.jobs.runners.dask_cluster import TlsFiles
+
+    if runner == "processes":
+        if address or tls:
+            raise typer.BadParameter("--address and --tls go with --runner dask.")
+        return Crew(jobs)
+    if runner != "dask":
+        raise typer.BadParameter(f"There is no runner {runner!r}; there are processes and dask.")
+    files = TlsFiles(tls / "ca.pem", tls / "cert.pem", tls / "key.pem") if tls else None
+    with as_bad_use():
+        crew = Crew.on_cluster(address, jobs, files)
+    complain([f"{crew.workers} workers; dashboard {crew.dashboard}"] if crew.dashboard else [])
+    return crew

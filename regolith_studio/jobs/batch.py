@@ -4,7 +4,7 @@ import queue
 from collections.abc import Callable, Generator, Iterable
 from typing import Any
 
-from regolith_studio.errors import Cancelled, RegolithError
+from regolith_studio.errors import Cancelled, EnvironmentProblem, RegolithError
 from regolith_studio.jobs.events import Ending, Event, Failed, Finished, Job, Started, Steps, Stopped
 from regolith_studio.jobs.runners.protocol import Handle, Runner
 
@@ -88,6 +88,8 @@ def value_of(ending: Ending) -> Any:
             return value
         case Failed(sentence):
             raise RegolithError(sentence)
+        case Stopped(reason) if reason:
+            raise EnvironmentProblem(reason)
         case _:
             raise Cancelled("The work was stopped.")
 

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Self
 
-from regolith_studio.errors import Cancelled, FileError
+from regolith_studio.errors import Cancelled, EnvironmentProblem, FileError
 from regolith_studio.jobs.crew import Crew
-from regolith_studio.jobs.events import Ending, Failed, Finished, Job, Progress, Step
+from regolith_studio.jobs.events import Ending, Failed, Finished, Job, Progress, Step, Stopped
 from regolith_studio.jobs.journal import Journal
 from regolith_studio.jobs.pace import Pace
 from regolith_studio.jobs.shards import Record, read_shard, sha256, write_shard
@@ -208,6 +208,8 @@ def _records(chunk: Chunk, ending: Ending, work: Work, crew: Crew) -> Generator[
             return [Record(chunk.first, {LOST: sentence})]
         case Failed():
             return (yield from _one_by_one(chunk, work, crew))
+        case Stopped(reason) if reason:
+            raise EnvironmentProblem(reason)
         case _:
             raise Cancelled("The work was stopped.")
 

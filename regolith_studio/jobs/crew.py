@@ -2,10 +2,11 @@
 
 from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, Self
 
 from regolith_studio.jobs.batch import as_they_end, call, in_order, value_of
 from regolith_studio.jobs.events import Ending, Job, Progress, Step
+from regolith_studio.jobs.runners.dask_cluster import DaskRunner, TlsFiles
 from regolith_studio.jobs.runners.drive import told
 from regolith_studio.jobs.runners.process_pool import ProcessPoolRunner, cores
 from regolith_studio.jobs.runners.protocol import Runner
@@ -18,11 +19,23 @@ class Crew:
     ----------
     workers
         Jobs at the same time: 1 for this thread alone, more for as many processes, 0 for one a core.
+    runner
+        That works in place of processes of this machine; closed with the crew.
     """
 
-    def __init__(self, workers: int = 1) -> None:
+    def __init__(self, workers: int = 1, runner: Runner | None = None) -> None:
         self.workers = workers or cores()
-        self._runner: Runner | None = None
+        self._runner = runner
+        self.dashboard = ""
+        """Address of a cluster's page, if there is one."""
+
+    @classmethod
+    def on_cluster(cls, address: str = "", workers: int = 0, tls: TlsFiles | None = None) -> Self:
+        """A crew on a Dask cluster; the parameters are those of :class:`DaskRunner`."""
+        runner = DaskRunner(address, workers, tls)
+        crew = cls(runner.workers, runner)
+        crew.dashboard = runner.dashboard
+        return crew
 
     def endings(self, jobs: Iterable[Job]) -> Generator[Ending | None, None, None]:
         """Endings of `jobs` in their order; ``None`` whenever the caller may want to stop."""

@@ -51,7 +51,9 @@ class Failed:
 
 @dataclass(frozen=True)
 class Stopped:
-    """The job was cancelled, or replaced by a newer one of its lane."""
+    """The job was cancelled, or replaced by a newer one of its lane; `reason` where nobody asked for it."""
+
+    reason: str = ""
 
 
 Step = Started | Progress | Partial

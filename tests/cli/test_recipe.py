@@ -62,3 +62,23 @@ def test_that_a_sentence_is_all_that_an_unknown_mistake_prints(capsys, monkeypat
     monkeypatch.setattr("regolith_studio.cli.commands.app", broken)
     assert run(["describe"]) == 1
     assert capsys.readouterr().err == "The program made a mistake (ZeroDivisionError: division by zero).\n"
+
+
+def test_that_runner_and_address_must_go_together(command, grains: Path, tmp_path: Path) -> None:
+    wish = recipe(tmp_path, grains)
+    for options in (
+        ("--runner", "hamster"),
+        ("--address", "tcp://x:1"),
+        ("--runner", "dask", "--address", "tls://x:1"),
+    ):
+        said = command("run", wish, "-o", tmp_path / "out", *options)
+        assert said.code == 2
+        assert not (tmp_path / "out").exists()
+
+
+def test_that_a_run_is_resumed_on_the_command_line(command, grains: Path, tmp_path: Path) -> None:
+    wish = recipe(tmp_path, grains, outputs={"dataset": False, "summary": False})
+    first = command("run", wish, "-o", tmp_path / "out", "--resume", "--chunk", 2, "--json")
+    again = command("run", wish, "-o", tmp_path / "out", "--resume", "--json")
+    assert first.json["files"] == again.json["files"]
+    assert again.code == 0

@@ -1,0 +1,188 @@
+"""A Dask cluster gives the same bytes, encrypted or not, whoever of it dies; its processes are real."""
+
+import os
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import closing, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from regolith_studio.errors import EnvironmentProblem, InputError
+from regolith_studio.jobs.crew import Crew
+from regolith_studio.jobs.events import Progress
+from regolith_studio.jobs.runners import dask_cluster
+from regolith_studio.jobs.runners.dask_cluster import TlsFiles
+from regolith_studio.session.performing import perform
+from regolith_studio.session.recipe import Recipe, recipe_of
+
+pytest.importorskip("distributed")
+pytestmark = pytest.mark.filterwarnings("default")  # Dask's own
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def wish(n: int = 12) -> Recipe:
+    return recipe_of(
+        inputs=[],
+        population={"card": "ma165", "n": n, "l_max": 5},
+        target="particle",
+        method="quadric",
+        level=2,
+        n_faces=12,
+    )
+
+
+def digests(folder: Path) -> dict[str, bytes]:
+    """Every file but the journal's."""
+    files = [path for path in folder.rglob("*") if path.is_file()]
+    names = {path.relative_to(folder): path for path in files}
+    return {name.as_posix(): path.read_bytes() for name, path in names.items() if name.parts[0] != "journal"}
+
+
+def done(folder: Path, crew: Crew | int, n: int = 12) -> dict[str, bytes]:
+    for _ in perform(wish(n), folder.parent, folder, crew, chunk=2):
+        pass
+    return digests(folder)
+
+
+def free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
+
+
+def program(name: str, *options: object) -> "subprocess.Popen[bytes]":
+    command = [sys.executable, "-m", f"distributed.cli.dask_{name}", *map(str, options)]
+    return subprocess.Popen(
+        command, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True
+    )
+
+
+@dataclass(frozen=True)
+class Cluster:
+    """A scheduler and two workers on this machine."""
+
+    address: str
+    scheduler: "subprocess.Popen[bytes]"
+    workers: tuple["subprocess.Popen[bytes]", ...]
+
+
+@contextmanager
+def cluster(scheme: str = "tcp", *tls: object) -> Iterator[Cluster]:
+    address = f"{scheme}://127.0.0.1:{free_port()}"
+    place = ["--host", f"{scheme}://127.0.0.1", "--port", address.rpartition(":")[2]]
+    scheduler = program("scheduler", *place, "--no-dashboard", *tls)
+    options = ("--nthreads", 1, "--no-nanny", "--no-dashboard")
+    workers = tuple(program("worker", address, *options, *tls) for _ in range(2))
+    try:
+        yield Cluster(address, scheduler, workers)
+    finally:
+        for process in (scheduler, *workers):
+            process.kill()
+            process.wait()
+
+
+@pytest.fixture(scope="module")
+def alone(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
+    return done(tmp_path_factory.mktemp("alone") / "out", 1)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(os.name == "nt", reason="signals are a matter of POSIX")
+def test_that_a_cluster_that_loses_a_worker_ends_with_the_same_bytes(
+    tmp_path: Path, alone: dict[str, bytes]
+) -> None:
+    with cluster() as there, closing(Crew.on_cluster(there.address)) as crew:
+        crew._runner._client.wait_for_workers(2, timeout=60)  # type: ignore[union-attr]
+        killed = False
+        for step in perform(wish(), tmp_path, tmp_path / "out", crew, chunk=2):
+            if isinstance(step, Progress) and step.done >= 2 and not killed:
+                there.workers[0].send_signal(signal.SIGKILL)
+                killed = True
+    assert killed
+    assert digests(tmp_path / "out") == alone
+
+
+@pytest.mark.slow
+def test_that_a_cluster_that_goes_away_is_one_sentence_and_the_run_can_go_on(
+    tmp_path: Path, alone: dict[str, bytes]
+) -> None:
+    with cluster() as there, closing(Crew.on_cluster(there.address)) as crew:
+        steps = perform(wish(), tmp_path, tmp_path / "out", crew, chunk=2)
+        with pytest.raises(EnvironmentProblem, match="--resume"):  # noqa: PT012
+            for step in steps:
+                if isinstance(step, Progress) and step.done >= 4:
+                    there.scheduler.kill()
+    for _ in perform(wish(), tmp_path, tmp_path / "out", resume=True):
+        pass
+    assert digests(tmp_path / "out") == alone
+
+
+def signed(folder: Path, name: str) -> None:
+    """An authority in ``ca.pem``, and a certificate of its own making in ``cert.pem`` with ``key.pem``."""
+    names = {path: str(folder / path) for path in ("ca.key", "ca.pem", "key.pem", "cert.csr", "cert.pem")}
+    fresh = ["req", "-newkey", "rsa:2048", "-nodes", "-subj"]
+    authority = [*fresh, "/CN=authority", "-x509", "-days", "2", "-keyout", names["ca.key"], "-out"]
+    request = [*fresh, f"/CN={name}", "-keyout", names["key.pem"], "-out", names["cert.csr"]]
+    sign = ["x509", "-req", "-days", "2", "-CAcreateserial", "-in", names["cert.csr"], "-CA", names["ca.pem"]]
+    for command in (
+        [*authority, names["ca.pem"]],
+        request,
+        [*sign, "-CAkey", names["ca.key"], "-out", names["cert.pem"]],
+    ):
+        subprocess.run(["openssl", *command], check=True, capture_output=True)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not shutil.which("openssl"), reason="openssl makes the certificates")
+def test_that_an_encrypted_cluster_works_and_lets_no_stranger_in(
+    tmp_path: Path, alone: dict[str, bytes]
+) -> None:
+    (tmp_path / "tls").mkdir()
+    (tmp_path / "other").mkdir()
+    for folder in ("tls", "other"):
+        signed(tmp_path / folder, "regolith")
+    files, strangers = (
+        TlsFiles(tmp_path / folder / "ca.pem", tmp_path / folder / "cert.pem", tmp_path / folder / "key.pem")
+        for folder in ("tls", "other")
+    )
+    options = ("--tls-ca-file", files.authority, "--tls-cert", files.certificate, "--tls-key", files.key)
+    with cluster("tls", *options) as there:
+        with closing(Crew.on_cluster(there.address, tls=files)) as crew:
+            assert done(tmp_path / "out", crew) == alone
+        with pytest.raises(EnvironmentProblem, match="No cluster answers"):
+            dask_cluster.DaskRunner(there.address, tls=strangers)
+
+
+@pytest.mark.slow
+def test_that_a_cluster_of_this_machine_gives_the_same_bytes(tmp_path: Path, alone: dict[str, bytes]) -> None:
+    with closing(Crew.on_cluster(workers=2)) as crew:
+        assert crew.workers == 2
+        assert crew.dashboard.startswith("http://127.0.0.1:")
+        assert done(tmp_path / "out", crew) == alone
+
+
+def test_that_an_encrypted_address_needs_files_that_are_there(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="encrypted"):
+        dask_cluster.DaskRunner("tls://127.0.0.1:8786")
+    with pytest.raises(InputError, match=r"ca\.pem is not there"):
+        dask_cluster.DaskRunner(
+            "tls://127.0.0.1:8786", tls=TlsFiles(*[tmp_path / name for name in ("ca.pem", "c.pem", "k.pem")])
+        )
+
+
+def test_that_a_silent_address_is_one_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(dask_cluster, "CONNECT_SECONDS", 0.3)
+    with pytest.raises(EnvironmentProblem, match="No cluster answers at tcp://127"):
+        dask_cluster.DaskRunner(f"tcp://127.0.0.1:{free_port()}")
+
+
+def test_that_without_dask_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(EnvironmentProblem, match=r"regolith-studio\[cluster\]"):
+        dask_cluster.DaskRunner()
