@@ -50,7 +50,18 @@ class InflatedStream:
         while count:
             count -= len(self._piece(min(count, _CHUNK)))
 
-    def _piece(self, most: int) -> bytes:
+    def check_end(self) -> None:
+        """See that the checksum behind the last byte is right, unless the stream goes on.
+
+        Raises
+        ------
+        FileError
+            If it is wrong or missing.
+        """
+        if not self._inflater.eof:
+            self._piece(1, may_end=True)
+
+    def _piece(self, most: int, may_end: bool = False) -> bytes:
         while True:
             if not self._waiting:
                 self._waiting = self._file.read(_CHUNK)
@@ -63,6 +74,8 @@ class InflatedStream:
             if piece:
                 self.place += len(piece)
                 return piece
+            if self._inflater.eof and may_end:
+                return b""
             if self._inflater.eof:
                 self._next_member()
             elif ended:
@@ -106,7 +119,7 @@ class DeflatedVoxels:
 
     def read(self, z0: int, z1: int) -> NDArray[Any]:
         """Slices z0 to z1 in the machine's byte order, shape (z1 - z0, ny, nx)."""
-        _, ny, nx = self.header.shape
+        nz, ny, nx = self.header.shape
         place = self.offset + z0 * ny * nx * self.stored.itemsize
         if self._stream is None or self._stream.place > place:
             self.close()
@@ -115,6 +128,8 @@ class DeflatedVoxels:
         try:
             self._stream.skip(place - self._stream.place)
             self._stream.readinto(out.data.cast("B"))
+            if z1 == nz:
+                self._stream.check_end()
         except FileError:
             self.close()
             raise
