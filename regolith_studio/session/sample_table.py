@@ -1,0 +1,146 @@
+"""A sample as a table: words on health, filters such as ``flat S<0.8``, statistics of groups."""
+
+import operator
+import re
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+
+from regolith_studio.descriptors.catalogue import CATALOGUE
+from regolith_studio.descriptors.distributions import distribution
+from regolith_studio.descriptors.zingg import zingg_class
+from regolith_studio.errors import InputError
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.jobs.examining import Examined
+from regolith_studio.session.outputs.descriptors import descriptor_table
+from regolith_studio.session.results import ParticleEntry
+from regolith_studio.studies.tables import Column, Table
+
+UNITS = {0: "", 1: "um", 2: "um^2", 3: "um^3", 5: "um^5"}
+QUANTILES = (0.1, 0.5, 0.9)
+EVERYTHING = "all"
+"""Name of the group that every particle belongs to."""
+
+_COMPARISON = re.compile(r"^([^<>=!]+)(<=|>=|!=|<|>|=)([-+0-9.eE]+)$")
+_OPERATORS: dict[str, Callable[[float, float], bool]] = {
+    "<": operator.lt,
+    "<=": operator.le,
+    ">": operator.gt,
+    ">=": operator.ge,
+    "=": operator.eq,
+    "!=": operator.ne,
+}
+Filter = Callable[[ParticleEntry], bool]
+
+
+def health_word(entry: ParticleEntry) -> str:
+    """One word: ``sound``, ``mended`` (or doubtful), ``unsound``, or ``unknown`` until it is measured."""
+    if entry.health is None:
+        return "unknown"
+    if not entry.health.sound:
+        return "unsound"
+    return "mended" if entry.health.problems or entry.particle.notes else "sound"
+
+
+def health_sentences(entry: ParticleEntry) -> str:
+    """All that is known about the mesh, one sentence a line."""
+    if entry.health is None:
+        return "Being measured …"
+    sentences = (*entry.health.problems, *entry.particle.notes)
+    return "\n".join(sentences) or "A closed mesh without faults."
+
+
+def form_of(entry: ParticleEntry) -> str:
+    """Zingg's class; empty until it is measured."""
+    return str(zingg_class(entry.descriptors)) if entry.descriptors else ""
+
+
+def filter_of(text: str) -> Filter:
+    """What a line of words and comparisons keeps: all of them must hold.
+
+    A word is looked for in name, group, form and health; a comparison has a key or symbol of the
+    catalogue on its left: ``flat S<0.8 volume>=1e5``.
+
+    Raises
+    ------
+    InputError
+        If a comparison names no descriptor or compares with no number.
+    """
+    tests = [_test(word) for word in text.split()]
+    return lambda entry: all(test(entry) for test in tests)
+
+
+def statistics_table(entries: Sequence[ParticleEntry], key: str, weighting: str = "number") -> Table:
+    """One row a group and one for all: count, mean, standard deviation and quantiles of a descriptor.
+
+    Parameters
+    ----------
+    weighting
+        ``number`` or ``volume``.
+    """
+    measured = [entry for entry in entries if entry.descriptors and key in entry.descriptors]
+    groups = list(dict.fromkeys(entry.particle.group for entry in measured))
+    named = [(group or "(no group)", [e for e in measured if e.particle.group == group]) for group in groups]
+    if len(groups) != 1:
+        named.append((EVERYTHING, measured))
+    unit = UNITS[CATALOGUE[key].dimension]
+    columns = (
+        Column("group"),
+        Column("count"),
+        *(Column(name, unit) for name in ("mean", "standard deviation")),
+        *(Column(f"{share:.0%} quantile", unit) for share in QUANTILES),
+    )
+    rows = tuple(_statistics(name, members, key, weighting) for name, members in named if members)
+    title = f"{CATALOGUE[key].label}, each particle weighing by {weighting}"
+    return Table(title, columns, rows)
+
+
+def sample_table(entries: Iterable[ParticleEntry]) -> Table:
+    """Every descriptor of the particles that have been measured, with units, as the CSV file has it."""
+    measured = [(entry, entry.health) for entry in entries if entry.health is not None]
+    named = [
+        Particle(entry.id, entry.particle.mesh, group=entry.particle.group) for entry, _health in measured
+    ]
+    return descriptor_table(named, [Examined(health, entry.descriptors) for entry, health in measured])
+
+
+@dataclass(frozen=True)
+class _Comparison:
+    key: str
+    compare: Callable[[float, float], bool]
+    number: float
+
+    def __call__(self, entry: ParticleEntry) -> bool:
+        known = entry.descriptors
+        return known is not None and self.key in known and self.compare(known[self.key], self.number)
+
+
+def _test(word: str) -> Filter:
+    if match := _COMPARISON.match(word):
+        name, sign, number = match.groups()
+        try:
+            return _Comparison(_key_of(name), _OPERATORS[sign], float(number))
+        except ValueError as error:
+            raise InputError(f"{number!r} is not a number that {name} can be compared with.") from error
+    if re.search("[<>=]", word):
+        raise InputError(f"Write a comparison without blanks and with a number, such as S<0.8; got {word!r}.")
+    lowered = word.lower()
+    return lambda entry: any(
+        lowered in text.lower()
+        for text in (entry.id, entry.particle.group, form_of(entry), health_word(entry))
+    )
+
+
+def _key_of(name: str) -> str:
+    for key, row in CATALOGUE.items():
+        if name in (key, row.symbol, row.symbol.replace("_", "")):
+            return key
+    symbols = ", ".join(row.symbol for row in CATALOGUE.values() if not row.costly)
+    raise InputError(f"There is no descriptor called {name!r}; there are {symbols}.")
+
+
+def _statistics(
+    name: str, members: Sequence[ParticleEntry], key: str, weighting: str
+) -> tuple[str | int | float, ...]:
+    spread = distribution([entry.descriptors or {} for entry in members], key, weighting)
+    quantiles = (float(value) for value in spread.quantile(QUANTILES))
+    return (name, len(members), spread.mean, spread.standard_deviation, *quantiles)

@@ -1,0 +1,28 @@
+"""Page "Sample": every open particle in one table, one scatter plot, and as groups with their statistics."""
+
+from regolith_studio.ui.action_spec import PAGE_MENU, ActionSpec
+from regolith_studio.ui.page import Page, PageContext, PageWidget
+
+
+def build(context: PageContext) -> PageWidget:
+    """The page's widget."""
+    from regolith_studio.ui.pages.sample.page import SamplePage
+
+    return SamplePage(context)
+
+
+PAGE = Page(
+    key="sample",
+    title="Sample",
+    icon="page_sample",
+    order=20,
+    tip="All particles: table, scatter plot, health and statistics of groups",
+    build=build,
+    actions=(
+        ActionSpec(PAGE_MENU, "export_table", "E&xport table …", "export", tip="As a CSV file", bar="words"),
+        ActionSpec(PAGE_MENU, "copy_table", "&Copy table", "", "", "Copy the rows for a spreadsheet"),
+        ActionSpec(PAGE_MENU, "explore", "Show in &Explore", "page_explore", "Ctrl+Return"),
+        ActionSpec(PAGE_MENU, "keep", "&Keep only these", "", "", "Close all particles but the chosen rows"),
+        ActionSpec(PAGE_MENU, "clear_filter", "Clear &filter", "", "Ctrl+Shift+F"),
+    ),
+)

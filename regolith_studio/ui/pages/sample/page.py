@@ -1,0 +1,181 @@
+"""The table on the left with its filter and statistics; the particle and the scatter plot on the right."""
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from PySide6.QtWidgets import QApplication, QFileDialog, QHBoxLayout, QLineEdit, QVBoxLayout, QWidget
+
+from regolith_studio.errors import RegolithError
+from regolith_studio.scene import surfaces
+from regolith_studio.session.outputs.staging import write_bytes
+from regolith_studio.session.sample_table import filter_of, health_sentences, sample_table
+from regolith_studio.studies.tables import csv_text
+from regolith_studio.ui.layout import side_by_side, stacked
+from regolith_studio.ui.page import PageContext, PageWidget
+from regolith_studio.ui.pages.sample.scatter import ScatterPanel
+from regolith_studio.ui.pages.sample.statistics import StatisticsPanel
+from regolith_studio.ui.pages.sample.table import SampleTable
+from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.views.camera_link import CameraLink
+from regolith_studio.ui.views.factory import make_view
+from regolith_studio.ui.views.view_frame import ViewFrame
+from regolith_studio.ui.widgets.labels import heading, remark
+
+
+class SamplePage(PageWidget):
+    """Table, plot and view choose each other."""
+
+    def __init__(self, context: PageContext) -> None:
+        super().__init__()
+        self.setObjectName("sample")
+        self._context, self._session = context, context.session
+        self.title = heading("Sample")
+        self.filter = QLineEdit()
+        self.filter.setObjectName("sample_filter")
+        self.filter.setAccessibleName("Filter of the table")
+        self.filter.setPlaceholderText("Filter: words and comparisons, such as  flat S<0.8 AR>1.5")
+        self.filter.setClearButtonEnabled(True)
+        self.verdict = remark(role="warning")
+        self.verdict.hide()
+        self.table, self.statistics, self.scatter = SampleTable(), StatisticsPanel(), ScatterPanel()
+        self.frame = ViewFrame(make_view(context.views, current_theme().surroundings), "sample_view")
+        self._camera = CameraLink([self.frame.view])
+        self._shown: object = None
+        self._place()
+        self._connect()
+        context.wiring.refresh("particles", self._show_particles, slow=True)
+        context.wiring.refresh("choices", self._show_current)
+
+    def set_theme(self, theme: Theme) -> None:
+        self.table.model_.set_theme(theme)
+        self.scatter.set_theme(theme)
+        self.frame.view.set_surroundings(theme.surroundings)
+        self.frame.set_colour(theme.particle)
+
+    def commands(self) -> Mapping[str, Callable[..., object]]:
+        return {
+            "export_table": self.export_table,
+            "copy_table": self.copy_table,
+            "explore": lambda: self._context.go("explore"),
+            "keep": self.keep_chosen,
+            "clear_filter": self.filter.clear,
+        }
+
+    def state(self) -> dict[str, Any]:
+        return {"filter": self.filter.text(), "axes": list(self.scatter.axes())}
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        self.filter.setText(str(state.get("filter", "")))
+        axes = state.get("axes")
+        if isinstance(axes, list) and len(axes) == 2:
+            self.scatter.set_axes(str(axes[0]), str(axes[1]))
+
+    def release(self) -> None:
+        self.frame.view.release()
+
+    def export_table(self) -> None:
+        """Ask for a file and write the rows that are seen, every descriptor with its unit."""
+        start = str(Path.home() / "particles.csv")
+        name, _ = QFileDialog.getSaveFileName(self, "Export table", start, "Tables (*.csv)")
+        if not name:
+            return
+        entries = self.table.visible_entries()
+        try:
+            write_bytes(Path(name), csv_text(sample_table(entries)).encode("utf-8"))
+        except RegolithError as error:
+            self._context.toast.problem(str(error))
+            return
+        self._context.toast.note(f"{len(entries)} particles are in {name}.")
+
+    def copy_table(self) -> None:
+        """Put the rows that are seen onto the clipboard, as a spreadsheet takes them."""
+        text = csv_text(sample_table(self.table.visible_entries()))
+        QApplication.clipboard().setText(text.replace(",", "\t"))
+        self._context.toast.note("The table is on the clipboard.")
+
+    def keep_chosen(self) -> None:
+        """Close every particle but the chosen rows."""
+        chosen = set(self.table.chosen())
+        kept = [entry.particle for entry in self._session.particles if entry.id in chosen]
+        if not kept:
+            self._context.toast.problem("Choose the rows to keep first.")
+            return
+        self._session.adopt(kept)
+
+    def _place(self) -> None:
+        left = QWidget()
+        column = QVBoxLayout(left)
+        column.setContentsMargins(10, 10, 2, 8)
+        for widget in (self.title, self.filter, self.verdict):
+            column.addWidget(widget)
+        parts = stacked([self.table, self.statistics], [600, 190], stretch=0)
+        parts.setObjectName("sample_rows")
+        column.addWidget(parts, 1)
+        right = stacked([self.frame, self.scatter], [420, 420], stretch=1)
+        right.setObjectName("sample_pictures")
+        right.setContentsMargins(2, 10, 10, 8)
+        columns = side_by_side([left, right], [1150, 600], stretch=0)
+        columns.setObjectName("sample_columns")
+        layout = QHBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(columns)
+
+    def _connect(self) -> None:
+        self.filter.textChanged.connect(self._filter)
+        self.table.chosenChanged.connect(lambda _ids: self._show_pictures())
+        self.table.currentChosen.connect(self._select)
+        self.table.doubleClicked.connect(lambda _index: self._context.go("explore"))
+        self.scatter.pointChosen.connect(self._choose_point)
+
+    def _filter(self, text: str) -> None:
+        try:
+            keeps = filter_of(text) if text.strip() else None
+        except RegolithError as error:
+            self.verdict.setText(str(error))
+            self.verdict.show()
+            return
+        self.verdict.hide()
+        self.table.set_filter(keeps)
+        self._count()
+
+    def _show_particles(self) -> None:
+        self.table.set_entries(self._session.particles)
+        self._count()
+        self._show_pictures()
+        self._show_current()
+
+    def _count(self) -> None:
+        seen, total = len(self.table.visible_entries()), len(self._session.particles)
+        self.title.setText(f"Sample ({total})" if seen == total else f"Sample ({seen} of {total})")
+
+    def _show_pictures(self) -> None:
+        seen = self.table.visible_entries()
+        chosen = self.table.chosen()
+        self.scatter.show_entries(seen, chosen)
+        several = [entry for entry in seen if entry.id in set(chosen)]
+        self.statistics.show_entries(several if len(several) > 1 else seen)
+
+    def _show_current(self) -> None:
+        entry = self._session.selected
+        if entry is None:
+            return
+        chosen = self.table.chosen()
+        if entry.id not in chosen:
+            self.table.choose([entry.id], entry.id)
+            self._show_pictures()
+        mesh = entry.particle.mesh
+        self.frame.set_texts(f"CT particle, {entry.id}", health_sentences(entry).replace("\n", " "))
+        if mesh is not self._shown:
+            self._shown = mesh
+            self.frame.view.draw(lambda plotter: surfaces.show_particle(plotter, mesh))
+            self._camera.frame(mesh.vertices)
+
+    def _select(self, name: str) -> None:
+        if any(entry.id == name for entry in self._session.particles):
+            self._session.select(name)
+
+    def _choose_point(self, name: str, adding: bool) -> None:
+        self.table.choose([*self.table.chosen(), name] if adding else [name], name)
+        self._show_pictures()
+        self._select(name)

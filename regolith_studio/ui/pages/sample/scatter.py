@@ -1,0 +1,168 @@
+"""Any descriptor against any other, a point a particle; points and table rows choose each other."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import pyqtgraph as pg
+from PySide6.QtCore import QSignalBlocker, Qt, Signal
+from PySide6.QtGui import QColor
+from PySide6.QtWidgets import QCheckBox, QComboBox, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
+
+from regolith_studio.descriptors.catalogue import CATALOGUE
+from regolith_studio.descriptors.zingg import THRESHOLD
+from regolith_studio.scene.palette import DESCRIPTOR_COLOURS
+from regolith_studio.session.results import ParticleEntry
+from regolith_studio.ui.theme import Theme
+from regolith_studio.ui.widgets.labels import rich_symbol
+from regolith_studio.ui.widgets.plot import Plot
+
+ZINGG = ("flatness", "elongation")
+SYMBOLS = ("o", "s", "t", "d", "star", "p", "h", "+")
+_UNITS = {0: "", 1: " [µm]", 2: " [µm²]", 3: " [µm³]", 5: " [µm⁵]"}
+_CORNERS = (("blade", 0, 0), ("rod", 1, 0), ("disc", 0, 1), ("equant", 1, 1))
+"""Zingg's classes, and whether flatness and elongation are above the threshold."""
+
+
+class ScatterPanel(QWidget):
+    """Chosen points are ringed; a click chooses, with Ctrl it adds."""
+
+    pointChosen = Signal(str, bool)  # noqa: N815
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("scatter")
+        self._entries: tuple[ParticleEntry, ...] = ()
+        self._chosen: frozenset[str] = frozenset()
+        self._items: list[Any] = []
+        self.across = _descriptor_box("scatter_x", "Horizontal axis")
+        self.up = _descriptor_box("scatter_y", "Vertical axis")
+        self.log = QCheckBox("Logarithmic")
+        self.log.setObjectName("scatter_log")
+        self.zingg = QToolButton()
+        self.zingg.setText("Zingg")
+        self.zingg.setObjectName("scatter_zingg")
+        self.zingg.setToolTip("Flatness against elongation, with Zingg's classes of form")
+        self.plot = Plot("", "", "The plot appears when the particles are measured.")
+        self._arrange()
+        self.set_axes(*ZINGG)
+
+    def axes(self) -> tuple[str, str]:
+        """Keys of the two descriptors."""
+        return str(self.across.currentData()), str(self.up.currentData())
+
+    def set_axes(self, x: str, y: str) -> None:
+        """Show two other descriptors."""
+        for box, key in ((self.across, x), (self.up, y)):
+            with QSignalBlocker(box):
+                box.setCurrentIndex(max(0, box.findData(key)))
+        if self.axes() == ZINGG:
+            self.log.setChecked(False)
+        self._draw()
+
+    def show_entries(self, entries: Sequence[ParticleEntry], chosen: Sequence[str]) -> None:
+        """Draw these particles and ring the chosen ones."""
+        self._entries = tuple(entry for entry in entries if entry.descriptors)
+        self._chosen = frozenset(chosen)
+        self._draw()
+
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        self.plot.set_theme(theme)
+        self._draw()
+
+    def _arrange(self) -> None:
+        row = QHBoxLayout()
+        row.setContentsMargins(8, 6, 8, 0)
+        row.addWidget(self.up, 1)
+        row.addWidget(QLabel("against"))
+        row.addWidget(self.across, 1)
+        row.addWidget(self.log)
+        row.addWidget(self.zingg)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addLayout(row)
+        layout.addWidget(self.plot, 1)
+        for box in (self.across, self.up):
+            box.currentIndexChanged.connect(lambda _at: self._draw())
+        self.log.toggled.connect(lambda _on: self._draw())
+        self.zingg.clicked.connect(lambda: self.set_axes(*ZINGG))
+
+    def _draw(self) -> None:
+        canvas = self.plot.canvas
+        for item in self._items:
+            canvas.removeItem(item)
+        self._items = []
+        self.plot.set_empty(not self._entries)
+        if not self._entries:
+            return
+        x, y = self.axes()
+        self.plot.set_labels(_axis_label(x), _axis_label(y))
+        logarithmic = self.log.isChecked()
+        canvas.setLogMode(x=logarithmic, y=logarithmic)
+        if (x, y) == ZINGG:
+            self._draw_zingg()
+        groups = list(dict.fromkeys(entry.particle.group for entry in self._entries))
+        for number, group in enumerate(groups):
+            self._draw_group([e for e in self._entries if e.particle.group == group], number)
+        named = [(DESCRIPTOR_COLOURS[n % len(DESCRIPTOR_COLOURS)], g) for n, g in enumerate(groups) if g]
+        self.plot.set_legend(named if len(groups) > 1 else [])
+        self.plot.set_remark(f"{len(self._entries)} particles")
+        canvas.enableAutoRange()
+
+    def _draw_group(self, members: Sequence[ParticleEntry], number: int) -> None:
+        x, y = self.axes()
+        at = np.array([[e.descriptors[x], e.descriptors[y]] for e in members if e.descriptors])
+        if self.log.isChecked():
+            at = np.log10(np.maximum(at, 1e-300))
+        colour = QColor(DESCRIPTOR_COLOURS[number % len(DESCRIPTOR_COLOURS)])
+        ring = pg.mkPen(QColor(self.plot.theme.text), width=2)
+        item = pg.ScatterPlotItem(hoverable=True, tip=lambda x, y, data: f"{data}\n{x:.4g}, {y:.4g}")
+        item.setData(
+            pos=at,
+            data=[entry.id for entry in members],
+            symbol=SYMBOLS[number % len(SYMBOLS)],
+            size=[13 if entry.id in self._chosen else 8 for entry in members],
+            brush=colour,
+            pen=[ring if entry.id in self._chosen else pg.mkPen(None) for entry in members],
+            hoverSize=14,
+        )
+        item.sigClicked.connect(self._clicked)
+        self.plot.canvas.addItem(item)
+        self._items.append(item)
+
+    def _draw_zingg(self) -> None:
+        for angle in (0, 90):
+            line = pg.InfiniteLine(
+                THRESHOLD, angle=angle, pen=self.plot.pen(self.plot.theme.muted, dash=True)
+            )
+            self.plot.canvas.addItem(line, ignoreBounds=True)
+            self._items.append(line)
+        for name, right, upper in _CORNERS:
+            word = pg.TextItem(name, color=self.plot.theme.muted, anchor=(1 - right, upper))
+            word.setPos(1.0 if right else THRESHOLD - 0.01, 1.0 if upper else THRESHOLD - 0.01)
+            word.setAnchor((1, 0))
+            self.plot.canvas.addItem(word, ignoreBounds=True)
+            self._items.append(word)
+
+    def _clicked(self, _item: Any, points: Sequence[Any], event: Any) -> None:
+        if len(points):
+            adding = bool(event.modifiers() & Qt.KeyboardModifier.ControlModifier)
+            self.pointChosen.emit(str(points[0].data()), adding)
+
+
+def _descriptor_box(name: str, accessible: str) -> QComboBox:
+    box = QComboBox()
+    box.setObjectName(name)
+    box.setAccessibleName(accessible)
+    box.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
+    box.setMinimumContentsLength(8)
+    for key, row in CATALOGUE.items():
+        if not row.costly and row.dimension in _UNITS:
+            box.addItem(row.label, key)
+    return box
+
+
+def _axis_label(key: str) -> str:
+    row = CATALOGUE[key]
+    return f"{row.label} {rich_symbol(row.symbol)}{_UNITS[row.dimension]}"

@@ -1,0 +1,91 @@
+"""Statistics of groups, each particle counting once or by its volume."""
+
+from collections.abc import Sequence
+
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import (
+    QAbstractItemView,
+    QComboBox,
+    QHBoxLayout,
+    QHeaderView,
+    QLabel,
+    QTableWidget,
+    QTableWidgetItem,
+    QVBoxLayout,
+    QWidget,
+)
+
+from regolith_studio.descriptors.catalogue import CATALOGUE
+from regolith_studio.descriptors.distributions import WEIGHTINGS
+from regolith_studio.session.results import ParticleEntry
+from regolith_studio.session.sample_table import UNITS, statistics_table
+from regolith_studio.studies.tables import Table
+
+_WEIGHTING_LABELS = {"number": "each counts once", "volume": "weighted by volume"}
+
+
+class StatisticsPanel(QWidget):
+    """One row a group."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("statistics")
+        self._entries: tuple[ParticleEntry, ...] = ()
+        self.key = QComboBox()
+        self.key.setObjectName("statistics_key")
+        self.key.setAccessibleName("Descriptor of the statistics")
+        for key, row in CATALOGUE.items():
+            if not row.costly and row.dimension in UNITS:
+                self.key.addItem(row.label, key)
+        self.weighting = QComboBox()
+        self.weighting.setObjectName("statistics_weighting")
+        self.weighting.setAccessibleName("Weighting of the statistics")
+        for weighting in WEIGHTINGS:
+            self.weighting.addItem(_WEIGHTING_LABELS[weighting], weighting)
+        self.table = QTableWidget()
+        self.table.setAccessibleName("Statistics of groups")
+        self.table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
+        self.table.setShowGrid(False)
+        self.table.verticalHeader().hide()
+        self.table.verticalHeader().setDefaultSectionSize(self.table.fontMetrics().height() + 8)
+        self.table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
+        row_ = QHBoxLayout()
+        row_.addWidget(QLabel("Statistics of"))
+        row_.addWidget(self.key)
+        row_.addWidget(self.weighting)
+        row_.addStretch(1)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addLayout(row_)
+        layout.addWidget(self.table, 1)
+        self.key.currentIndexChanged.connect(lambda _at: self._fill())
+        self.weighting.currentIndexChanged.connect(lambda _at: self._fill())
+
+    def show_entries(self, entries: Sequence[ParticleEntry]) -> None:
+        """Count these particles."""
+        self._entries = tuple(entries)
+        self._fill()
+
+    def value(self) -> Table:
+        """What is shown."""
+        return statistics_table(self._entries, self.key.currentData(), self.weighting.currentData())
+
+    def _fill(self) -> None:
+        shown = self.value()
+        self.table.setColumnCount(len(shown.columns))
+        self.table.setRowCount(len(shown.rows))
+        headers = [_with_signs(each.header) for each in shown.columns]
+        self.table.setHorizontalHeaderLabels(headers)
+        for at, row in enumerate(shown.rows):
+            for column, cell in enumerate(row):
+                item = QTableWidgetItem(f"{cell:.4g}" if isinstance(cell, float) else str(cell))
+                if column:
+                    item.setTextAlignment(Qt.AlignmentFlag.AlignCenter)
+                self.table.setItem(at, column, item)
+
+
+def _with_signs(header: str) -> str:
+    """A header of a file as it is read on screen."""
+    for plain, sign in (("[um", "[µm"), ("^2]", "²]"), ("^3]", "³]"), ("^5]", "⁵]")):
+        header = header.replace(plain, sign)
+    return header

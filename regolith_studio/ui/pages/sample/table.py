@@ -1,0 +1,245 @@
+"""The table: a row a particle, a column a descriptor; sortable, filterable, many rows at a time."""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from PySide6.QtCore import (
+    QAbstractTableModel,
+    QItemSelectionModel,
+    QModelIndex,
+    QPersistentModelIndex,
+    QSortFilterProxyModel,
+    Qt,
+    Signal,
+)
+from PySide6.QtWidgets import QAbstractItemView, QWidget
+
+from regolith_studio.descriptors.catalogue import CATALOGUE
+from regolith_studio.session.results import ParticleEntry
+from regolith_studio.session.sample_table import Filter, form_of, health_sentences, health_word
+from regolith_studio.ui.icons import pixmap
+from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.widgets.labels import plain_symbol
+from regolith_studio.ui.widgets.table import ListTable
+
+Index = QModelIndex | QPersistentModelIndex
+NOWHERE = QModelIndex()
+SORT_ROLE = Qt.ItemDataRole.UserRole + 1
+_ICON = 15
+_UNITS = {0: "", 1: " [µm]", 2: " [µm²]", 3: " [µm³]", 5: " [µm⁵]"}
+HEALTH_ICONS = {"sound": "sound", "mended": "doubtful", "unsound": "unsound", "unknown": "unknown"}
+HEALTH = "health"
+WORDS = 4
+"""Columns of words; those of numbers follow."""
+RIGHT = int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+
+
+@dataclass(frozen=True)
+class Column:
+    """Key, header, explanation; what it is sorted by and what it shows."""
+
+    key: str
+    title: str
+    tip: str
+    value: Callable[[ParticleEntry], Any]
+    text: Callable[[ParticleEntry], str]
+
+
+def columns() -> tuple[Column, ...]:
+    """Name, health, group and form, then the descriptors of the catalogue that are at hand."""
+    words: tuple[tuple[str, str, str, Callable[[ParticleEntry], str]], ...] = (
+        ("name", "Particle", "Name of the file or of the grain", lambda entry: entry.id),
+        (HEALTH, "Health", "Of the mesh; the tool tip of a cell says what was found and mended", health_word),
+        ("group", "Group", "Sample or size fraction", lambda entry: entry.particle.group),
+        ("form", "Form", "Zingg's class: equant, disc, rod or blade", form_of),
+    )
+    numbers = [row for row in CATALOGUE.values() if not row.costly and row.dimension in _UNITS]
+    return (
+        *(Column(key, title, tip, text, text) for key, title, tip, text in words),
+        *(
+            Column(
+                row.key,
+                plain_symbol(row.symbol) + _UNITS[row.dimension],
+                f"{row.label}: {row.formula}",
+                _Number(row.key),
+                _Formatted(row.key),
+            )
+            for row in numbers
+        ),
+    )
+
+
+class _Number:
+    def __init__(self, key: str) -> None:
+        self._key = key
+
+    def __call__(self, entry: ParticleEntry) -> float:
+        return float(entry.descriptors[self._key]) if entry.descriptors else -math.inf
+
+
+class _Formatted(_Number):
+    def __call__(self, entry: ParticleEntry) -> str:  # type: ignore[override]
+        if not entry.descriptors:
+            return "…"
+        return f"{entry.descriptors[self._key]:.4g}".replace("e+0", "e").replace("e-0", "e-")
+
+
+class SampleModel(QAbstractTableModel):
+    """The entries as Qt asks for them."""
+
+    def __init__(self, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.entries: tuple[ParticleEntry, ...] = ()
+        self.columns = columns()
+        self._icons: dict[str, Any] = {}
+
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        colours = {
+            "sound": theme.good,
+            "mended": theme.doubtful,
+            "unsound": theme.bad,
+            "unknown": theme.muted,
+        }
+        self._icons = {word: pixmap(HEALTH_ICONS[word], colours[word], _ICON) for word in colours}
+
+    def set_entries(self, entries: tuple[ParticleEntry, ...]) -> None:
+        """Show other particles, or the same ones with more known about them."""
+        same = [entry.id for entry in entries] == [entry.id for entry in self.entries]
+        if same and entries:
+            self.entries = entries
+            self.dataChanged.emit(self.index(0, 0), self.index(len(entries) - 1, len(self.columns) - 1))
+            return
+        self.beginResetModel()
+        self.entries = entries
+        self.endResetModel()
+
+    def rowCount(self, parent: Index = NOWHERE) -> int:
+        return 0 if parent.isValid() else len(self.entries)
+
+    def columnCount(self, parent: Index = NOWHERE) -> int:
+        return 0 if parent.isValid() else len(self.columns)
+
+    def data(self, index: Index, role: int = Qt.ItemDataRole.DisplayRole) -> Any:
+        entry, column = self.entries[index.row()], self.columns[index.column()]
+        match role:
+            case Qt.ItemDataRole.DisplayRole:
+                return column.text(entry)
+            case Qt.ItemDataRole.DecorationRole if column.key == HEALTH:
+                return self._icons.get(health_word(entry))
+            case Qt.ItemDataRole.ToolTipRole:
+                return health_sentences(entry) if column.key == HEALTH else column.text(entry)
+            case Qt.ItemDataRole.TextAlignmentRole if index.column() >= WORDS:
+                return RIGHT
+        return column.value(entry) if role == SORT_ROLE else None
+
+    def headerData(
+        self, section: int, orientation: Qt.Orientation, role: int = Qt.ItemDataRole.DisplayRole
+    ) -> Any:
+        if orientation == Qt.Orientation.Horizontal:
+            match role:
+                case Qt.ItemDataRole.DisplayRole:
+                    return self.columns[section].title
+                case Qt.ItemDataRole.ToolTipRole:
+                    return self.columns[section].tip
+                case Qt.ItemDataRole.TextAlignmentRole if section >= WORDS:
+                    return RIGHT
+        return None
+
+
+class _Filtered(QSortFilterProxyModel):
+    keeps: Filter | None = None
+
+    def filterAcceptsRow(self, row: int, parent: Index) -> bool:  # noqa: ARG002
+        model = self.sourceModel()
+        assert isinstance(model, SampleModel), "the proxy stands before the sample"
+        return self.keeps is None or self.keeps(model.entries[row])
+
+    def set_filter(self, keeps: Filter | None) -> None:
+        self.beginResetModel()
+        self.keeps = keeps
+        self.endResetModel()
+
+
+class SampleTable(ListTable):
+    """Announces which particles are chosen, and which one is current."""
+
+    chosenChanged = Signal(list)  # noqa: N815
+    currentChosen = Signal(str)  # noqa: N815
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setObjectName("sample_table")
+        self.setAccessibleName("All particles")
+        self.setSelectionMode(QAbstractItemView.SelectionMode.ExtendedSelection)
+        self.model_ = SampleModel(self)
+        self.model_.set_theme(current_theme())
+        self._proxy = _Filtered(self)
+        self._proxy.setSourceModel(self.model_)
+        self._proxy.setSortRole(SORT_ROLE)
+        self.setModel(self._proxy)
+        self.setSortingEnabled(True)
+        self.horizontalHeader().setSortIndicator(-1, Qt.SortOrder.AscendingOrder)
+        self._quiet = False
+        self.selectionModel().selectionChanged.connect(lambda *_: self._announce())
+        self.selectionModel().currentRowChanged.connect(lambda index, _old: self._announce_current(index))
+
+    def set_entries(self, entries: tuple[ParticleEntry, ...]) -> None:
+        """Show these, keeping what is chosen."""
+        chosen = self.chosen()
+        self._quiet = True
+        self.model_.set_entries(entries)
+        self.setColumnHidden(2, len({entry.particle.group for entry in entries}) < 2)
+        self._quiet = False
+        self.choose(chosen)
+        self.fit_columns()
+
+    def set_filter(self, keeps: Filter | None) -> None:
+        """Show only what this keeps."""
+        chosen = self.chosen()
+        self._quiet = True
+        self._proxy.set_filter(keeps)
+        self._quiet = False
+        self.choose(chosen)
+        self._announce()
+
+    def visible_entries(self) -> list[ParticleEntry]:
+        """What is listed, in the order of the rows."""
+        return [self._entry(row) for row in range(self._proxy.rowCount())]
+
+    def chosen(self) -> list[str]:
+        """Ids of the chosen rows, from top to bottom."""
+        rows = sorted(index.row() for index in self.selectionModel().selectedRows())
+        return [self._entry(row).id for row in rows]
+
+    def choose(self, ids: Sequence[str], current: str = "") -> None:
+        """Choose these rows; announces nothing."""
+        wanted, flags = set(ids), QItemSelectionModel.SelectionFlag
+        self._quiet = True
+        self.selectionModel().clearSelection()
+        for row, entry in enumerate(self.visible_entries()):
+            index = self._proxy.index(row, 0)
+            if entry.id == current:
+                self.selectionModel().setCurrentIndex(index, flags.NoUpdate)
+                self.scrollTo(index)
+            if entry.id in wanted:
+                self.selectionModel().select(index, flags.Select | flags.Rows)
+        self._quiet = False
+
+    def fit_columns(self) -> None:
+        """Every column as wide as its content."""
+        for column in range(self._proxy.columnCount()):
+            self.resizeColumnToContents(column)
+
+    def _entry(self, row: int) -> ParticleEntry:
+        return self.model_.entries[self._proxy.mapToSource(self._proxy.index(row, 0)).row()]
+
+    def _announce(self) -> None:
+        if not self._quiet:
+            self.chosenChanged.emit(self.chosen())
+
+    def _announce_current(self, index: QModelIndex) -> None:
+        if not self._quiet and index.isValid():
+            self.currentChosen.emit(self._entry(index.row()).id)

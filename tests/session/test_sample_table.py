@@ -1,0 +1,114 @@
+"""A sample as a table: filters, words on health, statistics against numpy."""
+
+import numpy as np
+import pytest
+
+from regolith_studio.descriptors.describe import describe
+from regolith_studio.errors import InputError
+from regolith_studio.geometry.directions import icosphere
+from regolith_studio.geometry.health import inspect
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.session.results import ParticleEntry
+from regolith_studio.session.sample_table import (
+    EVERYTHING,
+    filter_of,
+    form_of,
+    health_sentences,
+    health_word,
+    sample_table,
+    statistics_table,
+)
+
+
+def entry(name: str, axes: tuple[float, float, float], group: str = "") -> ParticleEntry:
+    sphere = icosphere(2)
+    mesh = Mesh(sphere.vertices * np.array(axes), sphere.faces)
+    return ParticleEntry(name, Particle(name, mesh, group=group), inspect(mesh), describe(mesh))
+
+
+@pytest.fixture(scope="module")
+def sample() -> tuple[ParticleEntry, ...]:
+    return (
+        entry("ball", (10, 10, 10), "fine"),
+        entry("plate", (10, 10, 2), "fine"),
+        entry("needle", (30, 5, 5), "coarse"),
+        entry("lath", (30, 10, 2), "coarse"),
+    )
+
+
+def kept(sample: tuple[ParticleEntry, ...], text: str) -> list[str]:
+    return [each.id for each in sample if filter_of(text)(each)]
+
+
+def test_that_ellipsoids_have_the_forms_that_zingg_gave_them(sample: tuple[ParticleEntry, ...]) -> None:
+    assert [form_of(each) for each in sample] == ["equant", "disc", "rod", "blade"]
+
+
+@pytest.mark.parametrize(
+    ("text", "names"),
+    [
+        ("", ["ball", "plate", "needle", "lath"]),
+        ("l", ["ball", "plate", "needle", "lath"]),
+        ("ball", ["ball"]),
+        ("FINE", ["ball", "plate"]),
+        ("coarse blade", ["lath"]),
+        ("sound AR>4", ["plate", "needle", "lath"]),
+        ("D_max<=21 S<0.9", ["plate"]),
+        ("Dmax>=50", ["needle", "lath"]),
+        ("aspect_ratio<1.1", ["ball"]),
+        ("volume>1e9", []),
+    ],
+)
+def test_that_words_and_comparisons_must_all_hold(
+    sample: tuple[ParticleEntry, ...], text: str, names: list[str]
+) -> None:
+    assert kept(sample, text) == names
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [("weight>3", "no descriptor called 'weight'"), ("S<", "without blanks"), ("S<1e", "not a number")],
+)
+def test_that_a_comparison_that_makes_no_sense_is_told(text: str, sentence: str) -> None:
+    with pytest.raises(InputError, match=sentence):
+        filter_of(text)
+
+
+def test_that_what_is_not_measured_fails_every_comparison_but_no_word() -> None:
+    bare = ParticleEntry("bare", Particle("bare", icosphere(1)))
+    assert not filter_of("S>0")(bare)
+    assert filter_of("bar unknown")(bare)
+    assert health_sentences(bare).startswith("Being measured")
+
+
+def test_that_health_is_one_word(sample: tuple[ParticleEntry, ...]) -> None:
+    whole = sample[0].particle.mesh
+    torn = Mesh(whole.vertices, whole.faces[1:])
+    assert health_word(sample[0]) == "sound"
+    assert health_word(ParticleEntry("a", Particle("a", torn), inspect(torn))) == "unsound"
+    noted = Particle("a", whole, notes=("A hole was closed.",))
+    assert health_word(ParticleEntry("a", noted, inspect(whole))) == "mended"
+    assert health_word(ParticleEntry("a", noted)) == "unknown"
+
+
+def test_that_statistics_weigh_by_number_or_by_volume(sample: tuple[ParticleEntry, ...]) -> None:
+    values = np.array([each.descriptors["max_diameter"] for each in sample if each.descriptors])
+    volumes = np.array([each.descriptors["volume"] for each in sample if each.descriptors])
+    rows = {row[0]: row for row in statistics_table(sample, "max_diameter").rows}
+    assert set(rows) == {"fine", "coarse", EVERYTHING}
+    assert rows[EVERYTHING][1] == 4
+    assert rows[EVERYTHING][2] == pytest.approx(values.mean())
+    assert rows[EVERYTHING][3] == pytest.approx(values.std())
+    heavy = {row[0]: row for row in statistics_table(sample, "max_diameter", "volume").rows}
+    assert heavy[EVERYTHING][2] == pytest.approx(np.average(values, weights=volumes))
+    assert heavy["fine"][2] == pytest.approx(np.average(values[:2], weights=volumes[:2]))
+
+
+def test_that_the_table_has_units_and_a_row_a_particle(sample: tuple[ParticleEntry, ...]) -> None:
+    table = sample_table(sample)
+    headers = [column.header for column in table.columns]
+    assert {"name", "group", "volume [um^3]", "surface_area [um^2]", "max_diameter [um]"} <= set(headers)
+    assert [row[0] for row in table.rows] == ["ball", "plate", "needle", "lath"]
+    unmeasured = ParticleEntry("bare", Particle("bare", icosphere(1)))
+    assert len(sample_table((*sample, unmeasured)).rows) == 4

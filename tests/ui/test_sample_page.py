@@ -1,0 +1,122 @@
+"""The page of the sample: table, filter, plot, statistics and view belong together."""
+
+import csv
+
+import pytest
+from PySide6.QtCore import QItemSelectionModel, Qt
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication
+
+from regolith_studio.ui.app import open_window
+
+SECONDS = 120.0
+
+
+@pytest.fixture
+def window(shown, preferences, wait):
+    made = open_window(views="image", preferences=preferences)
+    made.resize(1200, 760)
+    shown(made)
+    wait(lambda: made.session.particles and all(e.descriptors for e in made.session.particles), SECONDS)
+    return made
+
+
+@pytest.fixture
+def page(window, wait):
+    made = window.go("sample")
+    wait(lambda: len(made.table.visible_entries()) == 12)
+    wait(lambda: all(entry.descriptors for entry in made.table.visible_entries()))
+    return made
+
+
+def choose(page, *names):
+    """Choose rows as a user does who holds Ctrl."""
+    flags, table = QItemSelectionModel.SelectionFlag, page.table
+    for row, entry in enumerate(table.visible_entries()):
+        if entry.id in names:
+            table.selectionModel().select(table.model().index(row, 0), flags.Select | flags.Rows)
+
+
+def test_that_a_click_in_the_table_puts_the_particle_on_screen_everywhere(window, page, wait):
+    row = next(r for r, entry in enumerate(page.table.visible_entries()) if entry.id == "flat-1")
+    place = page.table.visualRect(page.table.model().index(row, 0)).center()
+    QTest.mouseClick(page.table.viewport(), Qt.MouseButton.LeftButton, pos=place)
+    assert window.session.choices.selected == "flat-1"
+    wait(lambda: "flat-1" in page.frame.view.widget.accessibleName())
+    window.go("explore")
+    wait(lambda: window.page.particles.value() == {"selected": "flat-1"})
+
+
+def test_that_the_filter_narrows_table_plot_and_statistics(page):
+    QTest.keyClicks(page.filter, "S<0.75 AR>2")
+    names = [entry.id for entry in page.table.visible_entries()]
+    assert 0 < len(names) < 12
+    assert all(e.descriptors["sphericity"] < 0.75 for e in page.table.visible_entries())
+    assert page.title.text() == f"Sample ({len(names)} of 12)"
+    assert page.statistics.value().rows[0][1] == len(names)
+    page.filter.setText("S<oops")
+    assert page.verdict.isVisible()
+    assert [entry.id for entry in page.table.visible_entries()] == names
+    page.commands()["clear_filter"]()
+    assert not page.verdict.isVisible()
+    assert len(page.table.visible_entries()) == 12
+
+
+def test_that_several_rows_are_ringed_in_the_plot_and_counted_alone(page):
+    page.table.choose([])
+    choose(page, "bead-1", "bead-2", "flat-1")
+    assert page.table.chosen() == ["bead-1", "bead-2", "flat-1"]
+    assert page.statistics.value().rows[0][1] == 3
+    sizes = [
+        point.size() for item in page.scatter._items if hasattr(item, "points") for point in item.points()
+    ]
+    assert sorted(set(sizes)) == [8, 13]
+    assert sizes.count(13) == 3
+
+
+def test_that_a_point_of_the_plot_chooses_its_row(window, page):
+    page.scatter.pointChosen.emit("angular-2", False)
+    assert page.table.chosen() == ["angular-2"]
+    assert window.session.choices.selected == "angular-2"
+    page.scatter.pointChosen.emit("bead-1", True)
+    assert page.table.chosen() == ["angular-2", "bead-1"]
+
+
+def test_that_columns_sort_by_number(page):
+    column = [each.key for each in page.table.model_.columns].index("volume")
+    page.table.sortByColumn(column, Qt.SortOrder.AscendingOrder)
+    volumes = [entry.descriptors["volume"] for entry in page.table.visible_entries()]
+    assert volumes == sorted(volumes)
+
+
+def test_that_the_exported_table_has_the_rows_that_are_seen_with_units(page, tmp_path, monkeypatch):
+    target = tmp_path / "particles.csv"
+    monkeypatch.setattr(
+        "regolith_studio.ui.pages.sample.page.QFileDialog.getSaveFileName", lambda *_: (str(target), "")
+    )
+    page.filter.setText("bead")
+    page.export_table()
+    rows = list(csv.reader(target.read_text(encoding="utf-8").splitlines()))
+    assert "volume [um^3]" in rows[0]
+    assert [row[0] for row in rows[1:]] == ["bead-1", "bead-2"]
+    page.copy_table()
+    assert QApplication.clipboard().text().splitlines()[1].split("\t")[0] == "bead-1"
+
+
+def test_that_only_the_chosen_particles_can_be_kept(window, page, wait):
+    page.table.choose([])
+    choose(page, "bead-1", "bead-2")
+    page.keep_chosen()
+    assert [entry.id for entry in window.session.particles] == ["bead-1", "bead-2"]
+    wait(lambda: len(page.table.visible_entries()) == 2)
+
+
+def test_that_what_a_project_keeps_of_the_page_comes_back(page):
+    page.filter.setText("flat")
+    page.scatter.set_axes("volume", "sphericity")
+    kept = page.state()
+    page.filter.clear()
+    page.scatter.set_axes("flatness", "elongation")
+    page.restore(kept)
+    assert page.filter.text() == "flat"
+    assert page.scatter.axes() == ("volume", "sphericity")
