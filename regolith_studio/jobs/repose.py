@@ -13,7 +13,9 @@ from regolith_studio.dem.engine import Ending, Engine, Moment
 from regolith_studio.dem.engines import DEFAULT_ENGINE, engine_named
 from regolith_studio.dem.evaluation.refusal import NoPile
 from regolith_studio.dem.evaluation.settings import EvaluationSettings
+from regolith_studio.dem.filling import loose_column
 from regolith_studio.dem.host import EngineStopped, run_engine
+from regolith_studio.dem.pile import Pile
 from regolith_studio.dem.repose import ReposeMeasurement, measure_repose
 from regolith_studio.dem.run_document import case_document, run_document
 from regolith_studio.dem.run_folder import claim_folder, read_run, save_ending, save_shapes, snapshot_files
@@ -240,3 +242,20 @@ def _earlier(place: Path, dataset: Path, order: ReposeOrder) -> dict[str, Any] |
         and document["measurement"].get("settings", asdict(order.evaluation)) == asdict(order.evaluation)
     )
     return document if same else None
+
+
+def preview_repose(dataset_folder: Path, case: ReposeCase) -> Steps:
+    """The particles of a case before they fall; returns (:class:`Prepared`, :class:`Pile`)."""
+    yield Started("Drawing particles")
+    prepared = prepare(read_dataset(dataset_folder), case, dataset_hash(dataset_folder))
+    yield Progress(1, 2)
+    return prepared, loose_column(prepared)
+
+
+def remeasure(pile: Pile, evaluation: EvaluationSettings) -> Steps:
+    """The angle of a pile once more, with other choices; returns the measurement or the refusal."""
+    yield Started("Measuring")
+    try:
+        return measure_repose(pile.points, pile.diameters, evaluation, base=0.0)
+    except NoPile as refusal:
+        return refusal

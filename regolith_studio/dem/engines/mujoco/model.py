@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 import mujoco
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from regolith_studio.dem.case import Prepared
 from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
+from regolith_studio.dem.filling import enclosing_radii, loose_column
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 
 N_WALLS = 32
@@ -19,12 +19,6 @@ WALL_THICKNESS = 2.0
 PARTICLE, WALL, PLATE = 1, 2, 4
 """Bits of contact: particles meet all, walls and plate only particles."""
 CONTACT_SOFTNESS = (0.95, 0.99, 0.05, 0.5, 2.0)
-HEADROOM = 1.02
-"""The particles' enclosing balls are so much larger at the start."""
-TRIES = 24
-"""Random seats that a particle chooses from."""
-SIGHT = 600
-"""Particles placed before that a new one can touch."""
 ADHESION_GAP = 0.01
 """Distance over which cohesion acts, in mean diameters."""
 
@@ -73,63 +67,15 @@ def build(prepared: Prepared, settings: MujocoSettings) -> Built:
     _set_options(spec, prepared, settings)
     radius = prepared.case.test.diameter / 2 / units.length
     sizes = prepared.scales / units.length
-    places, top = start_places(_reaches(prepared, sizes), radius, _generator(prepared, 0))
-    turns = Rotation.random(len(prepared), random_state=_generator(prepared, 1)).as_quat(scalar_first=True)
+    column = loose_column(prepared)
+    places, turns = column.points / units.length, column.orientations
+    top = float((places[:, 2] + enclosing_radii(prepared) / units.length).max())
     _add_plate(spec, prepared, settings)
     _add_walls(spec, prepared, settings, radius, 1.1 * top + 2.0)
     _add_particles(spec, prepared, settings, sizes, places, turns)
     model = spec.compile()
     walls = np.flatnonzero(model.geom_contype == WALL)
     return Built(model, walls.astype(np.int64), top)
-
-
-def start_places(
-    reach: FloatArray, radius: float, generator: np.random.Generator
-) -> tuple[FloatArray, float]:
-    """Centres that keep the particles' enclosing balls apart; and the height of the highest ball's top.
-
-    Each ball sinks straight down in the cylinder at the best of a few random places until it would touch
-    another; so the column is loose, but not much taller than it need be.
-
-    Parameters
-    ----------
-    reach
-        Radius of each particle's enclosing ball, shape (n,).
-    radius
-        Of the cylinder.
-    """
-    wide = HEADROOM * reach
-    places = np.empty((len(reach), 3))
-    for k in range(len(reach)):
-        room = max(radius - wide[k], 0.0)
-        away, angle = room * np.sqrt(generator.random(TRIES)), generator.uniform(0.0, 2 * np.pi, TRIES)
-        seats = np.column_stack([away * np.cos(angle), away * np.sin(angle)])
-        near = slice(max(0, k - SIGHT), k)
-        heights = _resting_heights(seats, wide[k], places[near], wide[near])
-        best = int(heights.argmin())
-        places[k] = *seats[best], heights[best]
-    return places, float((places[:, 2] + wide).max())
-
-
-def _resting_heights(seats: FloatArray, size: float, others: FloatArray, sizes: FloatArray) -> FloatArray:
-    """Lowest height of a ball's centre at each seat, above the plate and on the other balls, shape (m,)."""
-    reach = sizes + size
-    aside = ((seats[:, None, :] - others[None, :, :2]) ** 2).sum(axis=2)
-    lift = np.sqrt(np.maximum(reach**2 - aside, 0.0))
-    touching = np.where(aside < reach**2, others[:, 2] + lift, size)
-    return np.asarray(np.maximum(touching.max(axis=1, initial=size), size))
-
-
-def _generator(prepared: Prepared, stream: int) -> np.random.Generator:
-    return np.random.default_rng(np.random.SeedSequence(prepared.case.seed, spawn_key=(2, stream)))
-
-
-def _reaches(prepared: Prepared, sizes: FloatArray) -> FloatArray:
-    """Radius of each particle's enclosing ball about its centre, shape (n,)."""
-    if prepared.case.shapes == "spheres":
-        return np.asarray(prepared.diameters / prepared.mean_diameter / 2)
-    furthest = np.array([np.linalg.norm(shape, axis=1).max() for shape in prepared.shapes])
-    return np.asarray(furthest[prepared.class_index] * sizes)
 
 
 def _set_options(spec: mujoco.MjSpec, prepared: Prepared, settings: MujocoSettings) -> None:

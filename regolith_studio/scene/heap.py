@@ -1,0 +1,166 @@
+"""Particles of a simulation by instancing: each shape is stored once, each particle is a place in a list.
+
+The scene is in micrometres, as all others. Each function may be called again and again on one plotter.
+"""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import pyvista as pv
+from scipy.spatial import ConvexHull
+from vtkmodules.vtkRenderingCore import vtkActor, vtkGlyph3DMapper
+
+from regolith_studio.dem.pile import Pile
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.directions import icosphere
+from regolith_studio.scene import palette
+from regolith_studio.scene.palette import Surroundings
+
+HEAP, PLATE, CYLINDER = "heap", "plate", "cylinder"
+MICROMETRES = 1e6
+UNIT_BALL = (np.pi / 6) ** (1 / 3)
+COLOURS = ("#e8b04a", "#c98f2e", "#f3cf85", "#b5a18a", "#d8c3a0", "#9f8f7d", "#e3a06b", "#bfae6a")
+"""One for each shape, in turn: shades of sand that can be told apart."""
+N_AROUND = 96
+
+
+def show_heap(plotter: Any, shapes: Sequence[FloatArray], pile: Pile, spheres: bool = False) -> None:
+    """The particles of one moment.
+
+    Parameters
+    ----------
+    plotter
+        Any pyvista plotter.
+    shapes
+        Vertices of the convex unit-volume shapes, each of shape (k, 3).
+    pile
+        The particles, in metres.
+    spheres
+        Draw balls of the same volumes instead.
+    """
+    instances = _instances(pile, len(shapes))
+    actor = plotter.actors.get(HEAP)
+    if actor is not None and _kinds(actor) == _signature(shapes, spheres):
+        actor.GetMapper().SetInputData(instances)
+        actor.SetVisibility(True)
+        return
+    if actor is not None:
+        plotter.remove_actor(HEAP, render=False)
+    mapper = vtkGlyph3DMapper()
+    mapper.SetInputData(instances)
+    mapper.SetSourceIndexing(True)
+    mapper.SetSourceIndexArray("shape")
+    for kind, shape in enumerate(shapes):
+        mapper.SetSourceData(kind, _ball() if spheres else _facets(shape))
+    mapper.SetOrientationArray("turn")
+    mapper.SetOrientationModeToQuaternion()
+    mapper.SetScaleArray("scale")
+    mapper.SetScaleModeToScaleByMagnitude()
+    mapper.SetScalarModeToUsePointFieldData()
+    mapper.SelectColorArray("colour")
+    mapper.SetColorModeToDirectScalars()
+    fresh: Any = vtkActor()
+    fresh.SetMapper(mapper)
+    material = palette.POLYHEDRON_MATERIAL
+    fresh.GetProperty().SetAmbient(material.ambient)
+    fresh.GetProperty().SetDiffuse(material.diffuse)
+    fresh.regolith_signature = _signature(shapes, spheres)
+    plotter.add_actor(fresh, name=HEAP, reset_camera=False, render=False)
+
+
+def show_apparatus(
+    plotter: Any,
+    pile: Pile,
+    diameter: float,
+    height: float,
+    reach: float,
+    surroundings: Surroundings = palette.LIGHT,
+) -> None:
+    """Plate and cylinder.
+
+    Parameters
+    ----------
+    pile
+        Tells where the cylinder's rim is; none is drawn once it is gone.
+    diameter, height
+        Of the cylinder in metres.
+    reach
+        Radius of the plate in metres.
+    """
+    if PLATE not in plotter.actors:
+        plate = pv.Disc(center=(0, 0, 0), inner=0.0, outer=1.0, normal=(0, 0, 1), r_res=1, c_res=N_AROUND)
+        plotter.add_mesh(plate, name=PLATE, lighting=False, reset_camera=False, render=False)
+        tube = pv.Cylinder(
+            center=(0, 0, 0.5),
+            direction=(0, 0, 1),
+            radius=0.5,
+            height=1.0,
+            resolution=N_AROUND,
+            capping=False,
+        )
+        plotter.add_mesh(
+            tube, name=CYLINDER, opacity=0.16, smooth_shading=True, reset_camera=False, render=False
+        )
+    plate, tube = plotter.actors[PLATE], plotter.actors[CYLINDER]
+    plate.prop.color = surroundings.background_low if surroundings is palette.DARK else "#d5dbe2"
+    tube.prop.color = palette.FIT
+    plate.SetScale(reach * MICROMETRES, reach * MICROMETRES, 1.0)
+    gone = not np.isfinite(pile.wall)
+    tube.SetVisibility(not gone)
+    if not gone:
+        tube.SetScale(diameter * MICROMETRES, diameter * MICROMETRES, height * MICROMETRES)
+        tube.SetPosition(0.0, 0.0, pile.wall * MICROMETRES)
+
+
+def framing_corners(diameter: float, height: float) -> FloatArray:
+    """Corners of what a view should show of a test, in micrometres, shape (8, 3)."""
+    reach = 1.3 * diameter * MICROMETRES
+    top = 0.8 * height * MICROMETRES
+    return np.array([(x, y, z) for x in (-reach, reach) for y in (-reach, reach) for z in (0.0, top)])
+
+
+def _instances(pile: Pile, n_shapes: int) -> pv.PolyData:
+    data: pv.PolyData = pv.PolyData(MICROMETRES * np.asarray(pile.points))
+    kinds = np.minimum(pile.class_index, n_shapes - 1)
+    data.point_data["shape"] = kinds.astype(np.int32)
+    data.point_data["turn"] = pile.orientations.astype(np.float32)
+    data.point_data["scale"] = (MICROMETRES * UNIT_BALL * pile.diameters).astype(np.float32)
+    inks = np.array([pv.Color(colour).int_rgb for colour in COLOURS], dtype=np.uint8)
+    data.point_data["colour"] = inks[kinds % len(inks)]
+    return data
+
+
+def _facets(vertices: FloatArray) -> pv.PolyData:
+    """A convex body with one normal a facet, corners repeated, so that edges stay sharp."""
+    hull = ConvexHull(vertices)
+    corners = vertices[hull.simplices]
+    normals = hull.equations[:, :3]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    inward = (across * normals).sum(axis=1) < 0.0
+    corners[inward] = corners[inward][:, ::-1]
+    n = len(corners)
+    cells = np.column_stack([np.full(n, 3), np.arange(3 * n).reshape(n, 3)]).ravel()
+    body: pv.PolyData = pv.PolyData(corners.reshape(-1, 3), faces=cells)
+    body.point_data["Normals"] = np.repeat(normals, 3, axis=0).astype(np.float32)
+    body.GetPointData().SetActiveNormals("Normals")
+    return body
+
+
+def _ball() -> pv.PolyData:
+    """A ball of unit volume."""
+    mesh = icosphere(2)
+    cells = np.column_stack([np.full(len(mesh.faces), 3), mesh.faces]).ravel()
+    body: pv.PolyData = pv.PolyData(mesh.vertices / UNIT_BALL / 2, faces=cells)
+    body.point_data["Normals"] = np.array(mesh.vertices, dtype=np.float32)
+    body.GetPointData().SetActiveNormals("Normals")
+    return body
+
+
+def _signature(shapes: Sequence[FloatArray], spheres: bool) -> tuple[object, ...]:
+    """What the sources of the instances were made from."""
+    return (spheres, *((len(shape), float(shape[0].sum())) for shape in shapes))
+
+
+def _kinds(actor: Any) -> object:
+    return getattr(actor, "regolith_signature", None)

@@ -1,0 +1,53 @@
+"""Particles of a simulation in three dimensions: where they are, and that instances are reused."""
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+from regolith_studio.dataset.dataset import Dataset
+from regolith_studio.dem.case import ReposeCase, prepare
+from regolith_studio.dem.filling import loose_column
+from regolith_studio.dem.pile import Pile
+from regolith_studio.scene import heap, stage
+
+
+def _at(points: np.ndarray, wall: float = float("inf")) -> Pile:
+    n = len(points)
+    return Pile(points, np.full(n, 2e-3), np.tile([1.0, 0, 0, 0], (n, 1)), np.zeros(n, dtype=int), wall=wall)
+
+
+@pytest.fixture
+def plotter():
+    stage.choose_off_screen_window()
+    made = pv.Plotter(off_screen=True, window_size=[200, 160])
+    stage.set_stage(made)
+    yield made
+    made.close()
+
+
+def test_that_a_particle_is_drawn_where_it_is_and_as_large(boxes: Dataset, plotter: pv.Plotter) -> None:
+    shapes = tuple(each.shape.vertices for each in boxes.representatives)
+    heap.show_heap(plotter, shapes, _at(np.array([[0.01, 0.0, 0.0], [0.0, 0.0, 0.02]])))
+    edge = 2e3 * (np.pi / 6) ** (1 / 3)
+    bounds = plotter.actors[heap.HEAP].GetBounds()
+    wanted = [-edge / 2, 1e4 + edge / 2, -edge / 2, edge / 2, -edge / 2, 2e4 + edge / 2]
+    assert bounds == pytest.approx(wanted, abs=1.0)
+    heap.show_heap(plotter, shapes, _at(np.zeros((1, 3))), spheres=True)
+    assert plotter.actors[heap.HEAP].GetBounds() == pytest.approx([-1e3, 1e3] * 3, rel=0.02)
+
+
+def test_that_the_next_moment_takes_the_same_actor(boxes: Dataset, plotter: pv.Plotter) -> None:
+    prepared = prepare(boxes, ReposeCase(n_particles=200))
+    heap.show_heap(plotter, prepared.shapes, loose_column(prepared))
+    first = plotter.actors[heap.HEAP]
+    heap.show_heap(plotter, prepared.shapes, loose_column(prepared))
+    assert plotter.actors[heap.HEAP] is first
+
+
+def test_that_the_cylinder_rises_and_goes(plotter: pv.Plotter) -> None:
+    heap.show_apparatus(plotter, _at(np.zeros((1, 3)), wall=0.03), 0.02, 0.08, 0.05)
+    tube = plotter.actors[heap.CYLINDER]
+    assert tube.GetBounds()[4:] == pytest.approx((3e4, 1.1e5))
+    assert tube.GetBounds()[:2] == pytest.approx((-1e4, 1e4), rel=1e-3)
+    heap.show_apparatus(plotter, _at(np.zeros((1, 3))), 0.02, 0.08, 0.05)
+    assert not tube.GetVisibility()
