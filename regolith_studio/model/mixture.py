@@ -6,7 +6,7 @@ directions within a degree are even in an isotropic field. ::
     ln p(i | k) = ln N(x_i; mu_k, s_k^2) - 1/2 sum over l of ((2 l + 1) ln A_lk + P_il / A_lk) + constant
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.cluster.vq import kmeans2
@@ -29,7 +29,7 @@ class MixtureSettings:
     l_max
         Degree of the particles.
     n_components
-        Number of parts, or ``None`` for the best by the criterion.
+        Number of parts; 0 for the best by the criterion.
     most_components
         Highest number tried.
     n_starts
@@ -39,10 +39,21 @@ class MixtureSettings:
     """
 
     l_max: int = 10
-    n_components: int | None = None
-    most_components: int = 8
-    n_starts: int = 2
-    seed: int = 0
+    n_components: int = field(
+        default=0,
+        metadata={
+            "label": "Parts",
+            "maximum": 50,
+            "tip": "0 for the best number by Bayes' criterion.",
+        },
+    )
+    most_components: int = field(
+        default=8, metadata={"label": "At most", "minimum": 1, "maximum": 50, "tip": "Highest number tried."}
+    )
+    n_starts: int = field(
+        default=2, metadata={"label": "Starts", "minimum": 1, "maximum": 50, "tip": "For each number."}
+    )
+    seed: int = field(default=0, metadata={"label": "Seed of starts"})
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,12 +127,12 @@ def chosen_mixture(
     fits = [_best_start(sizes, powers, k, settings) for k in _numbers(len(sizes), settings)]
     criterion = [fit.bic(len(sizes)) for fit in fits]
     best = fits[int(np.argmin(criterion))]
-    return best, tuple(criterion) if settings.n_components is None else ()
+    return best, () if settings.n_components else tuple(criterion)
 
 
 def _numbers(n: int, settings: MixtureSettings) -> list[int]:
     most = max(1, n // 4)
-    if settings.n_components is None:
+    if settings.n_components == 0:
         return list(range(1, max(1, min(settings.most_components, most)) + 1))
     if not 1 <= settings.n_components <= most:
         raise InputError(

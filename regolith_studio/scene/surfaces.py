@@ -22,7 +22,7 @@ OUTLINE = "outline"
 
 def show_particle(plotter: Any, mesh: Mesh) -> None:
     """The particle as measured, smoothly shaded."""
-    _show_surface(plotter, _smooth(mesh), palette.PARTICLE_MATERIAL, smooth=True)
+    _show_surface(plotter, smooth_surface(mesh), palette.PARTICLE_MATERIAL, smooth=True)
 
 
 def show_fit(
@@ -47,7 +47,7 @@ def show_fit(
     surroundings
         Whose ink the scale of the map is written with.
     """
-    surface = _smooth(mesh)
+    surface = smooth_surface(mesh)
     if distances is not None:
         surface.point_data["distance"] = distances
     actor = _show_surface(plotter, surface, palette.FIT_MATERIAL, smooth=True)
@@ -148,7 +148,7 @@ def _replaced(plotter: Any, name: str, data: pv.PolyData) -> Any | None:
     return actor
 
 
-def _smooth(mesh: Mesh) -> pv.PolyData:
+def smooth_surface(mesh: Mesh) -> pv.PolyData:
     """The mesh with one normal a vertex: the mean of its triangles' normals, weighted by area."""
     cells = np.column_stack([np.full(len(mesh.faces), 3), mesh.faces])
     data: pv.PolyData = pv.PolyData(np.array(mesh.vertices), faces=cells.ravel())

@@ -31,9 +31,9 @@ CONTAINED = (0.95, 0.75, 0.5, 0.25)
 MOST_FOR_DENSITY = 1500
 
 
-def density_figure(study: PopulationStudy, weighting: str = "number") -> Figure:
+def density_figure(study: PopulationStudy, weighting: str = "number", columns: int = N_COLUMNS) -> Figure:
     """Fig. 4 (by number) or Fig. 5 (by volume): histograms with bins shared by all, outer 0.2 % cut off."""
-    figure, axes = _panels(len(study.keys))
+    figure, axes = _panels(len(study.keys), columns)
     for axis, column in zip(axes, range(len(study.keys)), strict=False):
         tables = [study.measured, *(model.table for model in study.models)]
         low, high = np.percentile(np.concatenate([table[:, column] for table in tables]), [0.1, 99.9])
@@ -52,16 +52,16 @@ def density_figure(study: PopulationStudy, weighting: str = "number") -> Figure:
                 label=MODELS[model.key].label,
             )
         axis.set_xlabel(_label(study, column))
-    for axis in axes[::N_COLUMNS]:
+    for axis in axes[::columns]:
         axis.set_ylabel(f"density by {weighting}")
     handles, labels = axes[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside upper center", ncols=3, frameon=False)
     return figure
 
 
-def quantile_figure(study: PopulationStudy) -> Figure:
+def quantile_figure(study: PopulationStudy, columns: int = N_COLUMNS) -> Figure:
     """Quantiles (0.5 to 99.5 %) of each model against those of the sample: equal ones lie on the line."""
-    figure, axes = _panels(len(study.keys))
+    figure, axes = _panels(len(study.keys), columns)
     shares = np.linspace(0.5, 99.5, 100)
     for column, axis in enumerate(axes):
         measured = np.percentile(study.measured[:, column], shares)
@@ -70,7 +70,7 @@ def quantile_figure(study: PopulationStudy) -> Figure:
             found = np.percentile(model.table[:, column], shares)
             axis.plot(measured, found, ".", color=colour, markersize=3, label=MODELS[model.key].label)
         axis.set_xlabel(f"measured {_label(study, column)}")
-    for axis in axes[::N_COLUMNS]:
+    for axis in axes[::columns]:
         axis.set_ylabel("drawn")
     handles, labels = axes[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside upper center", ncols=3, frameon=False)
@@ -139,8 +139,8 @@ def write_population_study(
     return tuple(files)
 
 
-def _panels(n: int) -> tuple[Figure, list[Axes]]:
-    columns = min(N_COLUMNS, n)
+def _panels(n: int, columns: int) -> tuple[Figure, list[Axes]]:
+    columns = min(columns, n)
     rows = ceil(n / columns)
     figure = Figure(figsize=(1 + 3.2 * columns, 0.8 + 2.6 * rows), layout="constrained")
     axes = list(figure.subplots(rows, columns, squeeze=False).flat)

@@ -16,7 +16,7 @@ from regolith_studio.studies.population_tables import distance_table, pair_table
 from regolith_studio.studies.progress import StudyProgress
 
 SMALL_MODELS = ("gaussian_field", "mixture_field", "sample_matched")
-SMALL = {"l_max": 4, "n_draws": 40, "n_splits": 2, "n_repeats": 2, "level": 2}
+SMALL = {"l_max": 4, "n_draws": 24, "n_splits": 2, "n_repeats": 2, "level": 2}
 
 
 def rough_sample(n: int, l_max: int = 4) -> Sample:
@@ -109,7 +109,7 @@ def test_that_the_same_seed_gives_the_same_study() -> None:
 def test_that_a_study_becomes_tables_and_pictures(
     small: tuple[list[StudyProgress], PopulationStudy], tmp_path: Path
 ) -> None:
-    files = write_population_study(small[1], tmp_path)
+    files = write_population_study(replace(small[1], models=small[1].models[1:2]), tmp_path)
     assert all(path.stat().st_size > 200 for path in files)
     assert {path.suffix for path in files} == {".csv", ".json", ".png", ".svg"}
     picture = matplotlib.image.imread(tmp_path / "population_pairs.png")

@@ -6,7 +6,7 @@ brings the elongated particles that an isotropic field in r cannot make.
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -46,9 +46,9 @@ class LogFieldSettings:
     """
 
     l_max: int = 10
-    spectrum: str = "resampled"
-    size_law: str = "kernel"
-    size_dependent: bool = True
+    spectrum: str = field(default="resampled", metadata={"label": "Spectrum", "choices": SPECTRA})
+    size_law: str = field(default="kernel", metadata={"label": "Law of sizes", "choices": tuple(SIZE_LAWS)})
+    size_dependent: bool = field(default=True, metadata={"label": "Spectrum depends on size"})
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,7 +12,7 @@ beyond the sample, take ``log_field``.
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, ClassVar
 
@@ -56,9 +56,23 @@ class SampleMatchedSettings:
     """
 
     l_max: int = 10
-    turn: float = 0.5
-    n_neighbours: int = 20
-    size_jitter: float = 0.02
+    turn: float = field(
+        default=0.5,
+        metadata={"label": "Turn [rad]", "maximum": 2.0, "step": 0.1, "decimals": 2, "tip": "Mean rotation."},
+    )
+    n_neighbours: int = field(
+        default=20,
+        metadata={"label": "Neighbours", "minimum": 1, "tip": "Particles that may lend their ellipsoid."},
+    )
+    size_jitter: float = field(
+        default=0.02,
+        metadata={
+            "label": "Size jitter",
+            "maximum": 1.0,
+            "decimals": 3,
+            "tip": "Deviation in ln r_eq.",
+        },
+    )
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,0 +1,158 @@
+"""For the window: a model with examples of its sample, drawn particles, judged models as pictures."""
+
+import io
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from regolith_studio.errors import GeometryError
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.harmonics.surface import reconstruct
+from regolith_studio.jobs.events import Partial, Step, Steps
+from regolith_studio.jobs.generating import (
+    GenerateOrder,
+    draw,
+    expansion_of,
+    fit_model,
+    sample_of_meshes,
+)
+from regolith_studio.jobs.studying import study_population
+from regolith_studio.model.draws import Draws, virtual_mesh
+from regolith_studio.model.protocol import FittedModel
+from regolith_studio.model.sample import Sample
+from regolith_studio.readers.shape_files import ShapeSource
+from regolith_studio.studies import population_figures as figures
+from regolith_studio.studies.population import PopulationStudy
+from regolith_studio.studies.population_distances import WEIGHTINGS
+
+N_EXAMPLES = 6
+LEVEL = 4
+"""Icosphere level of the examples."""
+DOTS_PER_INCH = 110
+COLUMNS = 5
+"""Panels in a row: a window is wider than a page."""
+
+Origin = ShapeSource | tuple[Particle, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class FittedShapes:
+    """A fitted model, what it was fitted to, and some of the measured particles at its degree.
+
+    Parameters
+    ----------
+    source
+        All that was known; a model fitted to a half has seen only that.
+    model
+        Fitted.
+    n_fitted
+        Particles that the model was fitted to; 0 where it came as a card or file.
+    examples
+        Meshes of measured particles, centred; none where there are none.
+    """
+
+    source: ShapeSource
+    model: FittedModel
+    n_fitted: int
+    examples: tuple[Mesh, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class DrawnShapes:
+    """Drawn particles, and meshes of the first of them."""
+
+    draws: Draws
+    examples: tuple[Mesh, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class JudgedShapes:
+    """A study, and its figures as PNG by name: number, volume, pairs, quantiles and maybe components."""
+
+    study: PopulationStudy
+    pictures: dict[str, bytes]
+
+
+def fit_shapes(origin: Origin, order: GenerateOrder, half: bool = False) -> Steps:
+    """Expand particles where that is needed, and fit; returns :class:`FittedShapes`.
+
+    Parameters
+    ----------
+    origin
+        Particles, or what a file or a material has to offer.
+    half
+        Fit to the random half that a study with the same seed fits to in its first split.
+    """
+    if isinstance(origin, tuple):
+        source: ShapeSource = yield from sample_of_meshes(origin, expansion_of(order))
+    else:
+        source = origin
+    sample = source.content if isinstance(source.content, Sample) else None
+    seen = source
+    if sample is not None and half:
+        seen = ShapeSource(
+            sample.chosen(sample.halves(order.seed)[0]), source.name, source.sha256, source.notes
+        )
+    model: FittedModel = yield from fit_model(seen, order)
+    n_fitted = len(seen.content) if isinstance(seen.content, Sample) else 0
+    return FittedShapes(source, model, n_fitted, _measured_examples(sample, model.l_max) if sample else ())
+
+
+def draw_shapes(model: FittedModel, order: GenerateOrder) -> Steps:
+    """Draw the particles of an order; returns :class:`DrawnShapes`."""
+    draws: Draws = yield from draw(model, order)
+    meshes = [virtual_mesh(draws, i, LEVEL) for i in range(min(N_EXAMPLES, len(draws)))]
+    return DrawnShapes(draws, tuple(meshes))
+
+
+def judge_shapes(sample: Sample, models: Sequence[str] | None, **options: Any) -> Steps:
+    """The study of models with its figures; partial results and the result are :class:`JudgedShapes`."""
+    steps = study_population(sample, models, **options)
+    while True:
+        try:
+            step: Step = next(steps)
+        except StopIteration as end:
+            return judged(end.value)
+        yield Partial(judged(step.value)) if isinstance(step, Partial) else step
+
+
+def judged(study: PopulationStudy) -> JudgedShapes:
+    """The study with its figures drawn."""
+    drawn: dict[str, Figure | None] = {
+        weighting: figures.density_figure(study, weighting, COLUMNS) for weighting in WEIGHTINGS
+    }
+    drawn["pairs"] = figures.pair_figure(study)
+    drawn["quantiles"] = figures.quantile_figure(study, COLUMNS)
+    drawn["components"] = figures.components_figure(study)
+    return JudgedShapes(study, {name: png_of(figure) for name, figure in drawn.items() if figure is not None})
+
+
+def png_of(figure: Figure) -> bytes:
+    """The figure as PNG."""
+    FigureCanvasAgg(figure)
+    stream = io.BytesIO()
+    figure.savefig(stream, format="png", dpi=DOTS_PER_INCH)
+    return stream.getvalue()
+
+
+def live_mesh(model: FittedModel, seed: int, level: int = 4) -> Mesh:
+    """One particle; the same seed gives the same random numbers, so that it changes with the spectrum."""
+    return virtual_mesh(model.draw(1, seed), 0, level)
+
+
+def _measured_examples(sample: Sample, l_max: int) -> tuple[Mesh, ...]:
+    """Particles from all over the sample, in their own places of its order."""
+    picks = np.unique(np.linspace(0, len(sample) - 1, N_EXAMPLES).astype(int))
+    cut = sample.truncated(min(l_max, sample.l_max))
+    meshes = []
+    for index in picks:
+        try:
+            meshes.append(reconstruct(cut.particle(int(index)), level=LEVEL))
+        except GeometryError:
+            continue
+    return tuple(meshes)

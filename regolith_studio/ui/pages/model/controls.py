@@ -1,0 +1,280 @@
+"""What is drawn from, by which model, and how many."""
+
+import dataclasses
+from collections.abc import Mapping
+from typing import Any
+
+from PySide6.QtCore import QSignalBlocker, Signal
+from PySide6.QtWidgets import (
+    QCheckBox,
+    QComboBox,
+    QDoubleSpinBox,
+    QFormLayout,
+    QHBoxLayout,
+    QPushButton,
+    QSpinBox,
+    QStackedWidget,
+    QVBoxLayout,
+    QWidget,
+)
+
+from regolith_studio.errors import InputError
+from regolith_studio.jobs.generating import CARD_MODEL, GenerateOrder
+from regolith_studio.model.models import DEFAULT_MODEL, MODELS
+from regolith_studio.ui.widgets.labels import heading, remark
+from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
+from regolith_studio.ui.widgets.settings_form import SettingsForm
+
+L_MAX = NumberSpec(
+    "l<sub>max</sub>", "Degree of the particles", 1, 30, tip="The paper's virtual particles have 10."
+)
+MOST_DRAWN = 1_000_000
+
+
+class SourceControls(QWidget):
+    """Chooses a sample or material, the model and its settings."""
+
+    sourceChanged = Signal(str)  # noqa: N815
+    openRequested = Signal()  # noqa: N815
+    fitRequested = Signal()  # noqa: N815
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("model_source")
+        self.source, self.model = QComboBox(), QComboBox()
+        self.l_max = NumberSlider(L_MAX)
+        self.half = QCheckBox("Fit to a random half only")
+        self.open, self.fit = QPushButton("Open …"), QPushButton("Fit the model")
+        self.summary, self.findings = remark(), remark()
+        self.forms = {key: SettingsForm(_without_degree(model.Settings)) for key, model in MODELS.items()}
+        self._forms = QStackedWidget()
+        self._dress()
+        self._place()
+        self.source.currentIndexChanged.connect(lambda _: self.sourceChanged.emit(self.source.currentData()))
+        self.model.currentIndexChanged.connect(lambda _: self._show_model())
+        self.open.clicked.connect(self.openRequested)
+        self.fit.clicked.connect(self.fitRequested)
+        self._show_model()
+
+    def set_sources(self, sources: Mapping[str, str]) -> None:
+        """What can be chosen, by key; the choice stays if it is still there."""
+        chosen = self.source.currentData()
+        with QSignalBlocker(self.source):
+            self.source.clear()
+            for key, label in sources.items():
+                self.source.addItem(label, key)
+            self.source.setCurrentIndex(max(0, self.source.findData(chosen)))
+        if self.source.currentData() != chosen:
+            self.sourceChanged.emit(self.source.currentData())
+
+    def choose_source(self, key: str) -> None:
+        """Choose another source."""
+        self.source.setCurrentIndex(max(0, self.source.findData(key)))
+
+    def show_kind(self, brings_model: str, longest: int, words: str) -> None:
+        """Say what the source is.
+
+        Parameters
+        ----------
+        brings_model
+            Key of the model that a card or file brings; empty for a sample, to which any can be fitted.
+        longest
+            Highest degree that it has.
+        words
+            A sentence.
+        """
+        self.findings.setText(words)
+        self.model.setEnabled(not brings_model)
+        for widget in (self.half, self._forms):
+            widget.setVisible(not brings_model)
+        if brings_model:
+            self.model.setCurrentIndex(self.model.findData(brings_model))
+        self.fit.setText("Use the model" if brings_model else "Fit the model")
+        self.l_max.setEnabled(brings_model in ("", CARD_MODEL))
+        self.l_max.slider.setMaximum(longest)
+        self.l_max.field.setMaximum(longest)
+
+    def value(self) -> dict[str, Any]:
+        """Source, model, degree, half, and the settings of each model that are not at their default."""
+        return {
+            "source": self.source.currentData(),
+            "model": self.model.currentData(),
+            "l_max": int(self.l_max.value()),
+            "half": self.half.isChecked(),
+            "settings": {key: form.value() for key, form in self.forms.items() if form.value()},
+        }
+
+    def setValue(self, value: Mapping[str, Any]) -> None:
+        """Show other choices; names that are not known are left out."""
+        if (at := self.source.findData(value.get("source"))) >= 0:
+            self.source.setCurrentIndex(at)
+        if (at := self.model.findData(value.get("model"))) >= 0:
+            self.model.setCurrentIndex(at)
+        self.l_max.setValue(int(value.get("l_max", 10)))
+        self.half.setChecked(bool(value.get("half", False)))
+        for key, form in self.forms.items():
+            form.setValue(dict(value.get("settings", {})).get(key, {}))
+
+    def _show_model(self) -> None:
+        key = self.model.currentData()
+        self.summary.setText(MODELS[key].summary)
+        self._forms.setCurrentWidget(self.forms[key])
+        for each, form in self.forms.items():
+            form.setVisible(each == key)
+
+    def _dress(self) -> None:
+        for key, model in MODELS.items():
+            self.model.addItem(model.label, key)
+            self._forms.addWidget(self.forms[key])
+        self.model.setCurrentIndex(self.model.findData(DEFAULT_MODEL))
+        self.l_max.setValue(10)
+        self.half.setToolTip("The other half is then new to the model, as in its judgement.")
+        names = {"source": "What to draw from", "model": "Kind of model", "half": "Fit to a half"}
+        for name in ("source", "model", "half", "open", "fit"):
+            widget = getattr(self, name)
+            widget.setObjectName(f"model_{name}")
+            widget.setAccessibleName(names.get(name, widget.text() if hasattr(widget, "text") else name))
+        self.l_max.field.setObjectName("model_l_max")
+        self.source.setMinimumContentsLength(12)
+        self.source.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
+        self.model.setMinimumContentsLength(12)
+        self.model.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
+
+    def _place(self) -> None:
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        row = QHBoxLayout()
+        row.addWidget(self.source, 1)
+        row.addWidget(self.open)
+        layout.addWidget(heading("Sample or material"))
+        layout.addLayout(row)
+        layout.addWidget(self.findings)
+        layout.addSpacing(8)
+        layout.addWidget(heading("Model"))
+        for widget in (self.model, self.summary, self.l_max, self._forms, self.half, self.fit):
+            layout.addWidget(widget)
+
+
+class DrawControls(QWidget):
+    """How many particles are drawn, of which sizes."""
+
+    drawRequested = Signal()  # noqa: N815
+    adoptRequested = Signal()  # noqa: N815
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("model_draw")
+        self.number, self.seed = QSpinBox(), QSpinBox()
+        self.limited = QCheckBox("Only equivalent radii from … to …")
+        self.smallest, self.largest = QDoubleSpinBox(), QDoubleSpinBox()
+        self.draw, self.adopt = QPushButton("Draw"), QPushButton("Use as population")
+        self.findings = remark()
+        self._dress()
+        self._place()
+        self.limited.toggled.connect(self._limit)
+        self.draw.clicked.connect(self.drawRequested)
+        self.adopt.clicked.connect(self.adoptRequested)
+        self._limit(False)
+        self.set_ready(model=False, drawn=False)
+
+    def set_ready(self, *, model: bool, drawn: bool) -> None:
+        """Whether there is a model to draw from, and whether particles have been drawn."""
+        self.draw.setEnabled(model)
+        self.adopt.setEnabled(drawn)
+
+    def value(self) -> dict[str, Any]:
+        """Number, seed and range of sizes."""
+        bounds = [self.smallest.value(), self.largest.value()] if self.limited.isChecked() else None
+        return {"n": self.number.value(), "seed": self.seed.value(), "size_range": bounds}
+
+    def setValue(self, value: Mapping[str, Any]) -> None:
+        """Show other numbers."""
+        self.number.setValue(int(value.get("n", 100)))
+        self.seed.setValue(int(value.get("seed", 0)))
+        bounds = value.get("size_range")
+        self.limited.setChecked(bounds is not None)
+        if bounds is not None:
+            self.smallest.setValue(float(bounds[0]))
+            self.largest.setValue(float(bounds[1]))
+
+    def suggest(self, smallest: float, largest: float) -> None:
+        """Fill in the sizes of the sample while they do not count."""
+        if not self.limited.isChecked():
+            self.smallest.setValue(smallest)
+            self.largest.setValue(largest)
+
+    def _limit(self, limited: bool) -> None:
+        self.smallest.setEnabled(limited)
+        self.largest.setEnabled(limited)
+
+    def _dress(self) -> None:
+        self.number.setRange(1, MOST_DRAWN)
+        self.number.setValue(100)
+        self.number.setGroupSeparatorShown(True)
+        self.seed.setRange(0, 2**31 - 1)
+        for field, value in ((self.smallest, 1.0), (self.largest, 100.0)):
+            field.setDecimals(3)
+            field.setRange(1e-3, 1e9)
+            field.setValue(value)
+            field.setSuffix(" µm")
+            field.setMinimumWidth(80)
+        names = {
+            "number": "Number of particles",
+            "seed": "Seed of the draws",
+            "limited": "Limit the sizes",
+            "smallest": "Smallest equivalent radius",
+            "largest": "Largest equivalent radius",
+            "draw": "Draw particles",
+            "adopt": "Use the drawn particles as population",
+        }
+        for name, words in names.items():
+            getattr(self, name).setObjectName(f"model_{name}")
+            getattr(self, name).setAccessibleName(words)
+        self.adopt.setToolTip("Open the drawn particles: to be coarsened and made a dataset.")
+
+    def _place(self) -> None:
+        form = QFormLayout()
+        form.addRow("Particles", self.number)
+        form.addRow("Seed", self.seed)
+        sizes = QHBoxLayout()
+        sizes.addWidget(self.smallest, 1)
+        sizes.addWidget(self.largest, 1)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(heading("Virtual particles"))
+        layout.addLayout(form)
+        layout.addWidget(self.limited)
+        layout.addLayout(sizes)
+        for widget in (self.draw, self.findings, self.adopt):
+            layout.addWidget(widget)
+
+
+def order_from(source: Mapping[str, Any], drawing: Mapping[str, Any], brings_model: str) -> GenerateOrder:
+    """The order that the controls stand for.
+
+    Raises
+    ------
+    InputError
+        If a value cannot be used.
+    """
+    bounds = drawing["size_range"]
+    if bounds is not None and not bounds[0] < bounds[1]:
+        raise InputError(
+            f"The smallest radius must be below the largest, got {bounds[0]:g} and {bounds[1]:g}."
+        )
+    key = "" if brings_model else str(source["model"])
+    settings = tuple(source["settings"].get(key, {}).items()) if key else ()
+    degree = None if brings_model not in ("", CARD_MODEL) else int(source["l_max"])
+    return GenerateOrder(
+        key, settings, degree, drawing["n"], drawing["seed"], None if bounds is None else tuple(bounds)
+    )
+
+
+def _without_degree(kind: type[Any]) -> type[Any]:
+    """The settings without l_max, which has a slider of its own."""
+    rows = [
+        (each.name, each.type, dataclasses.field(default=each.default, metadata=each.metadata))
+        for each in dataclasses.fields(kind)
+        if each.name != "l_max"
+    ]
+    return dataclasses.make_dataclass(kind.__name__, rows, frozen=True)

@@ -1,0 +1,45 @@
+"""Asking where to write a model or a card, and writing it."""
+
+import re
+from pathlib import Path
+
+from PySide6.QtWidgets import QFileDialog, QWidget
+
+from regolith_studio.errors import RegolithError
+from regolith_studio.model.files import write_model
+from regolith_studio.model.materials import MaterialCard, write_card
+from regolith_studio.model.protocol import FittedModel
+from regolith_studio.model.sample import Sample
+from regolith_studio.readers.shape_files import ShapeSource
+from regolith_studio.ui.widgets.toast import Toast
+
+
+def ask_model(parent: QWidget, toast: Toast, model: FittedModel, source: ShapeSource) -> None:
+    """Ask for a name and write ``<name>.json`` and ``<name>.npz``."""
+    name, _ = QFileDialog.getSaveFileName(parent, "Save the model", "model.json", "Models (*.json)")
+    if not name:
+        return
+    stem = Path(name).with_suffix("") if name.endswith(".json") else Path(name)
+    try:
+        paths = write_model(stem, model, {"source": source.name, "sha256": source.sha256 or None})
+    except OSError as error:
+        toast.problem(f"The model {name} cannot be written ({error.strerror}).")
+        return
+    toast.note(f"Saved {paths[0].name} and {paths[1].name}.")
+
+
+def ask_card(parent: QWidget, toast: Toast, sample: Sample, source: ShapeSource) -> None:
+    """Ask for a name and write the card of a sample; the file's name becomes that of the material."""
+    name, _ = QFileDialog.getSaveFileName(parent, "Save a material card", "material.json", "Cards (*.json)")
+    if not name:
+        return
+    path = Path(name)
+    key = re.sub(r"[^a-z0-9_]+", "_", path.stem.lower()).strip("_") or "material"
+    origin = f"Statistics of {len(sample)} particles of {source.name}, made by Regolith Studio."
+    try:
+        write_card(MaterialCard.of(sample, key, path.stem, origin), path)
+    except (RegolithError, OSError) as error:
+        reason = error.strerror if isinstance(error, OSError) else error
+        toast.problem(f"The card {name} cannot be written ({reason}).")
+        return
+    toast.note(f"Saved {path.name}.")

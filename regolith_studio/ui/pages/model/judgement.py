@@ -1,0 +1,167 @@
+"""How near the drawn particles are to the measured ones: the ranking and the figures of a study."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import (
+    QAbstractItemView,
+    QCheckBox,
+    QHBoxLayout,
+    QHeaderView,
+    QLabel,
+    QSpinBox,
+    QStackedLayout,
+    QTableWidget,
+    QTableWidgetItem,
+    QVBoxLayout,
+    QWidget,
+)
+
+from regolith_studio.jobs.judging import JudgedShapes
+from regolith_studio.model.models import MODELS
+from regolith_studio.studies.population_tables import ranking_table
+from regolith_studio.ui.layout import tabs
+from regolith_studio.ui.widgets.labels import remark
+from regolith_studio.ui.widgets.picture_label import PictureLabel
+from regolith_studio.ui.widgets.study_frame import StudyFrame
+
+WAITING = "Models are fitted to one half of the sample and judged on the other, beside the noise of sampling."
+FIGURES = {
+    "number": "By number (Fig. 4)",
+    "volume": "By volume (Fig. 5)",
+    "pairs": "Pairs (Fig. 6)",
+    "quantiles": "Quantiles",
+    "components": "Parts",
+}
+HEADERS = ("Model", "W / floor", "KS / floor", "Energy", "Classifier", "Novelty", "Rejected")
+TIPS = (
+    "The nearest to the sample first",
+    "Mean Wasserstein distance to the half that was held out, over that between random halves: 1 is noise",
+    "The same for the Kolmogorov-Smirnov distance",
+    "Mean energy distance of pairs of descriptors: 0 for equal distributions",
+    "Share that a classifier tells right: 0.5 cannot be told apart",
+    "Median distance to the nearest measured particle, over that between measured ones: 0 is a copy",
+    "Draws thrown away",
+)
+
+
+class JudgementPanel(QWidget):
+    """Starts a study, and shows what came of it so far."""
+
+    startRequested = Signal()  # noqa: N815
+    cancelRequested = Signal(int)  # noqa: N815
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("model_judgement")
+        self.all_models = QCheckBox("all models")
+        self.splits, self.repeats = QSpinBox(), QSpinBox()
+        self.ranking = QTableWidget(0, len(HEADERS))
+        self.notes = remark()
+        self.pictures = {name: PictureLabel(WAITING) for name in FIGURES}
+        self.tabs = tabs("model_figures", [(self._ranked(), "Ranking")])
+        for name, title in FIGURES.items():
+            self.tabs.addTab(self.pictures[name], title)
+        inside = QWidget()
+        column = QVBoxLayout(inside)
+        column.setContentsMargins(0, 4, 0, 0)
+        column.addLayout(self._options())
+        column.addWidget(self.tabs, 1)
+        self.frame = StudyFrame("model_judge", inside)
+        self.frame.startRequested.connect(self.startRequested)
+        self.frame.cancelRequested.connect(self.cancelRequested)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(self.frame)
+        self.set_ready("")
+
+    def set_ready(self, why_not: str) -> None:
+        """Whether there are measured particles to judge by; a sentence says why not."""
+        self.frame.start.setText("Judge")
+        self.frame.start.setEnabled(not why_not)
+        self.frame.set_remark(why_not)
+
+    def value(self) -> dict[str, Any]:
+        """All models or only the chosen one, splits, and drawings from each fit."""
+        return {
+            "all_models": self.all_models.isChecked(),
+            "splits": self.splits.value(),
+            "repeats": self.repeats.value(),
+        }
+
+    def setValue(self, value: Mapping[str, Any]) -> None:
+        """Show other choices."""
+        self.all_models.setChecked(bool(value.get("all_models", False)))
+        self.splits.setValue(int(value.get("splits", 5)))
+        self.repeats.setValue(int(value.get("repeats", 5)))
+
+    def show_judged(self, judged: JudgedShapes | None) -> None:
+        """Show a study, finished or not, or nothing."""
+        for name, label in self.pictures.items():
+            label.set_picture(judged.pictures.get(name) if judged else None)
+            at = self.tabs.indexOf(label)
+            self.tabs.setTabVisible(at, name != "components" or (judged is not None and not label.is_empty()))
+        self._stack.setCurrentIndex(1 if judged else 0)
+        if judged is None:
+            return
+        table = ranking_table(judged.study)
+        self.ranking.setRowCount(len(table.rows))
+        for row, cells in enumerate(table.rows):
+            key, near, gap, energy, accuracy, novelty, rejected = cells
+            words = (
+                MODELS[str(key)].label,
+                f"{near:.2f}",
+                f"{gap:.2f}",
+                f"{energy:.2f} %",
+                f"{accuracy:.3f}",
+                f"{novelty:.2f}",
+                f"{rejected:.1f} %",
+            )
+            for column, text in enumerate(words):
+                self.ranking.setItem(row, column, QTableWidgetItem(text))
+        self.notes.setText(table.notes[0])
+
+    def _options(self) -> QHBoxLayout:
+        row = QHBoxLayout()
+        row.setContentsMargins(8, 0, 8, 0)
+        for name, field, words in (
+            ("splits", self.splits, "splits"),
+            ("repeats", self.repeats, "drawings from each fit"),
+        ):
+            field.setRange(1, 50)
+            field.setValue(5)
+            field.setObjectName(f"model_{name}")
+            field.setAccessibleName(words.capitalize())
+            row.addWidget(field)
+            row.addWidget(QLabel(words))
+        self.all_models.setObjectName("model_all_models")
+        self.all_models.setToolTip("Judge every model, not only the chosen one.")
+        row.addWidget(self.all_models)
+        row.addStretch(1)
+        return row
+
+    def _ranked(self) -> QWidget:
+        self.ranking.setObjectName("model_ranking")
+        self.ranking.setAccessibleName("Ranking of the models")
+        for at, (words, tip) in enumerate(zip(HEADERS, TIPS, strict=True)):
+            item = QTableWidgetItem(words)
+            item.setToolTip(tip)
+            self.ranking.setHorizontalHeaderItem(at, item)
+        self.ranking.verticalHeader().hide()
+        self.ranking.setShowGrid(False)
+        self.ranking.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
+        self.ranking.setSelectionMode(QAbstractItemView.SelectionMode.NoSelection)
+        header = self.ranking.horizontalHeader()
+        header.setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
+        header.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
+        filled = QWidget()
+        column = QVBoxLayout(filled)
+        column.setContentsMargins(8, 6, 8, 6)
+        column.addWidget(self.ranking, 1)
+        column.addWidget(self.notes)
+        page = QWidget()
+        self._stack = QStackedLayout(page)
+        self._stack.addWidget(PictureLabel(WAITING))
+        self._stack.addWidget(filled)
+        return page

@@ -1,0 +1,302 @@
+"""Controls on the left; spectrum and drawn particle above, gallery and judgement below."""
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from PySide6.QtWidgets import QFileDialog, QHBoxLayout
+
+from regolith_studio.errors import InputError, RegolithError
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.jobs.events import Job
+from regolith_studio.jobs.generating import GenerateOrder, groups_of, make_particles
+from regolith_studio.jobs.judging import (
+    DrawnShapes,
+    FittedShapes,
+    draw_shapes,
+    fit_shapes,
+    judge_shapes,
+    live_mesh,
+)
+from regolith_studio.model.protocol import FittedModel
+from regolith_studio.model.sample import Sample
+from regolith_studio.model.spectra import can_be_edited, relative_amplitudes, with_amplitudes
+from regolith_studio.readers.shape_files import ShapeSource, read_shape_source
+from regolith_studio.ui.layout import padded, scrolled_column, side_by_side, stacked, tabs
+from regolith_studio.ui.page import PageContext, PageWidget
+from regolith_studio.ui.pages.model.controls import DrawControls, SourceControls, order_from
+from regolith_studio.ui.pages.model.files import ask_card, ask_model
+from regolith_studio.ui.pages.model.judgement import JudgementPanel
+from regolith_studio.ui.pages.model.sources import Sources
+from regolith_studio.ui.pages.model.views import Gallery, LiveShape
+from regolith_studio.ui.theme import Theme
+
+SOURCE_FILTER = "Fits, models and material cards (*.json *.npz);;All files (*)"
+POPULATION_LEVEL = 4
+MOST_ADOPTED = 2000
+"""Particles that are opened at most: each becomes a mesh in memory."""
+JUDGE = "judge"
+
+
+class ModelPage(PageWidget):
+    """Asks jobs for models, particles and judgements, and shows them."""
+
+    def __init__(self, context: PageContext) -> None:
+        super().__init__()
+        self.setObjectName("model")
+        self._context = context
+        self._sources = Sources(context.session)
+        self._fitted: FittedShapes | None = None
+        self._model: FittedModel | None = None
+        self._drawn: DrawnShapes | None = None
+        self._live_seed = 0
+        self.source, self.drawing = SourceControls(), DrawControls()
+        self.live, self.gallery = LiveShape(context.views), Gallery(context.views)
+        self.judgement = JudgementPanel()
+        self._place()
+        self._connect()
+        context.wiring.refresh("particles", self._show_sources)
+        context.wiring.refresh("tasks", self._show_tasks, slow=True)
+
+    # --- the page of the window ----------------------------------------------------------------
+
+    def set_theme(self, theme: Theme) -> None:
+        self.live.set_theme(theme)
+        self.gallery.set_theme(theme)
+
+    def commands(self) -> Mapping[str, Callable[..., object]]:
+        return {
+            "open_source": self.open_source,
+            "fit_model": self.fit_model,
+            "draw": self.draw,
+            "another": self.another,
+            "judge": self.judge,
+            "adopt": self.adopt,
+            "save_model": self.save_model,
+            "save_card": self.save_card,
+        }
+
+    def state(self) -> dict[str, Any]:
+        return {
+            "source": self.source.value(),
+            "drawing": self.drawing.value(),
+            "judgement": self.judgement.value(),
+        }
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        for name, panel in (
+            ("source", self.source),
+            ("drawing", self.drawing),
+            ("judgement", self.judgement),
+        ):
+            if isinstance(state.get(name), Mapping):
+                panel.setValue(state[name])
+
+    def release(self) -> None:
+        self.live.frame.view.release()
+        self.gallery.frame.view.release()
+
+    # --- commands ------------------------------------------------------------------------------
+
+    def open_source(self) -> None:
+        """Ask for a fit, model or card and choose it."""
+        name, _ = QFileDialog.getOpenFileName(self, "Open a fit, model or card", "", SOURCE_FILTER)
+        if name:
+            self.add_source(Path(name))
+
+    def add_source(self, path: Path) -> None:
+        """Choose a fit, model or card in a file."""
+        self._try(lambda: self._add(read_shape_source(str(path))))
+
+    def fit_model(self) -> None:
+        """Fit the chosen model to the chosen sample, or take what the source brings."""
+        self._try(self._fit)
+
+    def draw(self) -> None:
+        """Draw the particles."""
+        self._try(self._draw)
+
+    def another(self) -> None:
+        """Show another particle of the model."""
+        if self._model is not None:
+            self._live_seed += 1
+            self._show_live(again=True)
+
+    def judge(self) -> None:
+        """Judge the chosen model, or all."""
+        self._try(self._judge)
+
+    def adopt(self) -> None:
+        """Open the drawn particles: they replace those that are open, and are coarsened and exported."""
+        if self._drawn is None or self._model is None:
+            self._context.toast.problem("There are no drawn particles yet: draw some first.")
+            return
+        draws = self._drawn.draws
+        if len(draws) > MOST_ADOPTED:
+            self._context.toast.problem(
+                f"{len(draws):,} particles are too many to open; at most {MOST_ADOPTED:,}. For more use: "
+                "regolith-studio generate."
+            )
+            return
+        job = Job(make_particles, (draws, groups_of(draws, self._model), POPULATION_LEVEL))
+        self._context.start("Making virtual particles", job, self._take_over, lane="adopt")
+
+    def save_model(self) -> None:
+        """Ask for a file and write the model."""
+        if self._model is None or self._fitted is None:
+            self._context.toast.problem("There is no model to save: fit one first.")
+            return
+        ask_model(self, self._context.toast, self._model, self._fitted.source)
+
+    def save_card(self) -> None:
+        """Ask for a file and write a card of the sample."""
+        sample = self._sample()
+        if sample is None or self._fitted is None:
+            self._context.toast.problem("A card is made of a fitted sample: fit a model to one first.")
+            return
+        ask_card(self, self._context.toast, sample, self._fitted.source)
+
+    # --- work ----------------------------------------------------------------------------------
+
+    def _fit(self) -> None:
+        origin = self._sources.origin(self.source.value()["source"])
+        order = self._order()
+        job = Job(fit_shapes, (origin, order, bool(self.source.value()["half"])))
+        self._context.start("Fitting a model of shapes", job, self._show_fitted, lane="fit")
+
+    def _draw(self) -> None:
+        if self._model is None:
+            raise InputError("There is no model to draw from: fit one first.")
+        job = Job(draw_shapes, (self._model, self._order()))
+        self._context.start("Drawing particles", job, self._show_drawn, lane="draw")
+
+    def _judge(self) -> None:
+        sample = self._sample()
+        if sample is None:
+            raise InputError("Models are judged on measured particles: fit one to a sample first.")
+        order, chosen = self._order(), self.judgement.value()
+        key = str(self.source.value()["model"])
+        options = {
+            "l_max": order.l_max or 10,
+            "n_splits": chosen["splits"],
+            "n_repeats": chosen["repeats"],
+            "seed": order.seed,
+        }
+        job = Job(judge_shapes, (sample, None if chosen["all_models"] else (key,)), options)
+        show = self.judgement.show_judged
+        self._context.start("Judging models", job, show, partial=show, lane=JUDGE)
+
+    def _order(self) -> GenerateOrder:
+        return order_from(self.source.value(), self.drawing.value(), self._brings())
+
+    # --- results -------------------------------------------------------------------------------
+
+    def _show_fitted(self, fitted: FittedShapes) -> None:
+        self._fitted, self._model, self._drawn = fitted, fitted.model, None
+        model = fitted.model
+        self.live.spectrum.setValue(relative_amplitudes(model), editable=can_be_edited(model))
+        self._live_seed = 0
+        self._show_live(again=True)
+        self.gallery.show_shapes(fitted.examples, ())
+        self.judgement.show_judged(None)
+        self._show_state()
+        if isinstance(fitted.source.content, Sample):
+            radii = fitted.source.content.equivalent_radii
+            self.drawing.suggest(float(radii.min()), float(radii.max()))
+        if fitted.source.notes:
+            self._context.toast.problem(fitted.source.notes[0], "\n".join(fitted.source.notes))
+
+    def _show_drawn(self, drawn: DrawnShapes) -> None:
+        self._drawn = drawn
+        radii = drawn.draws.equivalent_radii() if len(drawn.draws) <= 10_000 else None
+        sizes = "" if radii is None else f", r_eq {radii.min():.3g} to {radii.max():.3g} µm"
+        thrown = f"; {drawn.draws.rejected:,} draws thrown away" if drawn.draws.rejected else ""
+        self.drawing.findings.setText(f"{len(drawn.draws):,} particles{sizes}{thrown}.")
+        self.gallery.show_shapes(self._fitted.examples if self._fitted else (), drawn.examples)
+        self._show_state()
+
+    def _show_live(self, again: bool = False) -> None:
+        if self._model is None:
+            self.live.show_mesh(None)
+            return
+        try:
+            mesh = live_mesh(self._model, self._live_seed)
+        except RegolithError as error:
+            self.live.frame.set_texts("A drawn particle", str(error))
+            return
+        radius = float(np.cbrt(3 * mesh.volume / (4 * np.pi)))
+        self.live.show_mesh(mesh, f"equivalent radius {radius:.3g} µm", again)
+
+    def _edit(self, amplitudes: np.ndarray[Any, np.dtype[np.float64]]) -> None:
+        if self._fitted is not None and can_be_edited(self._fitted.model):
+            changed = self.live.spectrum.is_changed()
+            self._model = with_amplitudes(self._fitted.model, amplitudes) if changed else self._fitted.model
+            self._show_live()
+
+    def _take_over(self, particles: tuple[Particle, ...]) -> None:
+        self._context.session.shelf.put("population", particles)
+        self._context.session.adopt(particles)
+        self._context.toast.note(f"{len(particles):,} virtual particles are open now.")
+
+    # --- the state of the controls -------------------------------------------------------------
+
+    def _show_sources(self) -> None:
+        self.source.set_sources(self._sources.labels())
+        self._show_source()
+
+    def _show_source(self) -> None:
+        kind = self._sources.kind(self.source.value()["source"])
+        self.source.show_kind(kind.brings_model, kind.longest, kind.words)
+        self._show_state()
+
+    def _show_state(self) -> None:
+        self.drawing.set_ready(model=self._model is not None, drawn=self._drawn is not None)
+        self.judgement.set_ready("" if self._sample() else "Fit a model to a sample of 20 particles or more.")
+
+    def _show_tasks(self) -> None:
+        lane = f"{self._context.key}:{JUDGE}"
+        running = next((task for task in self._context.session.tasks if task.lane == lane), None)
+        self.judgement.frame.show_task(running)
+
+    def _sample(self) -> Sample | None:
+        content = self._fitted.source.content if self._fitted else None
+        return content if isinstance(content, Sample) else None
+
+    def _brings(self) -> str:
+        return self._sources.kind(self.source.value()["source"]).brings_model
+
+    def _add(self, source: ShapeSource) -> None:
+        key = self._sources.add(source)
+        self.source.set_sources(self._sources.labels())
+        self.source.choose_source(key)
+        self._show_source()
+
+    def _try(self, action: Callable[[], None]) -> None:
+        try:
+            action()
+        except RegolithError as error:
+            self._context.toast.problem(str(error))
+
+    def _place(self) -> None:
+        below = tabs("model_tabs", [(self.gallery, "Gallery"), (self.judgement, "Judgement")])
+        middle = stacked([self.live, below], [380, 420], stretch=1)
+        middle.setObjectName("model_rows")
+        parts = [scrolled_column([self.source, self.drawing]), padded(middle, 2, 10, 10, 8)]
+        columns = side_by_side(parts, [310, 900], stretch=1)
+        columns.setObjectName("model_columns")
+        layout = QHBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(columns)
+
+    def _connect(self) -> None:
+        self.source.sourceChanged.connect(lambda _: self._show_source())
+        self.source.openRequested.connect(self.open_source)
+        self.source.fitRequested.connect(self.fit_model)
+        self.drawing.drawRequested.connect(self.draw)
+        self.drawing.adoptRequested.connect(self.adopt)
+        self.live.spectrum.valueChanged.connect(self._edit)
+        self.live.reset.clicked.connect(self.live.spectrum.reset)
+        self.live.another.clicked.connect(self.another)
+        self.judgement.startRequested.connect(self.judge)
+        self.judgement.cancelRequested.connect(self._context.session.cancel)

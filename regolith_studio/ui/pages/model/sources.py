@@ -1,0 +1,87 @@
+"""What the page can draw from: the open particles, the shipped materials, files that were opened."""
+
+from dataclasses import dataclass
+
+from regolith_studio.errors import InputError
+from regolith_studio.jobs.fitting import FIT_DEGREE
+from regolith_studio.jobs.generating import CARD_MODEL
+from regolith_studio.jobs.judging import Origin
+from regolith_studio.model.materials import MaterialCard, materials
+from regolith_studio.model.models import MODELS
+from regolith_studio.model.sample import Sample
+from regolith_studio.readers.shape_files import ShapeSource
+from regolith_studio.session.session import Session
+
+OPEN_PARTICLES = "open"
+"""Key of the particles that are open in the window."""
+
+
+@dataclass(frozen=True)
+class SourceKind:
+    """What the controls have to know of a source.
+
+    Parameters
+    ----------
+    brings_model
+        Key of the model that comes with it; empty for measured particles.
+    longest
+        Highest degree.
+    words
+        One sentence.
+    """
+
+    brings_model: str
+    longest: int
+    words: str
+
+
+class Sources:
+    """By key: ``open``, names of materials, and ``file:`` with a number."""
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._files: dict[str, ShapeSource] = {}
+
+    def add(self, source: ShapeSource) -> str:
+        """Keep what a file held; returns its key."""
+        known = {each.sha256: key for key, each in self._files.items()}
+        key = known.get(source.sha256, f"file:{len(self._files) + 1}")
+        self._files[key] = source
+        return key
+
+    def labels(self) -> dict[str, str]:
+        """What to show for each key."""
+        count = len(self._session.particles)
+        found = {OPEN_PARTICLES: f"Open particles ({count})"}
+        found |= {key: source.name for key, source in self._files.items()}
+        return found | {name: card.label for name, card in materials().items()}
+
+    def kind(self, key: str) -> SourceKind:
+        """What a source is."""
+        if key == OPEN_PARTICLES:
+            return SourceKind("", FIT_DEGREE, "They are expanded in spherical harmonics first.")
+        content = self._files[key].content if key in self._files else materials()[key]
+        match content:
+            case MaterialCard():
+                return SourceKind(CARD_MODEL, content.l_max, content.origin)
+            case Sample():
+                return SourceKind("", content.l_max, f"{len(content)} particles up to l = {content.l_max}.")
+            case _:
+                return SourceKind(
+                    content.key, content.l_max, f"A fitted model: {MODELS[content.key].label.lower()}."
+                )
+
+    def origin(self, key: str) -> Origin:
+        """What a job is given.
+
+        Raises
+        ------
+        InputError
+            If no particle is open.
+        """
+        if key == OPEN_PARTICLES:
+            particles = tuple(entry.particle for entry in self._session.particles)
+            if not particles:
+                raise InputError("No particle is open: open some, or choose a material.")
+            return particles
+        return self._files[key] if key in self._files else ShapeSource(materials()[key], key)

@@ -1,0 +1,118 @@
+"""The drawn particle that follows the spectrum, and the gallery of drawn against measured particles."""
+
+from PySide6.QtGui import QResizeEvent
+from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout, QWidget
+
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.scene import surfaces
+from regolith_studio.scene.cameras import framing_pose
+from regolith_studio.scene.gallery import gallery_pose, show_gallery
+from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.views.factory import make_view
+from regolith_studio.ui.views.view_frame import ViewFrame
+from regolith_studio.ui.widgets.spectrum_editor import SpectrumEditor
+
+NO_MODEL = "The spectrum appears when a model is fitted."
+
+
+class LiveShape(QWidget):
+    """Spectrum on the left, one drawn particle on the right.
+
+    Parameters
+    ----------
+    kind
+        ``live`` or ``image``, of the view.
+    """
+
+    def __init__(self, kind: str, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.spectrum = SpectrumEditor(NO_MODEL)
+        self.spectrum.setObjectName("model_spectrum")
+        self.frame = ViewFrame(make_view(kind, current_theme().surroundings), "drawn")
+        self.reset, self.another = QPushButton("Reset the spectrum"), QPushButton("Another particle")
+        self.reset.setObjectName("model_reset_spectrum")
+        self.another.setObjectName("model_another")
+        buttons = QHBoxLayout()
+        buttons.setContentsMargins(8, 0, 8, 6)
+        buttons.addWidget(self.reset)
+        buttons.addStretch(1)
+        buttons.addWidget(self.another)
+        left = QVBoxLayout()
+        left.addWidget(self.spectrum, 1)
+        left.addLayout(buttons)
+        layout = QHBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addLayout(left, 3)
+        layout.addWidget(self.frame, 2)
+        self._framed = False
+        self.show_mesh(None)
+
+    def show_mesh(self, mesh: Mesh | None, detail: str = "", again: bool = False) -> None:
+        """Show one drawn particle.
+
+        Parameters
+        ----------
+        detail
+            The quiet line above it.
+        again
+            Frame it anew: it is another particle, not the same one changed.
+        """
+        self.another.setEnabled(mesh is not None)
+        self.reset.setEnabled(self.spectrum.is_changed())
+        self.frame.set_texts("A drawn particle", detail)
+        view = self.frame.view
+        if mesh is None:
+            view.draw(surfaces.clear)
+            self._framed = False
+            return
+        view.draw(lambda plotter: surfaces.show_fit(plotter, mesh))
+        if again or not self._framed:
+            size = view.widget.size()
+            view.set_pose(framing_pose(mesh.vertices, "isometric", size.width() / max(size.height(), 1)))
+            self._framed = True
+
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        self.spectrum.set_theme(theme)
+        self.frame.view.set_surroundings(theme.surroundings)
+        self.frame.set_colour(theme.fit)
+
+
+class Gallery(QWidget):
+    """Measured particles above, drawn ones below."""
+
+    def __init__(self, kind: str, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.frame = ViewFrame(make_view(kind, current_theme().surroundings), "gallery")
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(self.frame)
+        self._shown: tuple[tuple[Mesh, ...], tuple[Mesh, ...]] = ((), ())
+        self.show_shapes((), ())
+
+    def show_shapes(self, measured: tuple[Mesh, ...], drawn: tuple[Mesh, ...]) -> None:
+        """Show both rows to one scale."""
+        words = {
+            (True, True): "measured above, drawn below",
+            (True, False): "measured; draw particles to compare",
+            (False, True): "drawn; the source holds no measured particles",
+            (False, False): "empty until a model is fitted",
+        }
+        self.frame.set_texts("Gallery", words[bool(measured), bool(drawn)])
+        self._shown = (measured, drawn)
+        self.frame.view.draw(lambda plotter: show_gallery(plotter, measured, drawn))
+        self._frame()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._frame()
+
+    def _frame(self) -> None:
+        view = self.frame.view
+        width, height = view.widget.width(), view.widget.height()
+        view.set_pose(gallery_pose(*self._shown, width / max(height, 1)))
+
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        self.frame.view.set_surroundings(theme.surroundings)
+        self.frame.set_colour(theme.particle)

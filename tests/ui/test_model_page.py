@@ -1,0 +1,190 @@
+"""The page "Shape model": fit, drag the spectrum, draw, judge, hand over."""
+
+import numpy as np
+import pytest
+from PySide6.QtCore import QPointF, Qt
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QFileDialog, QWidget
+
+from regolith_studio.harmonics.coefficients import degrees
+from regolith_studio.jobs.runners.inline import InlineRunner
+from regolith_studio.model.models import MODELS
+from regolith_studio.model.sample import Sample
+from regolith_studio.readers.shape_files import ShapeSource, read_shape_source
+from regolith_studio.session.session import Session
+from regolith_studio.ui.commands import Commands
+from regolith_studio.ui.page import PageContext
+from regolith_studio.ui.pages.model import PAGE
+from regolith_studio.ui.widgets.spectrum_editor import SpectrumEditor
+from regolith_studio.ui.widgets.toast import Toast
+from regolith_studio.ui.wiring import Wiring
+
+AMPLITUDES = np.array([0.02, 0.09, 0.03, 0.02])
+
+
+@pytest.fixture
+def page(shown, preferences):
+    session = Session(InlineRunner())
+    window = shown(QWidget())
+    toast = Toast(window)
+    wiring = Wiring(session, toast.problem, window)
+    commands = Commands(session, preferences, toast, window)
+    context = PageContext("model", session, wiring, preferences, toast, commands, "image", lambda _key: None)
+    made = shown(PAGE.build(context))
+    made.resize(1100, 760)
+    yield made
+    wiring.cut()
+    made.release()
+    session.close()
+
+
+def rough_sample(n=30, l_max=4):
+    rng = np.random.default_rng(0)
+    degree = degrees((l_max + 1) ** 2)
+    rows = rng.normal(size=(n, (l_max + 1) ** 2)) * 0.3 * np.maximum(degree, 1.0) ** -2
+    rows[:, 0] = np.sqrt(4 * np.pi)
+    return Sample(rows * 10 * np.exp(0.3 * rng.normal(size=(n, 1))))
+
+
+def take(page, sample):
+    page._add(ShapeSource(sample, "rough", "0" * 64))
+    page.source.l_max.setValue(4)
+
+
+def place(editor, degree, percent):
+    seen = editor.canvas.plotItem.vb.mapViewToScene(QPointF(degree, np.log10(percent)))
+    return editor.canvas.mapFromScene(seen)
+
+
+def test_that_a_bar_follows_the_mouse(shown, wait):
+    editor = shown(SpectrumEditor("nothing"))
+    editor.resize(500, 300)
+    told, ends = [], []
+    editor.valueChanged.connect(told.append)
+    editor.editingFinished.connect(lambda: ends.append(True))
+    editor.setValue(AMPLITUDES)
+    QTest.qWait(30)
+    assert not told
+    viewport = editor.canvas.viewport()
+    QTest.mousePress(viewport, Qt.MouseButton.LeftButton, pos=place(editor, 2, 9))
+    QTest.mouseMove(viewport, place(editor, 2, 20))
+    QTest.mouseRelease(viewport, Qt.MouseButton.LeftButton, pos=place(editor, 2, 20))
+    assert told[-1][1] == pytest.approx(0.20, rel=0.1)
+    np.testing.assert_array_equal(np.delete(told[-1], 1), np.delete(AMPLITUDES, 1))
+    assert ends
+    editor.reset()
+    wait(lambda: bool((told[-1] == AMPLITUDES).all()))
+    assert not editor.is_changed()
+
+
+def test_that_keys_change_a_bar_and_a_spectrum_that_is_only_shown_stays(shown):
+    editor = shown(SpectrumEditor("nothing"))
+    editor.setValue(AMPLITUDES)
+    QTest.keyClick(editor, Qt.Key.Key_Right)
+    QTest.keyClick(editor, Qt.Key.Key_Up)
+    assert editor.value()[1] == pytest.approx(0.09 * 1.1)
+    editor.setValue(AMPLITUDES, editable=False)
+    QTest.keyClick(editor, Qt.Key.Key_Up)
+    QTest.mousePress(editor.canvas.viewport(), Qt.MouseButton.LeftButton, pos=place(editor, 3, 10))
+    np.testing.assert_array_equal(editor.value(), AMPLITUDES)
+
+
+def test_that_the_drawn_particle_follows_the_spectrum_of_a_material(page):
+    page.source.choose_source("ma165")
+    assert not page.source.model.isEnabled()
+    page.source.fit.click()
+    before = page.live.frame.view.picture().astype(int)
+    spectrum = page.live.spectrum.value()
+    spectrum[1] = 0.4
+    page.live.spectrum._values = spectrum
+    page._edit(spectrum)
+    assert np.abs(page.live.frame.view.picture() - before).mean() > 0.5
+    assert page._model.spectrum[2] == pytest.approx(4 * np.pi * 0.16)
+    page.live.spectrum.reset()
+    assert page._model is page._fitted.model
+
+
+def test_that_particles_are_drawn_in_the_range_shown_and_taken_over(page, wait):
+    page.source.choose_source("ma165")
+    page.source.fit.click()
+    page.drawing.setValue({"n": 4, "seed": 2, "size_range": [9.0, 11.0]})
+    page.drawing.draw.click()
+    radii = page._drawn.draws.equivalent_radii()
+    assert 9.0 <= radii.min() <= radii.max() <= 11.0
+    assert "4 particles" in page.drawing.findings.text()
+    assert page.gallery.frame.view.picture().std() > 5
+    page.drawing.adopt.click()
+    assert [entry.id for entry in page._context.session.particles] == [
+        f"virtual-00000{i}" for i in range(1, 5)
+    ]
+    assert len(page._context.session.shelf.get("population")) == 4
+    wait(lambda: page.source.source.itemText(0) == "Open particles (4)")
+
+
+def test_that_models_are_judged_on_the_sample_that_was_fitted(page):
+    take(page, rough_sample())
+    page.source.model.setCurrentIndex(page.source.model.findData("gaussian_field"))
+    assert not page.judgement.frame.start.isEnabled()
+    page.source.fit.click()
+    assert page.live.spectrum.value() == pytest.approx(
+        np.sqrt(page._model.spectrum[1:]) / page._model.mean, rel=1e-12
+    )
+    page.judgement.setValue({"splits": 1, "repeats": 1, "all_models": False})
+    page.judge()
+    assert page.judgement.ranking.rowCount() == 1
+    assert page.judgement.ranking.item(0, 0).text() == MODELS["gaussian_field"].label
+    assert not page.judgement.pictures["number"].is_empty()
+    assert page.judgement.pictures["components"].is_empty()
+
+
+def test_that_half_of_the_sample_can_be_kept_away_from_the_model(page):
+    take(page, rough_sample())
+    page.source.half.setChecked(True)
+    page.source.fit.click()
+    assert page._fitted.n_fitted == 15
+    assert len(page._sample()) == 30
+
+
+def test_that_what_cannot_be_done_is_said(page):
+    said = []
+    page._context.toast.problem = lambda sentence, *_: said.append(sentence)
+    page.commands()["fit_model"]()
+    page.commands()["draw"]()
+    page.commands()["adopt"]()
+    page.commands()["judge"]()
+    page.commands()["save_model"]()
+    page.commands()["save_card"]()
+    assert [sentence.split(":")[0] for sentence in said] == [
+        "No particle is open",
+        "There is no model to draw from",
+        "There are no drawn particles yet",
+        "Models are judged on measured particles",
+        "There is no model to save",
+        "A card is made of a fitted sample",
+    ]
+
+
+def test_that_a_model_and_a_card_are_saved_and_opened_again(page, tmp_path, monkeypatch):
+    take(page, rough_sample())
+    page.source.fit.click()
+    for name in ("m.json", "card.json"):
+        monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_, name=name: (str(tmp_path / name), ""))
+        page.save_model() if name == "m.json" else page.save_card()
+    assert read_shape_source(str(tmp_path / "card.json")).content.n_particles == 30
+    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (str(tmp_path / "m.json"), ""))
+    page.open_source()
+    assert page.source.fit.text() == "Use the model"
+    page.source.fit.click()
+    assert page._fitted.examples == ()
+    assert page._model.key == "sample_matched"
+
+
+def test_that_the_state_of_the_page_is_plain_and_comes_back(page):
+    page.source.choose_source("ma165")
+    page.source.forms["sample_matched"].setValue({"turn": 1.0})
+    page.drawing.setValue({"n": 7, "seed": 3, "size_range": [2.0, 5.0]})
+    state = page.state()
+    page.restore({"source": {"source": "open"}, "drawing": {}, "unknown": 1})
+    assert page.state()["drawing"]["n"] == 100
+    page.restore(state)
+    assert page.state() == state
