@@ -8,7 +8,7 @@ from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dem.case import ReposeCase, prepare
 from regolith_studio.dem.filling import loose_column
 from regolith_studio.dem.pile import Pile
-from regolith_studio.scene import heap, stage
+from regolith_studio.scene import cameras, heap, stage
 
 
 def _at(points: np.ndarray, wall: float = float("inf")) -> Pile:
@@ -25,15 +25,30 @@ def plotter():
     made.close()
 
 
+def _seen(plotter: pv.Plotter, half_height: float) -> tuple[float, float, float, float]:
+    """Left, right, lower and upper edge of what is drawn, seen from above, in micrometres."""
+    pose = cameras.CameraPose((0, 0, 1e5), (0, 0, 0), (0, 1, 0), half_height)
+    cameras.apply_pose(plotter, pose)
+    picture = plotter.screenshot(return_img=True).astype(int)
+    drawn = picture[:, :, 0] - picture[:, :, 2] > 15  # sand is yellow, the background is not
+    rows, columns = np.flatnonzero(drawn.any(axis=1)), np.flatnonzero(drawn.any(axis=0))
+    pixel = 2 * half_height / picture.shape[0]
+    across = pixel * (np.array([columns[0], columns[-1] + 1]) - picture.shape[1] / 2)
+    up = pixel * (picture.shape[0] / 2 - np.array([rows[-1] + 1, rows[0]]))
+    return (*across, *up)
+
+
 def test_that_a_particle_is_drawn_where_it_is_and_as_large(boxes: Dataset, plotter: pv.Plotter) -> None:
     shapes = tuple(each.shape.vertices for each in boxes.representatives)
-    heap.show_heap(plotter, shapes, _at(np.array([[0.01, 0.0, 0.0], [0.0, 0.0, 0.02]])))
-    edge = 2e3 * (np.pi / 6) ** (1 / 3)
-    bounds = plotter.actors[heap.HEAP].GetBounds()
-    wanted = [-edge / 2, 1e4 + edge / 2, -edge / 2, edge / 2, -edge / 2, 2e4 + edge / 2]
-    assert bounds == pytest.approx(wanted, abs=1.0)
+    half = 1e3 * (np.pi / 6) ** (1 / 3)
+    heap.show_heap(plotter, shapes, _at(np.array([[0.003, 0.001, 0.0]])))
+    assert _seen(plotter, 6000) == pytest.approx([3e3 - half, 3e3 + half, 1e3 - half, 1e3 + half], abs=120)
+    eighth = Pile(np.zeros((1, 3)), [2e-3], [[np.cos(np.pi / 8), 0, 0, np.sin(np.pi / 8)]], [0])
+    heap.show_heap(plotter, shapes, eighth)
+    corner = half * np.sqrt(2)
+    assert _seen(plotter, 6000) == pytest.approx([-corner, corner, -corner, corner], abs=120)
     heap.show_heap(plotter, shapes, _at(np.zeros((1, 3))), spheres=True)
-    assert plotter.actors[heap.HEAP].GetBounds() == pytest.approx([-1e3, 1e3] * 3, rel=0.02)
+    assert _seen(plotter, 6000) == pytest.approx([-1e3, 1e3, -1e3, 1e3], abs=120)
 
 
 def test_that_the_next_moment_takes_the_same_actor(boxes: Dataset, plotter: pv.Plotter) -> None:
