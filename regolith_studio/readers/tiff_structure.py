@@ -67,6 +67,8 @@ class _Walk:
     def __init__(self, file: BinaryIO, size: int) -> None:
         self.size = size
         self._file = file
+        if not size:
+            raise FileError("is empty: it has no bytes at all.")
         head = self._at(0, 16, short=8)
         self._order = {b"II": "<", b"MM": ">"}.get(head[:2], "")
         version = struct.unpack(f"{self._order or '<'}H", head[2:4])[0]

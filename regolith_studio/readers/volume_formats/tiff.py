@@ -85,6 +85,7 @@ def _stack(path: Path, file: Any) -> OpenVolume:
     notes += _check_colours(series, page)
     shape = three_dimensions(tuple(series.shape))
     if len(file.series) > 1:
+        _check_run(series)
         notes += (f"The file holds {len(file.series)} series of images; the largest was read.",)
     header = VoxelHeader(shape, voxel_type(np.dtype(series.dtype)), size, unit, None, notes)
     if series.dataoffset is not None:
@@ -97,6 +98,13 @@ def _stack(path: Path, file: Any) -> OpenVolume:
             f"is no stack of slices: its {len(pages):,} pages do not make the shape {shown_shape(shape)}."
         )
     return TiffPages(file, pages, header)
+
+
+def _check_run(series: Any) -> None:
+    """Refuse a stack that would lose pages from its midst."""
+    places = [page.index for page in series.pages if page is not None]
+    if places != list(range(places[0], places[0] + len(places))):
+        raise FileError("is no stack of slices: among its pages are some of another size or type.")
 
 
 def _check_colours(series: Any, page: Any) -> tuple[str, ...]:

@@ -1,0 +1,292 @@
+"""Stacks and HDF5 files that are broken in ways we made: each is refused with the sentence of its kind."""
+
+import io
+import json
+import re
+import struct
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+import pytest
+import tifffile
+
+from regolith_studio.errors import FileError
+from regolith_studio.readers.volumes import describe_volume, read_volume
+
+SLICES = np.arange(90, dtype="<u2").reshape(3, 5, 6)
+Bad = tuple[str, bytes, str]
+Tags = dict[int, tuple[int, list[int] | bytes]]
+
+BYTE, ASCII, SHORT, LONG = 1, 2, 3, 4
+LETTER = {BYTE: "B", ASCII: "B", SHORT: "H", LONG: "I"}
+
+
+def page(**changes: tuple[int, list[int] | bytes] | None) -> Tags:
+    """Tags of one page of 6 x 5 voxels of 16 bits whose pixels lie at byte 8."""
+    tags: Tags = {
+        256: (SHORT, [6]), 257: (SHORT, [5]), 258: (SHORT, [16]), 259: (SHORT, [1]), 262: (SHORT, [1]),
+        273: (LONG, [8]), 277: (SHORT, [1]), 278: (SHORT, [5]), 279: (LONG, [60]),
+    }  # fmt: skip
+    for name, change in changes.items():
+        tags.pop(int(name[1:]), None)
+        if change is not None:
+            tags[int(name[1:])] = change
+    return tags
+
+
+def tiff(pages: list[Tags], after: list[int] | None = None, pixels: bytes = SLICES[0].tobytes()) -> bytes:
+    """A little-endian TIFF of these pages; `after` gives the page that follows each, else the next one."""
+    data = bytearray(b"II*\0\0\0\0\0" + pixels)
+    places = []
+    for tags in pages:
+        rows = []
+        for tag, (kind, values) in sorted(tags.items()):
+            raw = (
+                values if isinstance(values, bytes) else struct.pack(f"<{len(values)}{LETTER[kind]}", *values)
+            )
+            count = len(raw) // struct.calcsize(LETTER[kind])
+            if len(raw) > 4:
+                rows.append(struct.pack("<HHII", tag, kind, count, len(data)))
+                data += raw
+            else:
+                rows.append(struct.pack("<HHI4s", tag, kind, count, raw))
+        places.append(len(data))
+        data += struct.pack("<H", len(rows)) + b"".join(rows) + bytes(4)
+    ends = [*places[1:], len(data)]
+    for number, end in enumerate(ends):
+        following = number + 1 if after is None else after[number]
+        target = places[following] if following < len(places) else 0
+        struct.pack_into(
+            "<I", data, end - 4 if number == len(ends) - 1 else _end_of(data, places[number]), target
+        )
+    struct.pack_into("<I", data, 4, places[0] if places else 0)
+    return bytes(data)
+
+
+def _end_of(data: bytearray, place: int) -> int:
+    return place + 2 + 12 * struct.unpack_from("<H", data, place)[0]
+
+
+def three(**changes: tuple[int, list[int] | bytes] | None) -> bytes:
+    return tiff([page(**changes) for _ in range(3)])
+
+
+def stack(**options: Any) -> bytes:
+    file = io.BytesIO()
+    tifffile.imwrite(file, SLICES, photometric="minisblack", **options)
+    return file.getvalue()
+
+
+def tiffs() -> Iterator[Bad]:
+    whole = stack(compression="zlib")
+    for share in (0, 1, 5, 10, 20, 40, 60, 80, 90, 99):
+        yield (
+            f"cut-{share}.tif",
+            whole[: len(whole) * share // 100],
+            "cut short|is no TIFF|is empty|is broken",
+        )
+    for number, head in enumerate(
+        (b"XX*\0", b"II\x2c\0", b"MM\0\x29", b"PK\3\4", b"%PDF", b"\x89PNG", bytes(4))
+    ):
+        yield f"magic-{number}.tif", head + whole[4:], "is no TIFF file"
+    yield "big.tif", b"II+\0\7\0\0\0" + bytes(40), "is a broken BigTIFF"
+    yield "nothing.tif", b"II*\0" + bytes(20), "without a single page"
+    yield "beyond.tif", b"II*\0\xff\xff\xff\x7f", "beyond the end"
+    yield "circle.tif", tiff([page()] * 3, [1, 2, 0]), "go round in a circle"
+    yield "itself.tif", tiff([page()], [0]), "go round in a circle"
+    yield "no-tags.tif", tiff([{}]), "a page has 0 tags"
+    yield "tags.tif", tiff([{tag: (BYTE, [1]) for tag in range(256, 900)}]), "a page has 644 tags"
+    for tag, name in ((256, "width"), (257, "height")):
+        for edge in (0, 2**31 - 1):
+            yield f"{name}-{edge}.tif", three(**{f"t{tag}": (LONG, [edge])}), "page 1 is "
+        yield f"{name}-absent.tif", three(**{f"t{tag}": None}), "page 1 is "
+    for bits in (0, 65, 999):
+        yield f"bits-{bits}.tif", three(t258=(SHORT, [bits])), "the pixels of page 1 have no size"
+    for samples in (0, 5000):
+        yield f"samples-{samples}.tif", three(t277=(SHORT, [samples])), "the pixels of page 1 have no size"
+    yield "pixels-beyond.tif", three(t273=(LONG, [10**6])), "is cut short: the pixels of page 1"
+    yield "pixels-long.tif", three(t279=(LONG, [10**6])), "is cut short: the pixels of page 1"
+    yield "pixels-absent.tif", three(t273=None), "page 1 has no pixels"
+    yield "strips-few.tif", three(t278=(SHORT, [1])), "page 1 lacks some of its pixels"
+    yield "strips-many.tif", three(t279=(LONG, [20, 20, 20])), "more strip sizes than strips"
+    tiles = {"t322": (SHORT, [0]), "t323": (SHORT, [16]), "t324": (LONG, [8]), "t325": (LONG, [60])}
+    yield "tiles.tif", three(**tiles), "the tiles of page 1 have no size"
+    yield (
+        "colours.tif",
+        three(t258=(SHORT, [8] * 3), t262=(SHORT, [2]), t277=(SHORT, [3]), t257=(SHORT, [3])),
+        "colours",
+    )
+    yield "single.tif", tiff([page()]), "is no volume: its shape is 5 × 6"
+    odd = [page(), page(t257=(SHORT, [4]), t278=(SHORT, [4]), t279=(LONG, [48])), page()]
+    yield "sizes.tif", tiff(odd), "among its pages are some of another size"
+    for codec, name in (
+        (5, "lzw"),
+        (8, "deflate"),
+        (32773, "packbits"),
+        (50000, "zstd"),
+        (34925, "lzma"),
+        (7, "jpeg"),
+    ):
+        yield (
+            f"{name}.tif",
+            tiff([page(t259=(SHORT, [codec]))] * 3, pixels=b"\xf0\x9f\xaa\x55" * 15),
+            "cannot be decoded",
+        )
+    yield "codec.tif", three(t259=(SHORT, [4242])), "cannot be decoded|is a broken TIFF file"
+    wide = {"t256": (LONG, [2**20]), "t257": (LONG, [2**20]), "t278": (LONG, [2**20]), "t259": (SHORT, [8])}
+    yield "bomb.tif", three(**wide), "has slices of 2.05e\\+03 GiB"
+    yield (
+        "complex.tif",
+        three(t258=(SHORT, [64]), t339=(SHORT, [6]), t256=(SHORT, [1]), t257=(SHORT, [7]), t278=(SHORT, [7])),
+        "complex",
+    )
+    ome = b'<?xml version="1.0"?><OME><Image><Pixels SizeC="3" SizeX="6"/></Image></OME>\0'
+    yield "channels.tif", three(t270=(ASCII, ome)), "holds 3 channels or times"
+    pointing = bytearray(three())
+    struct.pack_into("<HI", pointing, pointing.index(struct.pack("<HH", 273, LONG)) + 2, LONG, 10**8)
+    yield "pointer.tif", bytes(pointing), "tag 273 points beyond the end"
+
+
+def hdf5(make: Callable[[h5py.File], object]) -> bytes:
+    file = io.BytesIO()
+    with h5py.File(file, "w") as stored:
+        make(stored)
+    return file.getvalue()
+
+
+def tagged(axes: str, shape: tuple[int, ...]) -> bytes:
+    def make(file: h5py.File) -> None:
+        data = file.create_dataset("exported_data", data=np.zeros(shape, "u1"))
+        data.attrs["axistags"] = json.dumps({"axes": [{"key": key} for key in axes]})
+
+    return hdf5(make)
+
+
+def hdf5s() -> Iterator[Bad]:
+    whole = hdf5(lambda file: file.create_dataset("data", data=SLICES, chunks=(1, 5, 6), compression="gzip"))
+    for share in (0, 1, 5, 10, 20, 30, 40, 50, 60, 70, 80, 90, 99):
+        yield f"cut-{share}.h5", whole[: len(whole) * share // 100], "is a broken HDF5|is empty"
+    for place in (0, 4, 8, 9, 13, 14):
+        yield (
+            f"head-{place}.h5",
+            whole[:place] + bytes([whole[place] ^ 0x5A]) + whole[place + 1 :],
+            "is a broken HDF5",
+        )
+    for number, data in enumerate(
+        (b"text\n" * 90, bytes(900), b"\x89HDF\r\n\x1a\n", b"\x89HDF\r\n\x1a\n" + b"\xff" * 900)
+    ):
+        yield f"stranger-{number}.h5", data, "is a broken HDF5"
+    yield "nothing.h5", hdf5(lambda file: file.create_group("a/b/c")), "holds no volume"
+    yield "text.h5", hdf5(lambda file: file.create_dataset("a", data="words")), "holds no volume"
+    yield "empty.h5", hdf5(lambda file: file.create_dataset("a", data=h5py.Empty("f4"))), "holds no volume"
+    kinds = {"complex": "c8", "bytes": "S8", "record": [("a", "f4"), ("b", "i2")]}
+    for name, kind in kinds.items():
+        yield (
+            f"{name}.h5",
+            hdf5(lambda file, kind=kind: file.create_dataset("a", (4, 4, 4), kind)),
+            "holds no volume",
+        )
+    for number, shape in enumerate(
+        ((), (9,), (9, 9), (3, 0, 3), (2, 2, 2, 2, 2, 2), (2, 3, 4, 5, 6), (4, 4, 4, 99))
+    ):
+        yield (
+            f"shape-{number}.h5",
+            hdf5(lambda file, s=shape: file.create_dataset("a", s, "u1")),
+            "holds no volume",
+        )
+    for axes, shape in (("tzyx", (5, 4, 4, 4)), ("tyx", (5, 4, 4)), ("yxc", (4, 4, 2)), ("zyc", (4, 4, 3))):
+        yield f"axes-{axes}.h5", tagged(axes, shape), "holds no volume|is no volume"
+    links = {
+        "external": h5py.ExternalLink("other.h5", "/a"),
+        "soft": h5py.SoftLink("/b"),
+        "self": h5py.SoftLink("/a"),
+    }
+    for name, link in links.items():
+        yield f"link-{name}.h5", hdf5(lambda file, link=link: file.__setitem__("a", link)), "holds no volume"
+    outside = [("/etc/passwd", 0, 64)]
+    yield (
+        "storage.h5",
+        hdf5(lambda file: file.create_dataset("a", (4, 4, 4), "u1", external=outside)),
+        "in another file",
+    )
+    layout = h5py.VirtualLayout((4, 4, 4), "u1")
+    layout[:] = h5py.VirtualSource("other.h5", "a", (4, 4, 4))
+    yield "virtual.h5", hdf5(lambda file: file.create_virtual_dataset("a", layout)), "from other files"
+    huge = {"shape": (2**10,) * 3, "dtype": "u1", "chunks": (2**10,) * 3}
+    yield "chunks.h5", hdf5(lambda file: file.create_dataset("a", **huge)), "in chunks of more than"
+    wide = {"shape": (2, 2**17, 2**17), "dtype": "u1", "chunks": (1, 64, 64)}
+    yield "wide.h5", hdf5(lambda file: file.create_dataset("a", **wide)), "has slices of 16 GiB"
+    packed = bytearray(whole)
+    place = whole.index(b"\x78\x5e") if b"\x78\x5e" in whole else whole.index(b"\x78\x9c")
+    packed[place : place + 20] = bytes(20)
+    yield "packed.h5", bytes(packed), "cannot be unpacked"
+
+
+CORPORA = {"tiff": tiffs, "hdf5": hdf5s}
+
+
+@pytest.mark.parametrize("key", CORPORA)
+def test_that_each_broken_file_is_refused_with_the_sentence_of_its_kind(key, tmp_path) -> None:
+    corpus = list(CORPORA[key]())
+    assert len({name for name, _, _ in corpus}) == len(corpus) >= 40
+    for name, data, pattern in corpus:
+        (tmp_path / name).write_bytes(data)
+        try:
+            header = describe_volume(tmp_path / name)
+            read_volume(tmp_path / name, voxel_size=1.0, kind="grey")
+        except FileError as error:
+            sentence = str(error)
+        else:
+            sentence = f"was read as {header}"
+        assert re.search(pattern, sentence), (name, sentence)
+        assert re.fullmatch(re.escape(name) + r" [^\n]{1,240}\.", sentence), (name, sentence)
+
+
+def test_that_the_good_files_behind_the_broken_ones_are_read(tmp_path) -> None:
+    """Three pages that share their pixels, as the writer of these tests makes them."""
+    (tmp_path / "a.tif").write_bytes(three())
+    found = read_volume(tmp_path / "a.tif", voxel_size=1.0).array.T
+    assert np.array_equal(found, np.stack([SLICES[0]] * 3))
+    assert np.array_equal(tifffile.imread(tmp_path / "a.tif"), found)
+
+
+@pytest.fixture
+def folder(tmp_path) -> Path:
+    """A folder of five sound slices."""
+    for number in range(5):
+        tifffile.imwrite(tmp_path / f"s{number}.tif", SLICES[0])
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("data", "sentence"),
+    [
+        (b"", "its slice s3.tif is empty"),
+        (b"text" * 50, "its slice s3.tif is no TIFF file"),
+        (stack()[:100], "its slice s3.tif is cut short"),
+        (stack(), "its slice s3.tif has 3 pages"),
+        (tiff([page(t257=(SHORT, [4]))]), "its slice s3.tif has 6 × 4 pixels"),
+        (tiff([page(t258=(SHORT, [8]))]), "its slice s3.tif has 6 × 5 pixels of uint8"),
+        (tiff([page(t259=(SHORT, [5]))], pixels=b"\xf0" * 60), "its slice s3.tif is damaged"),
+        (three(t256=(LONG, [2**20]), t257=(LONG, [2**20]), t278=(LONG, [2**20]))[:300], "its slice s3.tif "),
+    ],
+)
+def test_that_a_broken_slice_is_named(data, sentence, folder) -> None:
+    (folder / "s3.tif").write_bytes(data)
+    with pytest.raises(FileError) as caught:
+        read_volume(folder, voxel_size=1.0)
+    assert sentence in str(caught.value)
+    assert str(caught.value).startswith(folder.name)
+
+
+@pytest.mark.parametrize(
+    "head", [b"", b"text", b"\x89PNG\r\n\x1a\n" + bytes(30), b"BM" + b"\xff" * 60, b"BM" + bytes(60)]
+)
+def test_that_broken_pictures_are_refused(head, tmp_path) -> None:
+    for number in range(3):
+        (tmp_path / f"s{number}.png").write_bytes(head)
+    with pytest.raises(FileError, match=r"its slice s0\.png "):
+        describe_volume(tmp_path)
