@@ -7,7 +7,9 @@ from regolith_studio.cli.options import Jobs, Json, Meshes, Seed, Unit
 
 def describe(meshes: Meshes, unit: Unit = "um", json: Json = False, jobs: Jobs = 1, seed: Seed = 0) -> None:
     """Measure meshes: volume, area, sphericity, diameters ..., and what is wrong with them."""
-    from regolith_studio.cli.inputs import exit_code, read_inputs
+    from regolith_studio.cli.inputs import exit_code, read_inputs, start_reader
+
+    start_reader()
     from regolith_studio.cli.terminal import complain, follow, print_json, print_table
     from regolith_studio.jobs.examining import examine_sample
     from regolith_studio.session.outputs.descriptors import described, short_table

@@ -1,11 +1,14 @@
 """Particles named on the command line."""
 
+import contextlib
+import threading
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from regolith_studio.cli.options import as_bad_use
 from regolith_studio.cli.terminal import complain, follow
+from regolith_studio.errors import RegolithError
 
 if TYPE_CHECKING:
     from regolith_studio.jobs.loading import Loaded
@@ -27,6 +30,17 @@ def read_inputs(paths: Sequence[Path], unit: str) -> "Loaded":
     loaded: Loaded = follow(load_particles(tuple(paths), unit))
     complain(f"{problem.path}: {problem.sentence}" for problem in loaded.problems)
     return loaded
+
+
+def start_reader() -> None:
+    """Let the process that reads files start while this one is still importing what it computes with."""
+    from regolith_studio.readers.guard import shared_guard
+
+    def start() -> None:
+        with contextlib.suppress(RegolithError, OSError):  # whoever reads first will hear of it
+            shared_guard().warm_up()
+
+    threading.Thread(target=start, name="start reader", daemon=True).start()
 
 
 def exit_code(paths: Sequence[Path], loaded: "Loaded", failures: int = 0) -> int:

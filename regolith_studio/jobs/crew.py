@@ -2,14 +2,16 @@
 
 from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 from regolith_studio.jobs.batch import as_they_end, call, in_order, value_of
 from regolith_studio.jobs.events import Ending, Job, Progress, Step
-from regolith_studio.jobs.runners.dask_cluster import DaskRunner, TlsFiles
 from regolith_studio.jobs.runners.drive import told
 from regolith_studio.jobs.runners.process_pool import ProcessPoolRunner, cores
 from regolith_studio.jobs.runners.protocol import Runner
+
+if TYPE_CHECKING:
+    from regolith_studio.jobs.runners.dask_cluster import TlsFiles
 
 
 class Crew:
@@ -30,8 +32,10 @@ class Crew:
         """Address of a cluster's page, if there is one."""
 
     @classmethod
-    def on_cluster(cls, address: str = "", workers: int = 0, tls: TlsFiles | None = None) -> Self:
+    def on_cluster(cls, address: str = "", workers: int = 0, tls: "TlsFiles | None" = None) -> Self:
         """A crew on a Dask cluster; the parameters are those of :class:`DaskRunner`."""
+        from regolith_studio.jobs.runners.dask_cluster import DaskRunner
+
         runner = DaskRunner(address, workers, tls)
         crew = cls(runner.workers, runner)
         crew.dashboard = runner.dashboard

@@ -33,6 +33,31 @@ def test_that_help_lists_every_command_and_imports_nothing_heavy() -> None:
     assert not heavy & set(modules.stdout.split())
 
 
+def test_that_describe_imports_no_more_than_it_computes_with(grains: Path) -> None:
+    code = (
+        "import sys; from regolith_studio.cli.entry import run;"
+        "assert run(['describe', sys.argv[1]]) == 0; print('modules', *sys.modules)"
+    )
+    said = subprocess.run(
+        [sys.executable, "-c", code, grains / "grain-a.stl"],
+        capture_output=True,
+        text=True,
+        cwd=ROOT,
+        check=True,
+    )
+    modules = said.stdout.split("modules")[-1].split()
+    heavy = {
+        "matplotlib",
+        "pyvista",
+        "pyshtools",
+        "trimesh",
+        "skimage",
+        "distributed",
+        "scipy.stats",
+    }
+    assert not heavy & set(modules)
+
+
 def test_that_the_package_itself_imports_nothing_heavy() -> None:
     code = "import sys, regolith_studio; print(*sys.modules); assert 'describe' in dir(regolith_studio)"
     said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT, check=True)

@@ -7,7 +7,6 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from regolith_studio.dataset.build import software_versions
 from regolith_studio.errors import EnvironmentProblem, InputError
 from regolith_studio.jobs.events import Ending, Event, Failed, Job, Listener, Stopped
 from regolith_studio.jobs.runners.drive import drive
@@ -171,6 +170,8 @@ class DaskRunner:
         return ending
 
     def _check_versions(self) -> None:
+        from regolith_studio.dataset.build import software_versions
+
         self._client.wait_for_workers(1, timeout=CONNECT_SECONDS)
         mine = software_versions()
         for worker, theirs in self._client.run(software_versions).items():
