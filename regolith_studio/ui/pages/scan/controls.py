@@ -1,0 +1,242 @@
+"""Everything that can be chosen between a volume and its particles."""
+
+import dataclasses
+from collections.abc import Sequence
+from typing import Any
+
+from PySide6.QtCore import QSignalBlocker, Signal
+from PySide6.QtWidgets import QCheckBox, QComboBox, QDoubleSpinBox, QFormLayout, QVBoxLayout, QWidget
+
+from regolith_studio.imaging.extraction import voxel_diameter
+from regolith_studio.imaging.segmentation.cleaning import CleaningSettings
+from regolith_studio.imaging.segmentation.segment import SegmentationSettings
+from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
+from regolith_studio.jobs.extracting import GrainRecipe
+from regolith_studio.ui.widgets.labels import heading, remark
+from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
+
+DENOISE = (
+    ("median", "Median of 27 voxels"),
+    ("gaussian", "Gaussian (fast)"),
+    ("non-local-means", "Non-local means (slow)"),
+    ("none", "None"),
+)
+THRESHOLD = (
+    ("otsu", "Otsu"),
+    ("multi-otsu", "Multi-Otsu, three classes"),
+    ("manual", "By hand: drag the line"),
+    ("probability", "Probability map"),
+)
+H_MAXIMA = NumberSpec(
+    "h", "Bump that is a grain of its own, in voxels", 0.0, 6.0, 0.1, limit=50.0,
+    tip="How far a bump must stand out to be a grain of its own. Grains cut in two: larger. "
+    "Grains that stick together: smaller.",
+)  # fmt: skip
+OPENING = NumberSpec("Opening", "Opening", 0, 5, tip="Removes specks and thin bridges, in voxels.")
+CLOSING = NumberSpec("Closing", "Closing", 0, 5, tip="Closes cracks and thin gaps, in voxels.")
+MIN_VOXELS = NumberSpec(
+    "Smallest", "Least voxels of a grain", 0, 2000, 1, limit=10_000_000,
+    tip="Grains of fewer voxels are left out; below 12 voxels in diameter shapes are coarse.",
+)  # fmt: skip
+
+_LABEL_WIDTH = 62
+
+
+class SegmentationControls(QWidget):
+    """Edits a :class:`GrainRecipe`. ``valueChanged`` is for changes by the user only."""
+
+    valueChanged = Signal(object)  # noqa: N815
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("segmentation")
+        self._recipe = GrainRecipe()
+        self.denoise = _choice("denoise", "Denoise", DENOISE)
+        self.threshold = _choice("threshold", "Threshold", THRESHOLD)
+        self.level = QDoubleSpinBox()
+        self.boundary = _choice("boundary", "Boundary", ((1, "dark | middle"), (2, "middle | bright")))
+        self.dark = _check("dark", "Grains are dark", "Grains are darker than what is between them.")
+        self.split = _check("split", "Part touching grains", "Otherwise each connected body is one grain.")
+        self.pores = _check("fill_pores", "Fill closed pores", "Pores without a way out become grain.")
+        self.border = _check(
+            "exclude_border",
+            "Leave out grains at the border",
+            "They are cut. Each of the others then counts a little more (Miles-Lantuéjoul weights).",
+        )
+        self.opening, self.closing = _slider("opening", OPENING), _slider("closing", CLOSING)
+        self.h_maxima, self.least = _slider("h_maxima", H_MAXIMA), _slider("min_voxels", MIN_VOXELS)
+        self.diameter = remark()
+        self._arrange()
+        self._connect()
+        self.setValue(self._recipe)
+
+    def value(self) -> GrainRecipe:
+        """What is chosen."""
+        method = str(self.threshold.currentData())
+        before = self._recipe.segmentation
+        segmentation = SegmentationSettings(
+            dataclasses.replace(before.denoise, method=self.denoise.currentData()),
+            ThresholdSettings(
+                self.threshold.currentData(),
+                self.level.value() if method in ("manual", "probability") else 0.5,
+                boundary=int(self.boundary.currentData()),
+                dark=self.dark.isChecked(),
+            ),
+            CleaningSettings(
+                int(self.opening.value()), int(self.closing.value()), self.pores.isChecked(),
+                min(CleaningSettings.min_voxels, int(self.least.value())),
+            ),
+            dataclasses.replace(
+                before.splitting, enabled=self.split.isChecked(), h_maxima=float(self.h_maxima.value())
+            ),
+        )  # fmt: skip
+        extraction = dataclasses.replace(
+            self._recipe.extraction,
+            exclude_border=self.border.isChecked(),
+            min_voxels=int(self.least.value()),
+            fill_pores=self.pores.isChecked(),
+        )
+        return GrainRecipe(segmentation, extraction)
+
+    def setValue(self, recipe: GrainRecipe) -> None:
+        """Show other choices; announces nothing."""
+        self._recipe = recipe
+        how, what = recipe.segmentation, recipe.extraction
+        for box, value in (
+            (self.denoise, how.denoise.method),
+            (self.threshold, how.threshold.method),
+            (self.boundary, how.threshold.boundary),
+        ):
+            with QSignalBlocker(box):
+                box.setCurrentIndex(max(0, box.findData(value)))
+        for check, on in (
+            (self.dark, how.threshold.dark),
+            (self.split, how.splitting.enabled),
+            (self.pores, how.cleaning.fill_pores),
+            (self.border, what.exclude_border),
+        ):
+            with QSignalBlocker(check):
+                check.setChecked(on)
+        self._show_level(how.threshold.value)
+        self.opening.setValue(how.cleaning.opening)
+        self.closing.setValue(how.cleaning.closing)
+        self.h_maxima.setValue(how.splitting.h_maxima)
+        self.least.setValue(what.min_voxels)
+        self._show_which()
+
+    def set_level(self, level: float) -> None:
+        """Take a level by hand, as when the line is dragged: a grey value, of a probability its share."""
+        method = "probability" if self.threshold.currentData() == "probability" else "manual"
+        with QSignalBlocker(self.threshold):
+            self.threshold.setCurrentIndex(self.threshold.findData(method))
+        self._show_level(level)
+        self._changed()
+
+    def show_automatic_level(self, level: float | None) -> None:
+        """Say where an automatic threshold lies."""
+        if level is not None and self.threshold.currentData() in ("otsu", "multi-otsu"):
+            self._show_level(level)
+
+    def set_kind(self, kind: str) -> None:
+        """Labels need no segmentation."""
+        for part in (self.denoise, self.threshold, self.level, self.boundary, self.dark, self.split,
+                     self.opening, self.closing, self.h_maxima):  # fmt: skip
+            part.setEnabled(kind == "grey")
+        if kind == "grey":
+            self._show_which()
+
+    def _show_level(self, level: float) -> None:
+        with QSignalBlocker(self.level):
+            self.level.setValue(level)
+
+    def _show_which(self) -> None:
+        method = self.threshold.currentData()
+        with QSignalBlocker(self.level):
+            self.level.setRange(*((0.01, 0.99) if method == "probability" else (-1e9, 1e9)))
+        self.boundary.setEnabled(method == "multi-otsu")
+        self.level.setEnabled(method in ("manual", "probability"))
+        self.h_maxima.setEnabled(self.split.isChecked())
+        least = int(self.least.value())
+        self.diameter.setText(f"{least} voxels are a ball of {voxel_diameter(least):.1f} voxels in diameter.")
+
+    def _changed(self) -> None:
+        self._show_which()
+        self.valueChanged.emit(self.value())
+
+    def _threshold_chosen(self) -> None:
+        if self.threshold.currentData() == "probability":
+            self._show_level(0.5)
+        self._changed()
+
+    def _connect(self) -> None:
+        self.threshold.currentIndexChanged.connect(self._threshold_chosen)
+        for box in (self.denoise, self.boundary):
+            box.currentIndexChanged.connect(self._changed)
+        for check in (self.dark, self.split, self.pores, self.border):
+            check.toggled.connect(self._changed)
+        for slider in (self.opening, self.closing, self.h_maxima, self.least):
+            slider.valueChanged.connect(lambda _: self._changed())
+        self.level.valueChanged.connect(self._changed)
+
+    def _arrange(self) -> None:
+        self.level.setObjectName("level")
+        self.level.setAccessibleName("Grey level at which grains begin")
+        self.level.setRange(-1e9, 1e9)
+        self.level.setDecimals(2)
+        self.level.setKeyboardTracking(False)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(heading("Which voxels are grain"))
+        layout.addLayout(
+            _form(
+                (
+                    ("Denoise", self.denoise),
+                    ("Threshold", self.threshold),
+                    ("Level", self.level),
+                    ("Boundary", self.boundary),
+                )
+            )
+        )
+        for part in (self.dark, self.opening, self.closing, self.pores):
+            layout.addWidget(part)
+        layout.addSpacing(10)
+        layout.addWidget(heading("Which grain they belong to"))
+        layout.addWidget(self.split)
+        layout.addWidget(self.h_maxima)
+        layout.addSpacing(10)
+        layout.addWidget(heading("Which grains become particles"))
+        layout.addWidget(self.border)
+        layout.addWidget(self.least)
+        layout.addWidget(self.diameter)
+
+
+def _choice(name: str, words: str, rows: Sequence[tuple[Any, str]]) -> QComboBox:
+    box = QComboBox()
+    box.setObjectName(name)
+    box.setAccessibleName(words)
+    for key, label in rows:
+        box.addItem(label, key)
+    return box
+
+
+def _check(name: str, words: str, tip: str) -> QCheckBox:
+    box = QCheckBox(words)
+    box.setObjectName(name)
+    box.setToolTip(tip)
+    return box
+
+
+def _slider(name: str, spec: NumberSpec) -> NumberSlider:
+    slider = NumberSlider(spec)
+    slider.field.setObjectName(name)
+    slider.label.setFixedWidth(_LABEL_WIDTH)
+    slider.slider.setObjectName(f"{name}_slider")
+    return slider
+
+
+def _form(rows: Sequence[tuple[str, QWidget]]) -> QFormLayout:
+    form = QFormLayout()
+    form.setFieldGrowthPolicy(QFormLayout.FieldGrowthPolicy.AllNonFixedFieldsGrow)
+    for words, part in rows:
+        form.addRow(words, part)
+    return form

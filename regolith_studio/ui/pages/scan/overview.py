@@ -1,0 +1,130 @@
+"""Three slices through one voxel, the histogram beside them, and the box of the preview."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtWidgets import QGridLayout, QStackedLayout, QVBoxLayout, QWidget
+
+from regolith_studio.imaging.boxes import Box, box_between
+from regolith_studio.imaging.segmentation.segment import Segmentation
+from regolith_studio.jobs.scanning import Scan
+from regolith_studio.ui.pages.scan.histogram_plot import HistogramPlot
+from regolith_studio.ui.pages.scan.slice_view import SliceView
+from regolith_studio.ui.theme import Theme
+from regolith_studio.ui.widgets.labels import remark
+
+PREVIEW_EDGE = 96
+"""Voxels of the box of the preview along each axis, where the volume has as many."""
+
+
+class Overview(QWidget):
+    """Shows a :class:`Scan` and the grains found in a part of it, or in all of it."""
+
+    boxMoved = Signal()  # noqa: N815
+    """The box of the preview is elsewhere."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.slices = [SliceView(axis) for axis in (2, 1, 0)]
+        self.histogram = HistogramPlot()
+        self.place = (0, 0, 0)
+        self.box: Box = box_between((0, 0, 0), (1, 1, 1))
+        self._scan: Scan | None = None
+        self._labels: NDArray[Any] | None = None
+        self._part: Box = self.box
+        self._arrange()
+        for view in self.slices:
+            view.placePicked.connect(lambda x, y, z: self.go_to((x, y, z)))
+            view.sliceChosen.connect(self._turn)
+
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        for view in self.slices:
+            view.set_theme(theme)
+        self.histogram.set_theme(theme)
+
+    def set_scan(self, scan: Scan) -> None:
+        """Show another volume, through its middle."""
+        self._scan, self._labels = scan, None
+        for view in self.slices:
+            view.set_volume(scan.volume, scan.contrast)
+            view.set_box_shown(scan.volume.kind == "grey")
+        self.histogram.set_scanned(scan.seen)
+        self._stack.setCurrentIndex(1)
+        self.box = box_between((0, 0, 0), (0, 0, 0))
+        x, y, z = (edge // 2 for edge in scan.volume.shape)
+        self.go_to((x, y, z))
+
+    def go_to(self, place: tuple[int, int, int]) -> None:
+        """Show the slices through a voxel."""
+        if self._scan is None:
+            return
+        self.place = place
+        box = _box_about(place, self._scan.volume.shape)
+        moved, self.box = box != self.box, box
+        for view in self.slices:
+            view.show_place(place, box)
+        self._lay_over()
+        if moved:
+            self.boxMoved.emit()
+
+    def show_preview(self, found: Segmentation | None, box: Box) -> None:
+        """Lay the grains of the preview over the slices."""
+        self._labels = None if found is None else found.labels.array
+        self._part = box
+        self.histogram.set_denoised(None if found is None else found.seen)
+        for view in self.slices:
+            view.set_box_shown(True)
+        self._lay_over()
+
+    def show_whole(self, found: Segmentation) -> None:
+        """Lay the grains of the whole volume over the slices."""
+        self._labels, self._part = found.labels.array, box_between((0, 0, 0), found.labels.shape)
+        self.histogram.set_denoised(found.seen)
+        self.histogram.set_level(found.level)
+        for view in self.slices:
+            view.set_box_shown(False)
+        self._lay_over()
+
+    def _turn(self, axis: int, number: int) -> None:
+        place = list(self.place)
+        place[axis] = number
+        self.go_to((place[0], place[1], place[2]))
+
+    def _lay_over(self) -> None:
+        for view in self.slices:
+            view.show_grains(self._labels, self._part, self.place[view.axis])
+
+    def _arrange(self) -> None:
+        page = QWidget()
+        grid = QGridLayout(page)
+        grid.setContentsMargins(0, 0, 0, 0)
+        grid.setSpacing(8)
+        for part, (row, column) in zip(
+            (*self.slices, self.histogram), ((0, 0), (0, 1), (1, 0), (1, 1)), strict=True
+        ):
+            grid.addWidget(part, row, column)
+            grid.setRowStretch(row, 1)
+            grid.setColumnStretch(column, 1)
+        hint = QWidget()
+        column_of_words = QVBoxLayout(hint)
+        words = remark(
+            "Open a CT volume: TIFF stack, folder of slices, HDF5, NRRD, MetaImage, NIfTI, NPY or raw. "
+            "Drop it here, or begin with the sample scan."
+        )
+        words.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        column_of_words.addStretch(1)
+        column_of_words.addWidget(words)
+        column_of_words.addStretch(1)
+        self._stack = QStackedLayout(self)
+        self._stack.addWidget(hint)
+        self._stack.addWidget(page)
+
+
+def _box_about(place: tuple[int, int, int], shape: tuple[int, int, int]) -> Box:
+    """The box of the preview about a voxel, moved inside where it would stick out."""
+    edge = np.minimum(PREVIEW_EDGE, shape)
+    low = np.clip(np.array(place) - edge // 2, 0, np.array(shape) - edge)
+    return box_between(low.tolist(), (low + edge).tolist())

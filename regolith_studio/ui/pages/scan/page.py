@@ -1,0 +1,251 @@
+"""Three slices with the grains over them, the histogram, and what leads from one to the other."""
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from PySide6.QtCore import QTimer
+from PySide6.QtGui import QDragEnterEvent, QDropEvent
+from PySide6.QtWidgets import QFileDialog, QHBoxLayout
+
+from regolith_studio.imaging.extraction import Extraction
+from regolith_studio.imaging.segmentation.segment import Segmentation
+from regolith_studio.jobs.events import Job
+from regolith_studio.jobs.extracting import VolumeInput, extract_labels, segment_volume
+from regolith_studio.jobs.scanning import Scan, look_at_file, preview_part, read_sample_scan, read_scan
+from regolith_studio.readers.volume_header import VolumeHeader
+from regolith_studio.ui.layout import CONTROLS_WIDTH, padded, scrolled_column, side_by_side
+from regolith_studio.ui.page import PageContext, PageWidget
+from regolith_studio.ui.pages.scan.controls import SegmentationControls
+from regolith_studio.ui.pages.scan.overview import Overview
+from regolith_studio.ui.pages.scan.steps import StepsPanel
+from regolith_studio.ui.pages.scan.volume_dialog import RAW_SUFFIXES, VolumeDialog, needs_asking
+from regolith_studio.ui.theme import Theme
+
+VOLUMES = (
+    "Volumes (*.tif *.tiff *.h5 *.hdf5 *.nrrd *.nhdr *.mha *.mhd *.nii *.nii.gz *.npy *.raw);;All files (*)"
+)
+PREVIEW_DELAY = 120
+"""Milliseconds without a change before a preview is begun."""
+
+
+class ScanPage(PageWidget):
+    """Opens a volume, shows a preview of its grains at every change, finds all of them when asked."""
+
+    def __init__(self, context: PageContext) -> None:
+        super().__init__()
+        self.setObjectName("scan")
+        self.setAcceptDrops(True)
+        self._context = context
+        self.scan: Scan | None = None
+        self.grains: Segmentation | None = None
+        self.preview: Segmentation | None = None
+        self.overview, self.controls, self.steps = Overview(), SegmentationControls(), StepsPanel()
+        self._timer = QTimer(self, interval=PREVIEW_DELAY, singleShot=True)
+        self._arrange()
+        self._connect()
+        self._show_state()
+
+    def set_theme(self, theme: Theme) -> None:
+        self.overview.set_theme(theme)
+
+    def commands(self) -> Mapping[str, Callable[..., object]]:
+        return {
+            "open_volume": self.ask_for_file,
+            "open_slices": self.ask_for_folder,
+            "sample_volume": self.open_sample,
+            "find_grains": self.find_grains,
+            "make_particles": self.make_particles,
+        }
+
+    def release(self) -> None:
+        self._timer.stop()
+
+    # --- opening -------------------------------------------------------------------------------
+
+    def ask_for_file(self) -> None:
+        """Ask for a volume and open it."""
+        name, _ = QFileDialog.getOpenFileName(self, "Open a volume", self._folder(), VOLUMES)
+        if name:
+            self.open(Path(name))
+
+    def ask_for_folder(self) -> None:
+        """Ask for a folder of slices and open it."""
+        name = QFileDialog.getExistingDirectory(self, "Open a folder of slices", self._folder())
+        if name:
+            self.open(Path(name))
+
+    def open(self, path: Path) -> None:
+        """Open a file or a folder of slices; what it does not say is asked."""
+        self._context.remember("folder", str(path.parent))
+        if path.suffix.lower() in RAW_SUFFIXES:
+            self._ask(path, None)
+            return
+        job = Job(look_at_file, (VolumeInput(path),))
+        self._context.start(
+            "Looking at the volume", job, lambda header: self._looked(path, header), lane="read"
+        )
+
+    def open_sample(self) -> None:
+        """Open the shipped scan."""
+        self._context.start("Reading the sample scan", Job(read_sample_scan), self._take, lane="read")
+
+    def read(self, given: VolumeInput) -> None:
+        """Read a volume of which everything is known."""
+        self._context.start("Reading the volume", Job(read_scan, (given,)), self._take, lane="read")
+
+    def _looked(self, path: Path, header: VolumeHeader) -> None:
+        if needs_asking(header):
+            self._ask(path, header)
+        else:
+            self.read(VolumeInput(path))
+
+    def _ask(self, path: Path, header: VolumeHeader | None) -> None:
+        dialog = VolumeDialog(path, header, self)
+        dialog.accepted.connect(lambda: self.read(dialog.value()))
+        dialog.finished.connect(dialog.deleteLater)
+        dialog.open()
+
+    def _take(self, scan: Scan) -> None:
+        self._stop_work()
+        self.scan, self.grains, self.preview = scan, None, None
+        self.overview.set_scan(scan)
+        self.controls.set_kind(scan.volume.kind)
+        self._show_level()
+        self._begin_preview()
+        self._show_state()
+
+    # --- segmenting ----------------------------------------------------------------------------
+
+    def find_grains(self) -> None:
+        """Segment the whole volume."""
+        if self.scan is None or self.scan.volume.kind == "labels":
+            self._context.toast.note("Open a volume of grey values first.")
+            return
+        self._context.stop("preview")
+        job = Job(segment_volume, (self.scan.volume, self.controls.value().segmentation))
+        self._context.start("Finding grains", job, self._found, lane="grains")
+
+    def make_particles(self) -> None:
+        """Make particles of the grains and hand them to all other pages."""
+        labels = self.grains.labels if self.grains else None
+        if self.scan is not None and self.scan.volume.kind == "labels":
+            labels = self.scan.volume
+        if labels is None or self.scan is None:
+            self._context.toast.note("Find the grains first.")
+            return
+        job = Job(
+            extract_labels, (labels, self.controls.value().extraction, Path(self.scan.volume.name).stem)
+        )
+        self._context.start("Making particles", job, self._adopt, lane="grains")
+
+    def _found(self, grains: Segmentation) -> None:
+        self.grains, self.preview = grains, None
+        self.overview.show_whole(grains)
+        self.controls.show_automatic_level(grains.level)
+        self._show_state()
+
+    def _adopt(self, extraction: Extraction) -> None:
+        if not extraction.found:
+            self._context.toast.problem(
+                f"No grain became a particle: {len(extraction.border)} touch the border of the volume, "
+                f"{len(extraction.small)} are too small."
+            )
+            return
+        weights = {each.particle.name: each.weight for each in extraction.found}
+        self._context.session.shelf.put("grain_weights", weights)
+        self._context.session.adopt(extraction.particles)
+        self._context.toast.note(extraction.summary)
+        self.steps.set_particles(extraction.summary)
+
+    def _changed(self, _recipe: object) -> None:
+        if self.scan is None:
+            return
+        if self.grains is not None:
+            self.grains = None
+            self._show_state()
+        self._context.stop("grains")
+        self._show_level()
+        self._begin_preview()
+
+    def _level_dragged(self, level: float) -> None:
+        if self.scan is not None:
+            self.controls.set_level(level / self._probability_range())
+
+    def _show_level(self) -> None:
+        if self.scan is None:
+            return
+        level = self.scan.level(self.controls.value().segmentation)
+        self.overview.histogram.set_level(level)
+        self.controls.show_automatic_level(level)
+
+    def _probability_range(self) -> float:
+        """Grey value of certainty, where the threshold is a share of it; else 1."""
+        settings = self.controls.value().segmentation
+        if self.scan is None or settings.threshold.method != "probability":
+            return 1.0
+        return (self.scan.level(settings) or 1.0) / settings.threshold.value
+
+    # --- preview -------------------------------------------------------------------------------
+
+    def _begin_preview(self) -> None:
+        if self.scan is not None and self.scan.volume.kind == "grey" and self.grains is None:
+            self._timer.start()
+
+    def _preview_now(self) -> None:
+        if self.scan is None:
+            return
+        settings = self.controls.value().segmentation
+        arguments = (self.scan.volume, self.overview.box, settings, self.scan.level(settings))
+        box = self.overview.box
+        self._context.start(
+            "Preview", Job(preview_part, arguments), lambda found: self._previewed(found, box), lane="preview"
+        )
+
+    def _previewed(self, found: Segmentation | None, box: Any) -> None:
+        self.preview = found
+        self.overview.show_preview(found, box)
+        self._show_state()
+
+    # --- the rest ------------------------------------------------------------------------------
+
+    def _show_state(self) -> None:
+        self.steps.show_state(self.scan, self.preview, self.grains)
+
+    def _stop_work(self) -> None:
+        self._timer.stop()
+        for lane in ("preview", "grains"):
+            self._context.stop(lane)
+
+    def _folder(self) -> str:
+        return str(self._context.recall("folder", str(Path.home())))
+
+    def _connect(self) -> None:
+        self._timer.timeout.connect(self._preview_now)
+        self.controls.valueChanged.connect(self._changed)
+        self.overview.boxMoved.connect(self._begin_preview)
+        self.overview.histogram.levelDragged.connect(self._level_dragged)
+        self.steps.openRequested.connect(self.ask_for_file)
+        self.steps.sampleRequested.connect(self.open_sample)
+        self.steps.findRequested.connect(self.find_grains)
+        self.steps.particlesRequested.connect(self.make_particles)
+        self.steps.showRequested.connect(lambda: self._context.go("explore"))
+
+    def _arrange(self) -> None:
+        controls = scrolled_column([self.steps, self.controls])
+        parts = [padded(self.overview, 10, 10, 2, 8), controls]
+        columns = side_by_side(parts, [1100, CONTROLS_WIDTH + 20], stretch=0)
+        columns.setObjectName("scan_columns")
+        layout = QHBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(columns)
+
+    def dragEnterEvent(self, event: QDragEnterEvent) -> None:
+        if event.mimeData().hasUrls():
+            event.acceptProposedAction()
+
+    def dropEvent(self, event: QDropEvent) -> None:
+        files = [Path(url.toLocalFile()) for url in event.mimeData().urls() if url.isLocalFile()]
+        if files:
+            event.acceptProposedAction()
+            self.open(files[0])

@@ -1,0 +1,186 @@
+"""One slice of a volume with the grains laid over it."""
+
+from typing import Any
+
+import numpy as np
+import pyqtgraph as pg
+from numpy.typing import NDArray
+from PySide6.QtCore import QPointF, QRectF, QSignalBlocker, Qt, Signal
+from PySide6.QtGui import QColor, QWheelEvent
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QSlider, QVBoxLayout, QWidget
+
+from regolith_studio.imaging.boxes import Box
+from regolith_studio.imaging.volume import Volume
+from regolith_studio.ui.theme import Theme, current_theme
+
+AXES = "xyz"
+_OPACITY = 105
+
+
+def label_colours() -> NDArray[np.uint8]:
+    """Colours of 255 labels in turn, far from their neighbours in hue; entry 0 is clear. Shape (256, 4)."""
+    hues = (np.arange(255) * 0.618033988749895) % 1.0
+    table = np.zeros((256, 4), dtype=np.uint8)
+    for row, hue in zip(table[1:], hues, strict=True):
+        row[:] = QColor.fromHsvF(float(hue), 0.75, 1.0, _OPACITY / 255).getRgb()
+    return table
+
+
+class SliceView(QWidget):
+    """Shows the slice of one direction; a click says where, the wheel turns pages.
+
+    Parameters
+    ----------
+    axis
+        0, 1 or 2: the direction that is looked along.
+    """
+
+    placePicked = Signal(int, int, int)  # noqa: N815
+    """A voxel that was clicked."""
+    sliceChosen = Signal(int, int)  # noqa: N815
+    """Axis and number of another slice."""
+
+    def __init__(self, axis: int, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.axis = axis
+        self.across, self.down = (each for each in range(3) if each != axis)
+        self._volume: Volume | None = None
+        self._colours = label_colours()
+        self.title = QLabel()
+        self.title.setProperty("role", "heading")
+        self.slider = QSlider(Qt.Orientation.Horizontal)
+        self.slider.setObjectName(f"slice_{AXES[axis]}")
+        self.slider.setAccessibleName(f"Slice along {AXES[axis]}")
+        self.canvas = _Canvas(self)
+        self._grey, self._grains = pg.ImageItem(), pg.ImageItem()
+        self._frame = pg.QtWidgets.QGraphicsRectItem()
+        self._cross = [pg.InfiniteLine(angle=angle) for angle in (90, 0)]
+        self._arrange()
+        self.slider.valueChanged.connect(lambda number: self.sliceChosen.emit(self.axis, number))
+        self.set_theme(current_theme())
+
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        self.canvas.setBackground(theme.base)
+        self._frame.setPen(pg.mkPen(theme.accent, width=2))
+        for line in self._cross:
+            line.setPen(pg.mkPen(QColor(theme.accent).lighter(120), width=1, style=Qt.PenStyle.DotLine))
+
+    def set_volume(self, volume: Volume, contrast: tuple[float, float]) -> None:
+        """Show another volume, in micrometres, whole."""
+        self._volume = volume
+        self._grey.setLevels(contrast)
+        self._grains.clear()
+        with QSignalBlocker(self.slider):
+            self.slider.setRange(0, volume.shape[self.axis] - 1)
+        width, height = (volume.shape[each] * volume.voxel_size[each] for each in (self.across, self.down))
+        self.canvas.view.setRange(QRectF(0, 0, width, height), padding=0.02)
+
+    def show_place(self, place: tuple[int, int, int], box: Box) -> None:
+        """Show the slice through a voxel, where the voxel is, and where the box of the preview is."""
+        if self._volume is None:
+            return
+        number, count = place[self.axis], self._volume.shape[self.axis]
+        with QSignalBlocker(self.slider):
+            self.slider.setValue(number)
+        self.title.setText(
+            f"{AXES[self.across]}{AXES[self.down]}, {AXES[self.axis]} = {number + 1} of {count}"
+        )
+        picture = np.take(self._volume.array, number, axis=self.axis)
+        if self._volume.kind == "labels":
+            self._grey.clear()
+            self._set(self._grains, self._painted(picture), (0, 0), picture.shape)
+        else:
+            self._set(self._grey, np.asarray(picture, dtype=np.float32), (0, 0), picture.shape)
+        for line, each in zip(self._cross, (self.across, self.down), strict=True):
+            line.setValue((place[each] + 0.5) * self._volume.voxel_size[each])
+        corner = self._rectangle(
+            (box[self.across].start, box[self.down].start),
+            (_length(box[self.across]), _length(box[self.down])),
+        )
+        self._frame.setRect(corner)
+        self._frame.setVisible(box[self.axis].start <= number < box[self.axis].stop)
+
+    def show_grains(self, labels: NDArray[Any] | None, box: Box, number: int) -> None:
+        """Lay the grains of a part of the volume over the slice; none where the part does not reach it."""
+        side = box[self.axis]
+        if self._volume is None or self._volume.kind == "labels":
+            return
+        if labels is None or not side.start <= number < side.stop:
+            self._grains.clear()
+            return
+        picture = np.take(labels, number - side.start, axis=self.axis)
+        start = (box[self.across].start, box[self.down].start)
+        self._set(self._grains, self._painted(picture), start, picture.shape)
+
+    def set_box_shown(self, shown: bool) -> None:
+        """Whether the box of the preview is drawn."""
+        self._frame.setOpacity(1.0 if shown else 0.0)
+
+    def _painted(self, labels: NDArray[Any]) -> NDArray[np.uint8]:
+        number = labels.astype(np.int64)
+        return self._colours[np.where(number > 0, (number - 1) % 255 + 1, 0)]
+
+    def _set(self, item: Any, picture: NDArray[Any], start: tuple[int, int], shape: tuple[int, ...]) -> None:
+        item.setImage(picture, autoLevels=False)
+        item.setRect(self._rectangle(start, (shape[0], shape[1])))
+
+    def _rectangle(self, start: tuple[int, int], size: tuple[int, int]) -> QRectF:
+        assert self._volume is not None
+        wide, high = (float(self._volume.voxel_size[each]) for each in (self.across, self.down))
+        return QRectF(start[0] * wide, start[1] * high, size[0] * wide, size[1] * high)
+
+    def _arrange(self) -> None:
+        view = self.canvas.view
+        for item in (self._grey, self._grains, self._frame, *self._cross):
+            view.addItem(item)
+        self._frame.setBrush(pg.mkBrush(None))
+        row = QHBoxLayout()
+        row.setContentsMargins(4, 0, 4, 0)
+        row.addWidget(self.title)
+        row.addWidget(self.slider, 1)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.setSpacing(2)
+        layout.addLayout(row)
+        layout.addWidget(self.canvas, 1)
+
+    def picked(self, point: QPointF) -> None:
+        """A click at a point of the scene, in micrometres."""
+        if self._volume is None:
+            return
+        place = [0, 0, 0]
+        place[self.axis] = self.slider.value()
+        for each, where in ((self.across, point.x()), (self.down, point.y())):
+            voxel = int(np.floor(where / self._volume.voxel_size[each]))
+            place[each] = min(max(voxel, 0), self._volume.shape[each] - 1)
+        self.placePicked.emit(*place)
+
+    def turn(self, steps: int) -> None:
+        """Go some slices on or back."""
+        self.slider.setValue(self.slider.value() + steps)
+
+
+class _Canvas(pg.GraphicsView):  # type: ignore[misc]
+    """Fits the slice into its room; click and wheel go to the view."""
+
+    def __init__(self, owner: SliceView) -> None:
+        super().__init__()
+        self._owner = owner
+        self.view = pg.ViewBox(lockAspect=True, invertY=True, enableMouse=False, enableMenu=False)
+        self.setCentralItem(self.view)
+        self.setFrameShape(self.Shape.NoFrame)
+        self.setAccessibleName(f"Slice along {AXES[owner.axis]}, picture")
+        self.scene().sigMouseClicked.connect(self._clicked)
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        self._owner.turn(1 if event.angleDelta().y() > 0 else -1)
+        event.accept()
+
+    def _clicked(self, event: Any) -> None:
+        if event.button() == Qt.MouseButton.LeftButton:
+            self._owner.picked(self.view.mapSceneToView(event.scenePos()))
+
+
+def _length(side: slice) -> int:
+    return int(side.stop - side.start)

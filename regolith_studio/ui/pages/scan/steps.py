@@ -1,0 +1,93 @@
+"""The way from a volume to particles in three steps, with what each has found."""
+
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout, QWidget
+
+from regolith_studio.imaging.segmentation.segment import Segmentation
+from regolith_studio.jobs.scanning import Scan
+from regolith_studio.ui.widgets.labels import heading, remark
+
+
+class StepsPanel(QWidget):
+    """Buttons that lead through the page; each says what it needs by being greyed out."""
+
+    openRequested = Signal()  # noqa: N815
+    sampleRequested = Signal()  # noqa: N815
+    findRequested = Signal()  # noqa: N815
+    particlesRequested = Signal()  # noqa: N815
+    showRequested = Signal()  # noqa: N815
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("scan_steps")
+        self.browse = _button("scan_open", "Open volume …", "Open a CT volume of grey values or labels")
+        self.sample = _button("scan_sample", "Sample scan", "Open the scan that ships with the program")
+        self.search = _button("scan_find", "Find all grains", "Segment the whole volume with these settings")
+        self.convert = _button("scan_make", "Make particles", "Contour each grain and open it as a particle")
+        self.show_them = _button("scan_show", "Show particles", "Go to the page Explore")
+        self.volume, self.found, self.made = remark(), remark(), remark()
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        for title, buttons, words in (
+            ("1  Volume", (self.browse, self.sample), self.volume),
+            ("2  Grains", (self.search,), self.found),
+            ("3  Particles", (self.convert, self.show_them), self.made),
+        ):
+            layout.addWidget(heading(title))
+            row = QHBoxLayout()
+            for button in buttons:
+                row.addWidget(button)
+            layout.addLayout(row)
+            layout.addWidget(words)
+        self.browse.clicked.connect(self.openRequested)
+        self.sample.clicked.connect(self.sampleRequested)
+        self.search.clicked.connect(self.findRequested)
+        self.convert.clicked.connect(self.particlesRequested)
+        self.show_them.clicked.connect(self.showRequested)
+
+    def show_state(
+        self, scan: Scan | None, preview: Segmentation | None, grains: Segmentation | None
+    ) -> None:
+        """Say what is open and what has been found."""
+        is_grey = scan is not None and scan.volume.kind == "grey"
+        self.search.setEnabled(is_grey)
+        self.convert.setEnabled(grains is not None or (scan is not None and not is_grey))
+        self.show_them.hide()
+        self.volume.setText(_about(scan))
+        self.made.setText("")
+        if scan is None:
+            self.found.setText("")
+        elif not is_grey:
+            self.found.setText("The volume holds labels: its grains have been found already.")
+        elif grains is not None:
+            self.found.setText(grains.summary)
+        elif preview is not None:
+            self.found.setText(
+                f"In the frame: {preview.n_grains} grains from {preview.n_bodies} connected bodies. "
+                "Click into a slice to move the frame."
+            )
+        else:
+            self.found.setText("No grain in the frame so far.")
+
+    def set_particles(self, summary: str) -> None:
+        """Say what came out."""
+        self.made.setText(summary)
+        self.show_them.show()
+
+
+def _about(scan: Scan | None) -> str:
+    if scan is None:
+        return "No volume is open."
+    volume = scan.volume
+    edges = " × ".join(map(str, volume.shape))
+    size = volume.voxel_size
+    voxel = f"{size[0]:g} µm" if (size == size[0]).all() else " × ".join(f"{e:g}" for e in size) + " µm"
+    what = "labels" if volume.kind == "labels" else "grey values"
+    return f"{volume.name}: {edges} voxels of {voxel}, {what} ({volume.dtype})."
+
+
+def _button(name: str, words: str, tip: str) -> QPushButton:
+    button = QPushButton(words)
+    button.setObjectName(name)
+    button.setToolTip(tip)
+    return button
