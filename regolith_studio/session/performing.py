@@ -35,6 +35,7 @@ from regolith_studio.session.batch.sinks import (
     mesh_sink,
     n_failures,
     shapes_of,
+    time_sink,
 )
 from regolith_studio.session.batch.working import Wish, work_on
 from regolith_studio.session.choices import Choices
@@ -186,7 +187,11 @@ def _assembled(done: Performed, batch: Batch) -> Part:
     yield Started("Writing the results", batch.n_items)
     _tally(done, batch)
     with contextlib.ExitStack() as stack:
-        sinks: list[Sink] = [done.summary, stack.enter_context(failure_sink(done.folder))]
+        sinks: list[Sink] = [
+            done.summary,
+            stack.enter_context(failure_sink(done.folder)),
+            stack.enter_context(time_sink(batch.folder / "times.csv")),
+        ]
         if wish.descriptors:
             sinks.append(stack.enter_context(descriptor_sink(done.folder)))
         if wish.meshes:

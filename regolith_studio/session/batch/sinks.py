@@ -19,7 +19,7 @@ from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.jobs.chunked import LOST, Batch
 from regolith_studio.jobs.coarsening import CoarseningOrder
 from regolith_studio.jobs.shards import Record
-from regolith_studio.session.batch.working import COEFFICIENTS, CUT, MESH, SHAPE
+from regolith_studio.session.batch.working import COEFFICIENTS, CUT, MESH, SHAPE, STAGES
 from regolith_studio.session.outputs.coarsening import document_head
 from regolith_studio.session.outputs.descriptors import table_columns, table_row
 from regolith_studio.session.outputs.fits import FittedSample, write_fits
@@ -159,6 +159,24 @@ def failure_sink(folder: Path) -> Iterator[Sink]:
         write_bytes(path, _csv_bytes([["name", "stage", "reason"], *sink.rows]))
     else:
         path.unlink(missing_ok=True)
+
+
+@dataclass
+class _Times:
+    stream: IO[bytes]
+
+    def add(self, record: Record) -> None:
+        seconds = record.values.get("seconds", {})
+        row = [record.values["name"], *[seconds.get(stage) for stage in STAGES]]
+        self.stream.write(_csv_bytes([row]))
+
+
+@contextmanager
+def time_sink(path: Path) -> Iterator[Sink]:
+    """Writes how long each stage took for each particle, as CSV."""
+    with staged_file(path) as stream:
+        stream.write(_csv_bytes([["name", *[f"{stage} [s]" for stage in STAGES]]]))
+        yield _Times(stream)
 
 
 @dataclass

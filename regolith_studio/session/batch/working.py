@@ -29,6 +29,9 @@ MESH, SHAPE, COEFFICIENTS, CUT = "mesh.stl", "shape.stl", "coefficients.f8", "cu
 """Names of the byte strings of a record: polyhedron in place, polyhedron of the dataset, coefficients
 at the degree of all fits, and those at the degree that was coarsened (little-endian float64)."""
 
+STAGES = ("reading", "measuring", "fitting", "coarsening", "writing")
+"""What is done to a particle, in order; virtual ones are drawn instead of read."""
+
 
 @dataclass(frozen=True)
 class Wish:

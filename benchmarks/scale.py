@@ -1,0 +1,178 @@
+"""Thousands of virtual particles drawn, measured, coarsened to 20 faces and written as a dataset.
+
+    python -m benchmarks.scale [--particles 300 1000] [--jobs 2] [--json FILE]
+
+Each count is a whole run of the recipe that a user would give, in a process of its own. Printed are wall
+time, processor time of all processes (what a quiet machine would need on one core), its parts, memory and
+bytes on disk; from two or more counts, what a particle costs and what the run costs before the first one.
+"""
+
+import argparse
+import csv
+import json
+import resource
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+
+STAGES = ("reading", "measuring", "fitting", "coarsening", "writing")
+TARGET = (10_000, 6 * 60.0, 1.5)
+"""Particles, seconds on two quiet cores, GiB."""
+
+
+@dataclass(frozen=True)
+class Run:
+    """What a run took.
+
+    Parameters
+    ----------
+    wall, processor
+        Seconds; processor time is of all processes together.
+    assembling
+        Processor seconds between the last particle and the end, of one process.
+    stages
+        Wall seconds of a particle in each stage, mean.
+    memory
+        Largest sum of resident memory of all processes, bytes.
+    disk
+        Bytes of results.
+    """
+
+    particles: int
+    jobs: int
+    wall: float
+    processor: float
+    assembling: float
+    stages: dict[str, float]
+    memory: int
+    disk: int
+
+
+def measured(particles: int, jobs: int) -> Run:
+    """One run, in a process of its own."""
+    command = [sys.executable, "-m", "benchmarks.scale", "--one", str(particles), "--jobs", str(jobs)]
+    said = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    return Run(**json.loads(said.splitlines()[-1]))
+
+
+def one(particles: int, jobs: int) -> Run:
+    """In the process: perform the recipe in a temporary folder."""
+    from regolith_studio.jobs.crew import Crew
+    from regolith_studio.jobs.events import Started
+    from regolith_studio.session.performing import perform
+    from regolith_studio.session.recipe import recipe_of
+
+    wish = recipe_of(
+        inputs=[],
+        population={"card": "ma165", "n": particles, "l_max": 10},
+        target="particle",
+        method="exact",
+        settings={"level": "fast"},
+        n_faces=20,
+        outputs={"meshes": False},
+    )
+    with tempfile.TemporaryDirectory() as place, _watched() as memory:
+        folder = Path(place) / "out"
+        crew, begun, mark = Crew(jobs), time.perf_counter(), 0.0
+        for step in perform(wish, Path(place), folder, crew):
+            if isinstance(step, Started) and step.title.startswith("Writing"):
+                mark = time.process_time()
+        assembling = time.process_time() - mark
+        crew.close()
+        wall = time.perf_counter() - begun
+        stages, disk = _stages(folder), sum(p.stat().st_size for p in folder.rglob("*") if p.is_file())
+    return Run(particles, jobs, wall, _processor_time(), assembling, stages, memory.most, disk)
+
+
+class _watched:  # noqa: N801  a context, read like a sentence
+    """Adds up the memory of this process and its children, ten times a second."""
+
+    def __enter__(self) -> "_watched":
+        self.most, self._stop = 0, threading.Event()
+        self._thread = threading.Thread(target=self._watch, daemon=True)
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_error: object) -> None:
+        self._stop.set()
+        self._thread.join()
+
+    def _watch(self) -> None:
+        import psutil
+
+        here = psutil.Process()
+        while not self._stop.wait(0.1):
+            total = 0
+            for process in [here, *here.children(recursive=True)]:
+                try:
+                    total += process.memory_info().rss
+                except psutil.NoSuchProcess:
+                    continue
+            self.most = max(self.most, total)
+
+
+def _processor_time() -> float:
+    used = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
+    return sum(each.ru_utime + each.ru_stime for each in used)
+
+
+def _stages(folder: Path) -> dict[str, float]:
+    with (folder / "journal" / "times.csv").open() as table:
+        rows = list(csv.DictReader(table))
+    return {stage: float(np.mean([float(row[f"{stage} [s]"] or 0.0) for row in rows])) for stage in STAGES}
+
+
+def report(runs: Sequence[Run]) -> None:
+    """Print the table, and what follows from it."""
+    print(
+        f"{'particles':>10}{'wall s':>9}{'cpu s':>9}{'assembling':>12}{'GiB':>7}{'MB disk':>9}"
+        "   ms of a particle"
+    )
+    for run in runs:
+        parts = ", ".join(f"{stage} {1e3 * run.stages[stage]:.1f}" for stage in STAGES if run.stages[stage])
+        print(
+            f"{run.particles:>10,}{run.wall:>9.1f}{run.processor:>9.1f}{run.assembling:>12.2f}"
+            f"{run.memory / 2**30:>7.2f}{run.disk / 1e6:>9.1f}   {parts}"
+        )
+    if len({run.particles for run in runs}) > 1:
+        counts, costs = np.array([(run.particles, run.processor) for run in runs]).T
+        each, before = np.polyfit(counts, costs, 1)
+        memory_each, memory_before = np.polyfit(counts, [run.memory for run in runs], 1)
+        for count in (10_000, 100_000):
+            wall = (before + each * count) / 2
+            gib = (memory_before + max(memory_each, 0.0) * count) / 2**30
+            print(f"{count:,} by extrapolation: {wall / 60:.1f} min on two quiet cores, {gib:.2f} GiB")
+        print(f"{1e3 * each:.1f} ms of a core for a particle, {before:.1f} s before the first")
+    count, seconds, gib = TARGET
+    print(f"wanted: {count:,} in {seconds / 60:.0f} min on two quiet cores and {gib} GiB")
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--particles", type=int, nargs="+", default=[300, 1000])
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--json", type=Path)
+    parser.add_argument("--one", type=int, help=argparse.SUPPRESS)
+    options = parser.parse_args()
+    if options.one:
+        print(json.dumps(asdict(one(options.one, options.jobs))))
+        return
+    runs = []
+    for particles in options.particles:
+        runs.append(measured(particles, options.jobs))
+        print(f"{particles:,} particles: {runs[-1].wall:.0f} s", file=sys.stderr)
+    report(runs)
+    if options.json:
+        options.json.write_text(json.dumps([asdict(run) for run in runs], indent=1) + "\n")
+
+
+if __name__ == "__main__":
+    main()
