@@ -29,6 +29,7 @@ def _seen(plotter: pv.Plotter, half_height: float) -> tuple[float, float, float,
     """Left, right, lower and upper edge of what is drawn, seen from above, in micrometres."""
     pose = cameras.CameraPose((0, 0, 1e5), (0, 0, 0), (0, 1, 0), half_height)
     cameras.apply_pose(plotter, pose)
+    plotter.render()
     picture = plotter.screenshot(return_img=True).astype(int)
     drawn = picture[:, :, 0] - picture[:, :, 2] > 15  # sand is yellow, the background is not
     rows, columns = np.flatnonzero(drawn.any(axis=1)), np.flatnonzero(drawn.any(axis=0))
