@@ -62,9 +62,18 @@ class Built:
 
 
 def build_dataset_folder(
-    particles: Sequence[Particle], order: CoarseningOrder, folder: Path, options: DatasetOptions
+    particles: Sequence[Particle],
+    order: CoarseningOrder,
+    folder: Path,
+    options: DatasetOptions,
+    population: Population | None = None,
 ) -> Steps:
     """Coarsen the particles, or those that stand for all, and write a dataset; returns :class:`Built`.
+
+    Parameters
+    ----------
+    population
+        Descriptors of the particles, if they have been measured.
 
     Raises
     ------
@@ -78,7 +87,8 @@ def build_dataset_folder(
     if options.representatives is None:
         chosen, outcomes = None, (yield from coarsen_sample(particles, order, options.workers))
     else:
-        population = yield from measure_population(particles, options.workers)
+        if population is None:
+            population = yield from measure_population(particles, options.workers)
         chosen, outcomes = yield from coarsen_chosen(particles, population, order, options)
     yield Started("Writing the dataset")
     name = options.name or folder.name

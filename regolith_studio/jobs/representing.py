@@ -79,12 +79,33 @@ class Population:
 
 
 @dataclass(frozen=True)
+class Survey:
+    """A measured population with the errors of its representatives over their number."""
+
+    population: Population
+    curve: QualityCurve
+
+    def chosen(self, count: int) -> "ChosenParticles | None":
+        """The choice of this number, if the curve has made it."""
+        for point, found in zip(self.curve.points, self.curve.choices, strict=True):
+            if point.count == count:
+                return ChosenParticles.of(self.population, found)
+        return None
+
+
+@dataclass(frozen=True)
 class ChosenParticles:
     """Representatives of a population, with their places in the sample."""
 
     places: tuple[int, ...]
     representatives: Representatives
     n_particles: int
+
+    @classmethod
+    def of(cls, population: Population, found: Representatives) -> "ChosenParticles":
+        """With the places of the population's particles in the sample."""
+        places = tuple(population.kept[index] for index in found.chosen)
+        return cls(places, found, len(population.kept))
 
 
 def measure_population(particles: Sequence[Particle], workers: int | Crew = 1) -> Steps:
@@ -146,6 +167,33 @@ def choose(population: Population, order: RepresentativesOrder) -> ChosenParticl
         size_importance=order.size_importance,
         seed=order.seed,
     )
-    return ChosenParticles(
-        tuple(population.kept[index] for index in found.chosen), found, len(population.kept)
-    )
+    return ChosenParticles.of(population, found)
+
+
+def survey(
+    particles: Sequence[Particle],
+    order: RepresentativesOrder,
+    population: Population | None = None,
+    workers: int | Crew = 1,
+) -> Steps:
+    """Measure a sample, unless that is done, and its quality curve; returns :class:`Survey`.
+
+    Partial results are the points of the curve.
+
+    Raises
+    ------
+    InputError
+        If no particle has descriptors, or fewer than two.
+    """
+    if population is None:
+        population = yield from measure_population(particles, workers)
+    if len(population.kept) < 2:
+        raise InputError("Representatives need at least two particles that can be described.")
+    curve = yield from measure_quality(population, order)
+    return Survey(population, curve)
+
+
+def choose_one(population: Population, order: RepresentativesOrder) -> Steps:
+    """As :func:`choose`, for a runner."""
+    yield Started("Choosing representatives")
+    return choose(population, order)

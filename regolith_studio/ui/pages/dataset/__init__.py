@@ -1,0 +1,29 @@
+"""Page "Dataset": particles that stand for all, their sizes, the folder, and its way to DEM programs."""
+
+from regolith_studio.ui.action_spec import BREAK, PAGE_MENU, ActionSpec
+from regolith_studio.ui.page import Page, PageContext, PageWidget
+
+
+def build(context: PageContext) -> PageWidget:
+    """The page's widget."""
+    from regolith_studio.ui.pages.dataset.page import DatasetPage
+
+    return DatasetPage(context)
+
+
+PAGE = Page(
+    key="dataset",
+    title="Dataset",
+    icon="page_dataset",
+    order=60,
+    tip="Choose representative particles, build a dataset, export it to DEM programs",
+    build=build,
+    actions=(
+        ActionSpec(PAGE_MENU, "find", "&Find representatives"),
+        ActionSpec(PAGE_MENU, "build", "&Build the dataset …"),
+        ActionSpec(PAGE_MENU, "open_dataset", "&Open a dataset …"),
+        ActionSpec(PAGE_MENU, "validate", "&Check the dataset"),
+        ActionSpec(PAGE_MENU, BREAK, ""),
+        ActionSpec(PAGE_MENU, "export", "&Export to DEM programs …"),
+    ),
+)

@@ -1,0 +1,201 @@
+"""What is chosen: representatives, sizes, name."""
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+from PySide6.QtCore import QSignalBlocker, Signal
+from PySide6.QtWidgets import QComboBox, QLineEdit, QPushButton, QVBoxLayout, QWidget
+
+from regolith_studio.dataset.size_spec import Sizing, parse_sizes
+from regolith_studio.errors import InputError
+from regolith_studio.jobs.representing import RepresentativesOrder
+from regolith_studio.ui.widgets.labels import heading, remark
+from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
+
+MOST = 200
+COUNT = NumberSpec("N", "Number of representatives", 1, MOST, tip="The paper has 10.")
+WEIGHTINGS = {"number": "Each particle counts the same", "volume": "Particles count by their volume"}
+SIZES = {
+    "measured": ("As measured", ""),
+    "classes": ("In size classes", "25,37,56,84,125"),
+    "fitted:log-normal": ("Log-normal, fitted to each class", ""),
+    "log-normal": ("Log-normal, the same for all", "50,0.4"),
+    "rosin-rammler": ("Rosin-Rammler, the same for all", "60,2,10,200"),
+    "sieve": ("Sieve classes, the same for all", "20,32,45,63=10,60,30"),
+    "discrete": ("Single diameters, the same for all", "25=85.5,37=12.6,56=1.7,84=0.23,125=0.03"),
+}
+HINTS = {
+    "classes": "Diameters in µm; each particle moves to the nearest (Table 1 of the paper).",
+    "log-normal": "Median in µm, deviation of ln d; @volume behind it counts volume.",
+    "rosin-rammler": "Scale, shape, smallest, largest; @volume behind it counts volume.",
+    "sieve": "Openings in µm = shares between them; @volume behind it counts volume.",
+    "discrete": "Diameter in µm = share; @volume behind it counts volume.",
+}
+
+
+class RepresentativesPanel(QWidget):
+    """Number and weighting of the representatives."""
+
+    countChanged = Signal(int)  # noqa: N815
+    orderChanged = Signal()  # noqa: N815
+    findRequested = Signal()  # noqa: N815
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("dataset_representatives")
+        self.population = remark()
+        self.start = QPushButton("Find representatives")
+        self.count = NumberSlider(COUNT)
+        self.weighting = QComboBox()
+        for key, label in WEIGHTINGS.items():
+            self.weighting.addItem(label, key)
+        self.start.setObjectName("dataset_find")
+        self.count.field.setObjectName("dataset_count")
+        self.weighting.setObjectName("dataset_weighting")
+        self.weighting.setAccessibleName("What representatives count")
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        for widget in (
+            heading("1  Representatives"),
+            self.population,
+            self.weighting,
+            self.start,
+            self.count,
+        ):
+            layout.addWidget(widget)
+        self.count.setValue(10)
+        self.count.valueChanged.connect(lambda value: self.countChanged.emit(int(value)))
+        self.weighting.currentIndexChanged.connect(lambda _: self.orderChanged.emit())
+        self.start.clicked.connect(self.findRequested)
+
+    def order(self) -> RepresentativesOrder:
+        """What is asked for."""
+        return RepresentativesOrder.of(int(self.count.value()), self.weighting.currentData())
+
+    def show_population(self, n_particles: int) -> None:
+        """Say how many particles there are to choose from."""
+        self.population.setText(
+            f"{n_particles:,} particles are open."
+            if n_particles
+            else "No particles are open: open files, the sample, or draw some on the page Shape model."
+        )
+        self.start.setEnabled(n_particles > 1)
+        top = max(1, min(MOST, n_particles or MOST))
+        now = int(self.count.value())
+        self.count.slider.setMaximum(top)
+        self.count.field.setMaximum(top)
+        self.count.setValue(min(now, top))
+
+    def value(self) -> dict[str, Any]:
+        """Plain JSON."""
+        return {"count": int(self.count.value()), "weighting": self.weighting.currentData()}
+
+    def setValue(self, value: Mapping[str, Any]) -> None:
+        """Show other choices; announces nothing."""
+        self.count.setValue(int(value.get("count", 10)))
+        with QSignalBlocker(self.weighting):
+            self.weighting.setCurrentIndex(max(0, self.weighting.findData(value.get("weighting"))))
+
+
+class SizesPanel(QWidget):
+    """Edits the size distributions as one line of text, with a form for each kind."""
+
+    sizesChanged = Signal()  # noqa: N815
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("dataset_size_kinds")
+        self.kind, self.numbers = QComboBox(), QLineEdit()
+        self.hint, self.problem = remark(), remark(role="warning")
+        for key, (label, _) in SIZES.items():
+            self.kind.addItem(label, key)
+        self.kind.setObjectName("dataset_size_kind")
+        self.kind.setAccessibleName("Kind of size distribution")
+        self.numbers.setObjectName("dataset_size_numbers")
+        self.numbers.setAccessibleName("Numbers of the size distribution")
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        for widget in (heading("2  Sizes"), self.kind, self.numbers, self.hint, self.problem):
+            layout.addWidget(widget)
+        self.kind.currentIndexChanged.connect(lambda _: self._show_kind())
+        self.numbers.textEdited.connect(lambda _: self._tell())
+        self._show_kind()
+
+    def text(self) -> str:
+        """As :mod:`regolith_studio.dataset.size_spec` writes it."""
+        key = self.kind.currentData()
+        return f"{key}:{self.numbers.text().strip()}" if SIZES[key][1] else str(key)
+
+    def set_text(self, text: str) -> None:
+        """Show another distribution; what is unknown is left out."""
+        key = next((key for key in SIZES if text == key or text.startswith(f"{key}:")), "")
+        if not key:
+            return
+        with QSignalBlocker(self.kind):
+            self.kind.setCurrentIndex(self.kind.findData(key))
+        self._show_kind()
+        if SIZES[key][1]:
+            self.numbers.setText(text.removeprefix(f"{key}:"))
+        self._tell()
+
+    def sizing(self) -> Sizing | None:
+        """From measured sizes to those that are wanted; ``None`` while the numbers make no sense."""
+        try:
+            found = parse_sizes(self.text())
+        except InputError as error:
+            self.show_problem(str(error))
+            return None
+        self.show_problem("")
+        return found
+
+    def show_problem(self, sentence: str) -> None:
+        """Say what is wrong with the numbers."""
+        self.problem.setText(sentence)
+        self.problem.setVisible(bool(sentence))
+
+    def _show_kind(self) -> None:
+        key = self.kind.currentData()
+        example = SIZES[key][1]
+        self.numbers.setVisible(bool(example))
+        self.numbers.setText(example)
+        self.hint.setText(HINTS.get(key, ""))
+        self.hint.setVisible(key in HINTS)
+        self._tell()
+
+    def _tell(self) -> None:
+        self.sizing()
+        self.sizesChanged.emit()
+
+
+class FolderPanel(QWidget):
+    """Name of the dataset, and where it is."""
+
+    buildRequested = Signal()  # noqa: N815
+    openRequested = Signal()  # noqa: N815
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("dataset_folder")
+        self.name = QLineEdit("regolith")
+        self.name.setObjectName("dataset_name")
+        self.name.setAccessibleName("Name of the dataset")
+        self.shapes, self.state = remark(), remark()
+        self.build, self.open = QPushButton("Build the dataset …"), QPushButton("Open a dataset …")
+        self.build.setObjectName("dataset_build")
+        self.open.setObjectName("dataset_open")
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        for widget in (heading("3  Dataset"), self.name, self.shapes, self.build, self.open, self.state):
+            layout.addWidget(widget)
+        self.build.clicked.connect(self.buildRequested)
+        self.open.clicked.connect(self.openRequested)
+        self.show_dataset("")
+
+    def folder_name(self) -> str:
+        """Of the folder: the dataset's name without what a file system may not like."""
+        return re.sub(r"[^\w.-]+", "_", self.name.text()).strip("._") or "dataset"
+
+    def show_dataset(self, words: str) -> None:
+        """Say which dataset is there."""
+        self.state.setText(words or "No dataset yet.")

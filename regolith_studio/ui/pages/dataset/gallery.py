@@ -1,0 +1,103 @@
+"""The representatives as small pictures with their weights, drawn one by one while nothing else is to do."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from PySide6.QtCore import QSize, Qt, QTimer
+from PySide6.QtWidgets import QLabel, QListView, QListWidget, QListWidgetItem, QVBoxLayout, QWidget
+
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.ui.pages.dataset.thumbnails import picture_of
+from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.widgets.labels import heading
+
+SIZE, CELL = 92, QSize(128, 136)
+"""Of a picture, and of a picture with its words, in pixels."""
+
+
+@dataclass(frozen=True)
+class Shown:
+    """One picture: a solid, two words below it, and what the mouse tells."""
+
+    mesh: Mesh
+    caption: str
+    tip: str
+    coarsened: bool = False
+
+
+class RepresentativesGallery(QWidget):
+    """Shows as many as there are."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._theme = current_theme()
+        self._shown: tuple[Shown, ...] = ()
+        self._next = 0
+        self._timer = QTimer(self, interval=0)
+        self._timer.timeout.connect(self._draw_next)
+        self.title = heading("Representatives")
+        self.list = QListWidget()
+        self.list.setObjectName("dataset_gallery")
+        self.list.setAccessibleName("Representative particles")
+        self.list.setViewMode(QListView.ViewMode.IconMode)
+        self.list.setResizeMode(QListView.ResizeMode.Adjust)
+        self.list.setMovement(QListView.Movement.Static)
+        self.list.setIconSize(QSize(SIZE, SIZE))
+        self.list.setGridSize(CELL + QSize(4, 4))
+        self.list.setTextElideMode(Qt.TextElideMode.ElideMiddle)
+        self.list.setFrameShape(self.list.Shape.NoFrame)
+        self.empty = QLabel("Press Find: the particles that stand for all appear here, with their weights.")
+        self.empty.setProperty("role", "remark")
+        self.empty.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        self.empty.setWordWrap(True)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(8, 6, 8, 6)
+        layout.addWidget(self.title)
+        layout.addWidget(self.list, 1)
+        layout.addWidget(self.empty, 1)
+        self.show_shapes("Representatives", ())
+
+    @property
+    def shown(self) -> tuple[Shown, ...]:
+        """What is shown, in order."""
+        return self._shown
+
+    def show_shapes(self, title: str, shown: Sequence[Shown]) -> None:
+        """Show these instead."""
+        self.title.setText(title)
+        self._shown = tuple(shown)
+        self.list.clear()
+        for each in self._shown:
+            item = QListWidgetItem(each.caption)
+            item.setToolTip(each.tip)
+            item.setSizeHint(CELL)
+            item.setTextAlignment(Qt.AlignmentFlag.AlignHCenter)
+            self.list.addItem(item)
+        self.list.setVisible(bool(shown))
+        self.empty.setVisible(not shown)
+        self._redraw()
+
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        self._theme = theme
+        self._redraw()
+
+    def release(self) -> None:
+        """Draw no more."""
+        self._timer.stop()
+
+    def _redraw(self) -> None:
+        self._next = 0
+        if self._shown:
+            self._timer.start()
+
+    def _draw_next(self) -> None:
+        if self._next >= len(self._shown):
+            self._timer.stop()
+            return
+        each = self._shown[self._next]
+        colour = self._theme.polyhedron if each.coarsened else self._theme.particle
+        item = self.list.item(self._next)
+        if item is not None:
+            item.setIcon(picture_of(each.mesh, colour, SIZE))
+        self._next += 1

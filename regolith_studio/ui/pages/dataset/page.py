@@ -1,0 +1,352 @@
+"""Controls on the left in the order of the work; curves above, representatives and exports below."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from PySide6.QtWidgets import QFileDialog, QHBoxLayout, QMessageBox
+
+from regolith_studio.dataset.build import ShapeClass, own_class
+from regolith_studio.dataset.dataset import Dataset
+from regolith_studio.dataset.exporting import Exported
+from regolith_studio.dataset.quality import QualityPoint
+from regolith_studio.errors import RegolithError
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.jobs.building import Built, DatasetOptions, build_dataset_folder
+from regolith_studio.jobs.datasets import open_dataset_folder, validate_dataset_folder
+from regolith_studio.jobs.events import Job
+from regolith_studio.jobs.exporting import export_dataset_folder
+from regolith_studio.jobs.representing import ChosenParticles, Survey, choose_one, survey
+from regolith_studio.ui.layout import padded, scrolled_column, side_by_side, stacked, tabs
+from regolith_studio.ui.page import PageContext, PageWidget
+from regolith_studio.ui.pages.dataset.controls import FolderPanel, RepresentativesPanel, SizesPanel
+from regolith_studio.ui.pages.dataset.gallery import RepresentativesGallery, Shown
+from regolith_studio.ui.pages.dataset.plots import QualityPlot, SizesPlot
+from regolith_studio.ui.pages.dataset.targets import ExportsList, LossesLabel, TargetsPanel
+from regolith_studio.ui.theme import Theme
+
+FIND, BUILD, EXPORT = "find", "build", "export"
+
+
+class DatasetPage(PageWidget):
+    """Asks jobs for representatives, datasets and exports, and shows them."""
+
+    def __init__(self, context: PageContext) -> None:
+        super().__init__()
+        self.setObjectName("dataset")
+        self._context = context
+        self._particles: tuple[Particle, ...] = ()
+        self._survey: Survey | None = None
+        self._chosen: ChosenParticles | None = None
+        self._points: list[QualityPoint] = []
+        self._dataset: Dataset | None = None
+        self._folder: Path | None = None
+        self._exports: list[Exported] = []
+        self.representatives, self.sizes = RepresentativesPanel(), SizesPanel()
+        self.folder, self.targets = FolderPanel(), TargetsPanel()
+        self.quality, self.distribution = QualityPlot(), SizesPlot()
+        self.gallery, self.losses, self.exports = RepresentativesGallery(), LossesLabel(), ExportsList()
+        self._place()
+        self._connect()
+        context.wiring.refresh("particles", self._show_particles)
+        context.wiring.refresh("choices", self._show_choices, slow=True)
+        self._show_losses()
+
+    # --- the page of the window ----------------------------------------------------------------
+
+    def set_theme(self, theme: Theme) -> None:
+        for part in (self.quality, self.distribution, self.gallery):
+            part.set_theme(theme)
+
+    def commands(self) -> Mapping[str, Callable[..., object]]:
+        return {
+            "find": self.find_representatives,
+            "build": self.build,
+            "open_dataset": self.open_dataset,
+            "validate": self.validate,
+            "export": self.export,
+        }
+
+    def state(self) -> dict[str, Any]:
+        return {
+            "representatives": self.representatives.value(),
+            "sizes": self.sizes.text(),
+            "name": self.folder.name.text(),
+            "export": self.targets.value(),
+        }
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        for name, panel in (("representatives", self.representatives), ("export", self.targets)):
+            if isinstance(state.get(name), Mapping):
+                panel.setValue(state[name])
+        self.sizes.set_text(str(state.get("sizes", "measured")))
+        self.folder.name.setText(str(state.get("name", "regolith")))
+
+    def release(self) -> None:
+        self.gallery.release()
+
+    # --- commands ------------------------------------------------------------------------------
+
+    def find_representatives(self) -> None:
+        """Choose representatives for many numbers, and draw the curve."""
+        if not self._particles:
+            self._context.toast.problem("There are no particles to choose from: open some first.")
+            return
+        self._points = []
+        known = self._survey.population if self._survey else None
+        job = Job(survey, (self._particles, self.representatives.order(), known))
+        self._context.start(
+            "Finding representatives", job, self._show_survey, partial=self._show_point, lane=FIND
+        )
+
+    def build(self) -> None:
+        """Ask for a place and build the dataset in a new folder there."""
+        if self._chosen is None:
+            self._context.toast.problem("There are no representatives yet: press Find first.")
+            return
+        name = QFileDialog.getExistingDirectory(
+            self, "Build the dataset in this folder", self._place_before()
+        )
+        if not name:
+            return
+        folder = Path(name) / self.folder.folder_name()
+        replaced = folder.is_dir() and any(folder.iterdir())
+        if replaced and not self._asked(f"There is a folder {folder} already. Replace the dataset in it?"):
+            return
+        self.build_in(folder, replaced)
+
+    def build_in(self, folder: Path, overwrite: bool = False) -> None:
+        """Coarsen the representatives and write the dataset into `folder`."""
+        session, survey_now = self._context.session, self._survey
+        if self._chosen is None or survey_now is None or self.sizes.sizing() is None:
+            return
+        preset = None if session.choices.preset_modified else session.choices.preset
+        options = DatasetOptions(
+            self.folder.name.text().strip(),
+            preset,
+            overwrite=overwrite,
+            representatives=self.representatives.order(),
+            sizes=self.sizes.text(),
+        )
+        job = Job(
+            build_dataset_folder,
+            (self._particles, session.choices.order, folder, options, survey_now.population),
+        )
+        self._context.remember("place", str(folder.parent))
+        self._context.start("Building the dataset", job, self._take_built, lane=BUILD)
+
+    def open_dataset(self) -> None:
+        """Ask for a dataset folder and show it."""
+        name = QFileDialog.getExistingDirectory(self, "Open a dataset", self._place_before())
+        if name:
+            self.open_folder(Path(name))
+
+    def open_folder(self, folder: Path) -> None:
+        """Show the dataset of a folder."""
+        self._context.start(
+            "Reading the dataset", Job(open_dataset_folder, (folder,)), self._take_read, lane=BUILD
+        )
+
+    def validate(self) -> None:
+        """Check every file of the dataset."""
+        if self._folder is None:
+            self._context.toast.problem("There is no dataset to check: build or open one first.")
+            return
+        job = Job(validate_dataset_folder, (self._folder,))
+        self._context.start("Checking the dataset", job, self._tell_problems, lane="validate")
+
+    def export(self) -> None:
+        """Ask for a place and export the dataset there."""
+        if self._folder is None:
+            self._context.toast.problem("There is no dataset to export: build or open one first.")
+            return
+        name = QFileDialog.getExistingDirectory(self, "Export into this folder", self._place_before())
+        if name:
+            self.export_to(Path(name))
+
+    def export_to(self, folder: Path) -> None:
+        """Write the ticked formats, each into a folder of its own below `folder`."""
+        if self._folder is None:
+            return
+        self._exports = []
+        arguments = (
+            self._folder,
+            self.targets.chosen(),
+            folder,
+            self.targets.options(),
+            self.targets.consent(),
+        )
+        self._context.start(
+            "Exporting",
+            Job(export_dataset_folder, arguments),
+            self._take_exports,
+            self._add_export,
+            lane=EXPORT,
+        )
+
+    def _place_before(self) -> str:
+        return str(self._context.recall("place", str(Path.home())))
+
+    def _asked(self, question: str) -> bool:
+        answer = QMessageBox.question(self, "Replace the dataset", question)
+        return answer == QMessageBox.StandardButton.Yes
+
+    # --- answers -------------------------------------------------------------------------------
+
+    def _show_particles(self) -> None:
+        now = tuple(entry.particle for entry in self._context.session.particles)
+        if now != self._particles:
+            self._particles, self._survey, self._chosen = now, None, None
+            self._context.stop(FIND)
+            self.quality.show_curve(None)
+            self._show_chosen()
+        self.representatives.show_population(len(now))
+
+    def _show_point(self, point: QualityPoint) -> None:
+        self._points.append(point)
+        self.quality.show_points(self._points)
+
+    def _show_survey(self, found: Survey) -> None:
+        self._survey = found
+        self.quality.show_curve(found.curve)
+        if found.population.omitted:
+            name, reason = found.population.omitted[0]
+            more = (
+                f" and {len(found.population.omitted) - 1} more" if len(found.population.omitted) > 1 else ""
+            )
+            self._context.toast.problem(f"Left out: {name}{more}. {reason}")
+        self._choose(int(self.representatives.count.value()))
+
+    def _choose(self, count: int) -> None:
+        """Show the choice of another number: at once if the curve has made it."""
+        self.quality.set_marker(float(count))
+        if self._survey is None:
+            return
+        known = self._survey.chosen(count)
+        if known is not None:
+            self._take_chosen(known)
+            return
+        order = replace(self.representatives.order(), count=count)
+        job = Job(choose_one, (self._survey.population, order))
+        self._context.start("Choosing representatives", job, self._take_chosen, lane="choice")
+
+    def _take_chosen(self, chosen: ChosenParticles) -> None:
+        self._chosen = chosen
+        self._show_chosen()
+
+    def _show_chosen(self) -> None:
+        self._dataset, shown = None, []
+        if self._chosen is not None:
+            classes = self._chosen.representatives.classes
+            total = sum(one.weight for one in classes)
+            for place, one in zip(self._chosen.places, classes, strict=True):
+                particle = self._particles[place]
+                share = f"{100 * one.weight / total:.1f} %"
+                tip = f"{particle.name} stands for {one.n_members} particles ({share})"
+                shown.append(Shown(particle.mesh, f"{share}\n{particle.name}", tip))
+        self.gallery.show_shapes(
+            f"{len(shown)} representatives" if shown else "Representatives", sorted(shown, key=_by_share)
+        )
+        self.folder.build.setEnabled(bool(shown))
+        self._show_sizes()
+
+    def _show_sizes(self) -> None:
+        classes = self._classes()
+        sizing = self.sizes.sizing()
+        try:
+            made = [replace(one, sizes=sizing(one)) for one in classes] if sizing else []
+        except RegolithError as error:
+            self.sizes.show_problem(str(error))
+            made = []
+        self.distribution.show_classes(made)
+
+    def _classes(self) -> Sequence[ShapeClass]:
+        if self._dataset is not None:
+            return [ShapeClass(one.weight, one.sizes, one.n_members) for one in self._dataset.representatives]
+        if self._chosen is not None:
+            return self._chosen.representatives.classes
+        return [own_class(particle) for particle in self._particles if particle.mesh.volume > 0.0]
+
+    def _take_built(self, built: Built) -> None:
+        self._take_dataset(built.folder, built.dataset)
+        self._context.toast.note(f"{len(built.dataset)} shapes in {built.folder}.")
+
+    def _take_read(self, answer: tuple[Path, Dataset]) -> None:
+        self._take_dataset(*answer)
+
+    def _take_dataset(self, folder: Path, dataset: Dataset) -> None:
+        self._folder, self._dataset = folder, dataset
+        self._context.session.shelf.put("dataset_folder", folder)
+        weights = dataset.weights
+        shown = [
+            Shown(
+                one.shape.mesh,
+                f"{100 * weight:.1f} %\n{one.shape.n_faces} faces",
+                f"{one.name}: {one.shape.n_faces} faces, {one.shape.n_vertices} vertices, stands for "
+                f"{one.n_members} particles",
+                coarsened=True,
+            )
+            for one, weight in zip(dataset.representatives, weights, strict=True)
+        ]
+        title = f"{dataset.name}: {len(dataset)} shapes, by {dataset.weighting}"
+        self.gallery.show_shapes(title, sorted(shown, key=_by_share))
+        self.folder.show_dataset(f"{title}\n{folder}")
+        self.distribution.show_classes(self._classes())
+        self.targets.set_ready(True)
+
+    def _tell_problems(self, problems: Sequence[str]) -> None:
+        if problems:
+            self._context.toast.problem(f"The dataset is not sound: {problems[0]}", "\n".join(problems))
+        else:
+            self._context.toast.note("The dataset is sound.")
+
+    def _add_export(self, one: Exported) -> None:
+        self._exports.append(one)
+        self.exports.show_exports(self._exports)
+        self._lower.setCurrentWidget(self.exports)
+
+    def _take_exports(self, done: Sequence[Exported]) -> None:
+        self._exports = list(done)
+        self.exports.show_exports(done)
+        self._context.toast.note(f"{len(done)} formats written.")
+
+    # --- parts ---------------------------------------------------------------------------------
+
+    def _show_choices(self) -> None:
+        choices = self._context.session.choices
+        self.folder.shapes.setText(
+            f"{choices.n_faces} faces, method {choices.method}, as chosen on the page Explore."
+        )
+
+    def _show_losses(self) -> None:
+        self.losses.show_formats(self.targets.chosen())
+
+    def _connect(self) -> None:
+        self.representatives.findRequested.connect(self.find_representatives)
+        self.representatives.countChanged.connect(self._choose)
+        self.representatives.orderChanged.connect(
+            lambda: self.find_representatives() if self._survey else None
+        )
+        self.sizes.sizesChanged.connect(self._show_sizes)
+        self.folder.buildRequested.connect(self.build)
+        self.folder.openRequested.connect(self.open_dataset)
+        self.targets.exportRequested.connect(self.export)
+        self.targets.chosenChanged.connect(self._show_losses)
+
+    def _place(self) -> None:
+        left = scrolled_column((self.representatives, self.sizes, self.folder, self.targets))
+        upper = side_by_side((self.quality, self.distribution), (600, 460), stretch=0)
+        upper.setObjectName("dataset_upper")
+        self._lower = tabs("dataset_lower", [(self.losses, "What formats lose"), (self.exports, "Exported")])
+        middle = stacked((upper, self.gallery, self._lower), (330, 330, 150), stretch=1)
+        middle.setObjectName("dataset_middle")
+        whole = side_by_side((left, padded(middle, 0, 4, 4, 4)), (320, 1200), stretch=1)
+        whole.setObjectName("dataset_whole")
+        layout = QHBoxLayout(self)
+        layout.setContentsMargins(8, 0, 4, 0)
+        layout.addWidget(whole)
+
+
+def _by_share(shown: Shown) -> float:
+    return -float(shown.caption.split(" ")[0])

@@ -1,0 +1,128 @@
+"""Error over the number of representatives, and the distribution of sizes."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from PySide6.QtWidgets import QWidget
+
+from regolith_studio.dataset.build import ShapeClass
+from regolith_studio.dataset.quality import QualityCurve, QualityPoint
+from regolith_studio.ui.theme import Theme
+from regolith_studio.ui.widgets.curve_plot import Curve, CurvePlot
+
+NAMES = {
+    "aspect_ratio": "AR",
+    "sphericity": "S",
+    "convexity": "V/CH",
+    "min_diameter": "D<sub>min</sub>",
+    "max_diameter": "D<sub>max</sub>",
+}
+COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8c6d00")
+MOST_CLASSES = 12
+"""Classes whose own distributions are drawn; of more only the mixture."""
+
+
+class QualityPlot(CurvePlot):
+    """Wasserstein distance per descriptor, their mean, and the noise of the population."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        self._points: tuple[QualityPoint, ...] = ()
+        self._noise: float | None = None
+        super().__init__(
+            "Number of representatives",
+            "Distance to the population [deviations]",
+            "How many are enough? Press Find: the curve falls to the sampling noise of the population.",
+            log_y=True,
+            parent=parent,
+        )
+        self.setObjectName("dataset_quality")
+
+    @property
+    def points(self) -> tuple[QualityPoint, ...]:
+        """What is drawn."""
+        return self._points
+
+    def show_points(self, points: Sequence[QualityPoint]) -> None:
+        """Points so far."""
+        self._points, self._noise = tuple(points), None
+        self._draw()
+
+    def show_curve(self, curve: QualityCurve | None) -> None:
+        """The whole curve, or nothing."""
+        self._points = curve.points if curve else ()
+        self._noise = curve.noise_mean if curve else None
+        enough = curve.enough if curve else None
+        self.set_remark(f"as small as the sampling noise from N = {enough} on" if enough else "")
+        self._draw()
+
+    def set_theme(self, theme: Theme) -> None:
+        super().set_theme(theme)
+        self._draw()
+
+    def _draw(self) -> None:
+        counts = tuple(float(point.count) for point in self._points)
+        curves = [
+            Curve(NAMES.get(key, key), colour, counts, self._column(key), markers=len(counts) < 40)
+            for key, colour in zip(NAMES, COLOURS, strict=True)
+        ]
+        curves.append(
+            Curve("mean", self.theme.text, counts, tuple(map(_drawn, (point.mean for point in self._points))))
+        )
+        if self._noise is not None and counts:
+            ends = (counts[0], counts[-1])
+            curves.append(Curve("noise", self.theme.muted, ends, (self._noise, self._noise), dash=True))
+        self.set_curves(curves)
+
+    def _column(self, key: str) -> tuple[float, ...]:
+        return tuple(_drawn(point.errors.get(key, np.nan)) for point in self._points)
+
+
+def _drawn(error: float) -> float:
+    """No point where every particle stands for itself: a logarithm has no zero."""
+    return float(error) if error > 1e-6 else float("nan")
+
+
+class SizesPlot(CurvePlot):
+    """Cumulative distribution of the mixture, and of each class where they are few."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        self._classes: tuple[ShapeClass, ...] = ()
+        super().__init__(
+            "Equivalent diameter [µm]",
+            "Share at or below [%]",
+            "The sizes of the classes appear here.",
+            parent=parent,
+        )
+        self.setObjectName("dataset_sizes")
+
+    @property
+    def classes(self) -> tuple[ShapeClass, ...]:
+        """What is drawn."""
+        return self._classes
+
+    def show_classes(self, classes: Sequence[ShapeClass]) -> None:
+        """Show these distributions; none for the sentence."""
+        self._classes = tuple(classes)
+        self._draw()
+
+    def set_theme(self, theme: Theme) -> None:
+        super().set_theme(theme)
+        self._draw()
+
+    def _draw(self) -> None:
+        if not self._classes:
+            self.set_curves(())
+            return
+        weights = np.array([one.weight for one in self._classes])
+        low = min(float(one.sizes.quantile(0.002)) for one in self._classes)
+        high = max(float(one.sizes.quantile(0.998)) for one in self._classes)
+        at = np.linspace(max(0.0, low - 0.05 * (high - low) - 1e-3 * low), high * 1.03, 400)
+        rows = np.array([one.sizes.cdf(at) for one in self._classes])
+        curves = []
+        if len(self._classes) <= MOST_CLASSES:
+            curves = [Curve("", self.theme.border, tuple(at), tuple(100 * row)) for row in rows]
+        mixture = 100 * (weights @ rows) / weights.sum()
+        kinds = {one.sizes.weighting for one in self._classes}
+        words = "all classes, by " + " and ".join(sorted(kinds))
+        curves.append(Curve(words, self.theme.accent, tuple(at), tuple(mixture)))
+        self.set_curves(curves)

@@ -1,0 +1,198 @@
+"""To which programs, with what settings; what is lost on the way; and what has been written."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from PySide6.QtCore import Qt, QUrl, Signal
+from PySide6.QtGui import QDesktopServices, QGuiApplication
+from PySide6.QtWidgets import (
+    QCheckBox,
+    QFormLayout,
+    QHBoxLayout,
+    QLabel,
+    QPushButton,
+    QScrollArea,
+    QVBoxLayout,
+    QWidget,
+)
+
+from regolith_studio.dataset.exporters import EXPORTERS
+from regolith_studio.dataset.exporting import Exported, ExportOptions
+from regolith_studio.ui.widgets.labels import ElidedLabel, heading, remark
+from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
+
+FIRST = ("rocky", "yade")
+COARSE_GRAINING = NumberSpec("", "Coarse-graining factor", 1, 20, limit=1000, tip="The paper has 10.")
+PARTICLES = NumberSpec(
+    "", "Particles drawn", 1, 5000, limit=1_000_000, tip="For formats that list single bodies."
+)
+
+
+class TargetsPanel(QWidget):
+    """Check boxes of the formats, and the settings that they share."""
+
+    exportRequested = Signal()  # noqa: N815
+    chosenChanged = Signal()  # noqa: N815
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("dataset_targets")
+        self.boxes = {key: self._box(key) for key in EXPORTERS}
+        self.coarse_graining, self.particles = NumberSlider(COARSE_GRAINING), NumberSlider(PARTICLES)
+        self.coarse_graining.field.setObjectName("dataset_coarse_graining")
+        self.particles.field.setObjectName("dataset_particles")
+        self.lossy = QCheckBox("Shapes may be changed")
+        self.lossy.setObjectName("dataset_lossy")
+        self.export = QPushButton("Export …")
+        self.export.setObjectName("dataset_export")
+        form = QFormLayout()
+        form.addRow("Coarse graining", self.coarse_graining)
+        form.addRow("Particles drawn", self.particles)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(heading("4  Export to"))
+        for box in self.boxes.values():
+            layout.addWidget(box)
+        layout.addLayout(form)
+        layout.addWidget(self.lossy)
+        layout.addWidget(self.export)
+        self.coarse_graining.setValue(10)
+        self.particles.setValue(200)
+        self.lossy.toggled.connect(lambda _: self._show())
+        self.export.clicked.connect(self.exportRequested)
+        self._ready = False
+        self.setValue({"targets": FIRST})
+
+    def chosen(self) -> tuple[str, ...]:
+        """Keys of the formats that are ticked."""
+        return tuple(key for key, box in self.boxes.items() if box.isChecked())
+
+    def options(self) -> ExportOptions:
+        """What the exporters are told."""
+        return ExportOptions(
+            coarse_graining_factor=float(self.coarse_graining.value()),
+            n_particles=int(self.particles.value()),
+        )
+
+    def consent(self) -> bool:
+        """Whether shapes may be changed."""
+        return self.lossy.isChecked()
+
+    def set_ready(self, ready: bool) -> None:
+        """Whether there is a dataset to export."""
+        self._ready = ready
+        self._show()
+
+    def value(self) -> dict[str, Any]:
+        """Plain JSON."""
+        return {
+            "targets": list(self.chosen()),
+            "coarse_graining": float(self.coarse_graining.value()),
+            "particles": int(self.particles.value()),
+            "lossy": self.consent(),
+        }
+
+    def setValue(self, value: Mapping[str, Any]) -> None:
+        """Tick these; names that are not known are left out."""
+        wanted = set(value.get("targets", FIRST))
+        for key, box in self.boxes.items():
+            box.setChecked(key in wanted)
+        self.coarse_graining.setValue(float(value.get("coarse_graining", 10.0)))
+        self.particles.setValue(int(value.get("particles", 200)))
+        self.lossy.setChecked(bool(value.get("lossy", False)))
+        self._show()
+
+    def _box(self, key: str) -> QCheckBox:
+        exporter = EXPORTERS[key]
+        box = QCheckBox(exporter.label)
+        box.setObjectName(f"dataset_to_{key}")
+        lines = [f"Carries: {'; '.join(exporter.carries)}", f"Loses: {'; '.join(exporter.loses)}"]
+        lines += [f"Shapes are changed: {exporter.alters}"] if exporter.alters else []
+        box.setToolTip("\n".join([*lines, f"Units: {exporter.units}"]))
+        box.toggled.connect(lambda _: self._show())
+        return box
+
+    def _show(self) -> None:
+        altering = [key for key in self.chosen() if EXPORTERS[key].alters]
+        self.lossy.setVisible(bool(altering))
+        allowed = not altering or self.consent()
+        self.export.setEnabled(getattr(self, "_ready", False) and bool(self.chosen()) and allowed)
+        self.export.setToolTip(
+            "" if allowed else f"{EXPORTERS[altering[0]].label}: {EXPORTERS[altering[0]].alters}"
+        )
+        self.chosenChanged.emit()
+
+
+class LossesLabel(QScrollArea):
+    """What the ticked formats do not carry."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("dataset_losses")
+        self.setWidgetResizable(True)
+        self.setFrameShape(self.Shape.NoFrame)
+        self.label = remark()
+        self.label.setTextFormat(Qt.TextFormat.RichText)
+        self.label.setAlignment(Qt.AlignmentFlag.AlignTop)
+        self.label.setContentsMargins(8, 6, 8, 6)
+        self.setWidget(self.label)
+
+    def show_formats(self, keys: Sequence[str]) -> None:
+        """Say what these lose."""
+        lines = []
+        for key in keys:
+            each = EXPORTERS[key]
+            changed = f"<br><b>Shapes are changed:</b> {each.alters}" if each.alters else ""
+            lost = "; ".join(each.loses)
+            lines.append(
+                f"<p><b>{each.label}</b> does not carry: {lost}.{changed}<br>Units: {each.units}.</p>"
+            )
+        self.label.setText("".join(lines) or "Tick a format to see what it carries and what it loses.")
+
+
+class ExportsList(QWidget):
+    """One row for each export that was written: where it is and how to load it."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("dataset_exports")
+        self._rows = QVBoxLayout()
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(8, 6, 8, 6)
+        self._empty = remark("What has been exported is listed here, with the command that loads it.")
+        layout.addWidget(self._empty)
+        layout.addLayout(self._rows)
+        layout.addStretch(1)
+        self._exports: tuple[Exported, ...] = ()
+
+    @property
+    def exports(self) -> tuple[Exported, ...]:
+        """What is listed."""
+        return self._exports
+
+    def show_exports(self, exports: Sequence[Exported]) -> None:
+        """List these instead."""
+        self._exports = tuple(exports)
+        while (item := self._rows.takeAt(0)) is not None:
+            if (widget := item.widget()) is not None:
+                widget.deleteLater()
+        self._empty.setVisible(not exports)
+        for one in exports:
+            self._rows.addWidget(self._row(one))
+
+    def _row(self, one: Exported) -> QWidget:
+        row = QWidget()
+        line = QHBoxLayout(row)
+        line.setContentsMargins(0, 0, 0, 0)
+        name = QLabel(EXPORTERS[one.key].label if one.key in EXPORTERS else one.key)
+        name.setMinimumWidth(190)
+        look, copy = QPushButton("Open folder"), QPushButton("Copy load command")
+        look.setObjectName(f"dataset_open_{one.key}")
+        copy.setObjectName(f"dataset_copy_{one.key}")
+        look.clicked.connect(lambda: QDesktopServices.openUrl(QUrl.fromLocalFile(str(one.folder))))
+        copy.clicked.connect(lambda: QGuiApplication.clipboard().setText(one.load_command))
+        line.addWidget(name)
+        line.addWidget(ElidedLabel(one.load_command, role="remark"), 1)
+        line.addWidget(copy)
+        line.addWidget(look)
+        return row

@@ -1,0 +1,222 @@
+"""The page "Dataset": from open particles to scripts for DEM programs."""
+
+import json
+
+import numpy as np
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QGuiApplication
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QFileDialog, QMessageBox, QPushButton, QWidget
+
+from regolith_studio.dataset.exporters import EXPORTERS
+from regolith_studio.dataset.folder import read_dataset, validate_dataset
+from regolith_studio.geometry.directions import icosphere
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.jobs.runners.inline import InlineRunner
+from regolith_studio.session.session import Session
+from regolith_studio.ui.commands import Commands
+from regolith_studio.ui.page import PageContext
+from regolith_studio.ui.pages.dataset import PAGE
+from regolith_studio.ui.pages.dataset.thumbnails import picture_of
+from regolith_studio.ui.theme import DARK, LIGHT
+from regolith_studio.ui.widgets.toast import Toast
+from regolith_studio.ui.wiring import Wiring
+
+
+def grains(count=8, first=0):
+    """Three kinds of ellipsoids in many sizes."""
+    made = []
+    for index in range(first, first + count):
+        axes = ((1.0, 1.1, 1.3), (1.0, 1.6, 2.4), (0.5, 1.5, 1.6))[index % 3]
+        mesh = icosphere(2).moved(rotation=np.diag(axes), scale=20.0 + 3 * index)
+        made.append(Particle(f"grain-{index}", mesh))
+    return made
+
+
+@pytest.fixture
+def page(shown, preferences):
+    session = Session(InlineRunner())
+    session.choose(method="quadric", target="particle")
+    window = shown(QWidget())
+    toast = Toast(window)
+    wiring = Wiring(session, toast.problem, window)
+    commands = Commands(session, preferences, toast, window)
+    context = PageContext(
+        "dataset", session, wiring, preferences, toast, commands, "image", lambda _key: None
+    )
+    made = shown(PAGE.build(context))
+    made.resize(1300, 900)
+    made.session, made.toast = session, toast
+    yield made
+    wiring.cut()
+    made.release()
+    session.close()
+
+
+@pytest.fixture
+def chosen(page, wait):
+    """The page with representatives of eight grains."""
+    page.session.adopt(grains())
+    wait(lambda: page.representatives.start.isEnabled())
+    page.representatives.count.setValue(3)
+    QTest.mouseClick(page.representatives.start, Qt.MouseButton.LeftButton)
+    wait(lambda: len(page.gallery.shown) == 3)
+    return page
+
+
+def slide(panel, value):
+    """Move a slider as a user does."""
+    panel.slider.setValue(value)
+    QTest.qWait(80)
+
+
+def test_that_a_new_user_gets_to_a_rocky_script_and_a_yade_run(chosen, wait, tmp_path, monkeypatch) -> None:
+    monkeypatch.setattr(QFileDialog, "getExistingDirectory", lambda *_: str(tmp_path))
+    chosen.folder.name.setText("my regolith/1")
+    QTest.mouseClick(chosen.folder.build, Qt.MouseButton.LeftButton)
+    folder = tmp_path / "my_regolith_1"
+    wait(lambda: chosen.targets.export.isEnabled())
+    assert validate_dataset(folder) == []
+    assert len(read_dataset(folder)) == 3
+    assert all(one.coarsened for one in chosen.gallery.shown)
+    assert chosen.targets.chosen() == ("rocky", "yade")
+    QTest.mouseClick(chosen.targets.export, Qt.MouseButton.LeftButton)
+    wait(lambda: len(chosen.exports.exports) == 2)
+    assert (tmp_path / "rocky" / "rocky_case.py").exists()
+    assert (tmp_path / "yade" / "particles.csv").exists()
+    copy = chosen.exports.findChild(QPushButton, "dataset_copy_yade")
+    QTest.mouseClick(copy, Qt.MouseButton.LeftButton)
+    assert QGuiApplication.clipboard().text() == f"yade {tmp_path / 'yade'}/yade_case.py"
+    assert chosen.session.shelf.get("dataset_folder") == folder
+
+
+def test_that_the_curve_falls_and_the_slider_chooses_among_its_points(chosen, wait) -> None:
+    means = [point.mean for point in chosen.quality.points]
+    assert len(means) == 7
+    assert means[-1] < means[0]
+    slide(chosen.representatives.count, 5)
+    wait(lambda: len(chosen.gallery.shown) == 5)
+    slide(chosen.representatives.count, 7)
+    wait(lambda: len(chosen.gallery.shown) == 7)
+    shares = [float(one.caption.split(" ")[0]) for one in chosen.gallery.shown]
+    assert sum(shares) == pytest.approx(100, abs=0.5)
+    assert shares == sorted(shares, reverse=True)
+    assert chosen.representatives.count.slider.maximum() == 8
+
+
+def test_that_sizes_are_drawn_as_they_are_typed_and_nonsense_is_explained(chosen, wait) -> None:
+    sizes = chosen.sizes
+    sizes.kind.setCurrentIndex(sizes.kind.findData("log-normal"))
+    wait(lambda: chosen.distribution.classes[0].sizes.type == "log-normal")
+    sizes.numbers.selectAll()
+    QTest.keyClicks(sizes.numbers, "80,0.2")
+    assert chosen.distribution.classes[0].sizes.median_um == 80.0
+    QTest.keyClicks(sizes.numbers, "x")
+    assert sizes.problem.isVisibleTo(chosen)
+    assert "Numbers are written as" in sizes.problem.text()
+    assert chosen.distribution.is_empty()
+
+
+def test_that_shapes_are_changed_only_with_a_second_tick(chosen, tmp_path, wait) -> None:
+    chosen.build_in(tmp_path / "set")
+    wait(lambda: chosen.targets.export.isEnabled())
+    chosen.targets.boxes["rockable"].setChecked(True)
+    assert not chosen.targets.export.isEnabled()
+    assert EXPORTERS["rockable"].alters in chosen.targets.export.toolTip()
+    assert EXPORTERS["rockable"].alters in chosen.losses.label.text()
+    chosen.targets.lossy.setChecked(True)
+    assert chosen.targets.export.isEnabled()
+    chosen.targets.setValue({"targets": []})
+    assert not chosen.targets.export.isEnabled()
+
+
+def test_that_settings_reach_the_exports(chosen, tmp_path, wait) -> None:
+    chosen.build_in(tmp_path / "set")
+    wait(lambda: chosen.targets.export.isEnabled())
+    chosen.targets.setValue({"targets": ["rocky"], "coarse_graining": 4})
+    chosen.export_to(tmp_path / "out")
+    wait(lambda: len(chosen.exports.exports) == 1)
+    case = json.loads((tmp_path / "out" / "rocky" / "case.json").read_text())
+    assert case["coarse_graining_factor"] == 4.0
+
+
+def test_that_a_dataset_is_replaced_only_when_asked(chosen, tmp_path, wait, monkeypatch) -> None:
+    monkeypatch.setattr(QFileDialog, "getExistingDirectory", lambda *_: str(tmp_path))
+    chosen.build()
+    wait(lambda: (tmp_path / "regolith" / "dataset.json").exists())
+    before = (tmp_path / "regolith" / "dataset.json").read_bytes()
+    slide(chosen.representatives.count, 5)
+    monkeypatch.setattr(QMessageBox, "question", lambda *_: QMessageBox.StandardButton.No)
+    chosen.build()
+    assert (tmp_path / "regolith" / "dataset.json").read_bytes() == before
+    monkeypatch.setattr(QMessageBox, "question", lambda *_: QMessageBox.StandardButton.Yes)
+    chosen.build()
+    wait(lambda: len(read_dataset(tmp_path / "regolith")) == 5)
+
+
+def test_that_a_folder_of_others_is_told_and_left_alone(chosen, tmp_path) -> None:
+    (tmp_path / "thesis.txt").write_text("important")
+    chosen.build_in(tmp_path)
+    assert chosen.targets.export.isEnabled() is False
+    assert [path.name for path in tmp_path.iterdir()] == ["thesis.txt"]
+
+
+def test_that_a_dataset_can_be_opened_without_any_particle(page, chosen, tmp_path, wait) -> None:
+    chosen.build_in(tmp_path / "set")
+    wait(lambda: chosen.targets.export.isEnabled())
+    page.session.adopt(grains(4, first=20))
+    wait(lambda: not page.gallery.shown)
+    page.open_folder(tmp_path / "set")
+    wait(lambda: len(page.gallery.shown) == 3)
+    assert "3 shapes" in page.folder.state.text()
+    page.validate()
+
+
+def test_that_other_particles_forget_the_choice(chosen, wait) -> None:
+    chosen.session.adopt(grains(5, first=30))
+    wait(lambda: not chosen.gallery.shown)
+    assert chosen.quality.is_empty()
+    assert not chosen.folder.build.isEnabled()
+    assert chosen.representatives.count.slider.maximum() == 5
+
+
+def test_that_a_page_without_particles_says_what_to_do(page) -> None:
+    assert "No particles are open" in page.representatives.population.text()
+    assert not page.representatives.start.isEnabled()
+    page.find_representatives()
+    page.build()
+    page.export()
+    page.validate()
+    assert not page.targets.export.isEnabled()
+
+
+def test_that_what_was_set_comes_back(page) -> None:
+    page.representatives.setValue({"count": 33, "weighting": "volume"})
+    page.sizes.set_text("sieve:20,30=1@volume")
+    page.folder.name.setText("mare")
+    page.targets.setValue({"targets": ["yade"], "coarse_graining": 3, "particles": 77, "lossy": True})
+    state = json.loads(json.dumps(page.state()))
+    page.restore({"sizes": "measured", "export": {}, "representatives": {}})
+    assert page.state() != state
+    page.restore(state)
+    assert page.state() == state
+    page.restore({"sizes": "gauss:3", "export": 5})
+    assert page.state()["sizes"] == state["sizes"]
+
+
+def test_that_themes_reach_every_part(chosen) -> None:
+    for theme in (DARK, LIGHT):
+        chosen.set_theme(theme)
+    assert chosen.gallery.shown
+
+
+@pytest.mark.usefixtures("app")
+def test_that_a_picture_shows_a_lit_solid_on_a_clear_ground() -> None:
+    cube = grains(1)[0].mesh.hull
+    image = picture_of(cube, "#c08040", 64).toImage()
+    assert (image.width(), image.height()) == (64, 64)
+    assert image.pixelColor(1, 1).alpha() == 0
+    assert image.pixelColor(32, 32).alpha() == 255
+    tones = {image.pixelColor(x, y).rgb() for x in range(16, 48) for y in range(16, 48)}
+    assert len(tones) > 5
