@@ -119,6 +119,25 @@ class CoarseningRecord:
 
 
 @dataclass(frozen=True)
+class Representation:
+    """How well the representatives stand for the population that they were chosen from.
+
+    Parameters
+    ----------
+    n_particles
+        Of the population.
+    errors
+        Wasserstein distance per descriptor, in its standard deviations.
+    sampling_noise
+        The same between random halves of the population.
+    """
+
+    n_particles: int
+    errors: Mapping[str, float]
+    sampling_noise: Mapping[str, float]
+
+
+@dataclass(frozen=True)
 class Provenance:
     """How a dataset came about (the metadata of section 2.5).
 
@@ -139,6 +158,8 @@ class Provenance:
         harmonics).
     coarsening
         What was asked of the coarsening.
+    representation
+        How well the shapes stand for the population, where they were chosen from one.
     software
         Versions by package name.
     """
@@ -150,6 +171,7 @@ class Provenance:
     l_max: int | None = None
     angular_power_spectrum: tuple[float, ...] | None = None
     coarsening: CoarseningRecord | None = None
+    representation: Representation | None = None
     software: Mapping[str, str] = field(default_factory=dict)
 
 

@@ -12,8 +12,10 @@ from regolith_studio.dataset.dataset import (
     Dataset,
     Fidelity,
     Provenance,
+    Representation,
     Representative,
 )
+from regolith_studio.dataset.migrations import migrated
 from regolith_studio.dataset.schema import FORMAT, SCHEMA_VERSION, DatasetDocument, RepresentativeRecord
 from regolith_studio.dataset.size_distribution import Weighting
 from regolith_studio.dataset.strict_json import strict_json, tidy_json
@@ -93,11 +95,7 @@ def parsed_document(text: str, where: str) -> DatasetDocument:
     content = strict_json(text, where)
     if not isinstance(content, dict) or content.get("format") != FORMAT:
         raise DatasetError(f"{where} is not a dataset of Regolith Studio: its format is not {FORMAT!r}.")
-    if content.get("schema_version") != SCHEMA_VERSION:
-        raise DatasetError(
-            f"{where} has schema version {content.get('schema_version')!r}; "
-            f"this program reads version {SCHEMA_VERSION}."
-        )
+    text = migrated(content, text, where)
     try:
         return DatasetDocument.model_validate_json(text)
     except ValidationError as error:
@@ -153,10 +151,11 @@ def _representative(record: RepresentativeRecord, where: str) -> Representative:
 
 def _provenance(document: DatasetDocument) -> Provenance:
     fields = document.metadata.model_dump()
-    coarsening = fields.pop("coarsening")
+    coarsening, representation = fields.pop("coarsening"), fields.pop("representation")
     return Provenance(
         angular_power_spectrum=fields.pop("angular_power_spectrum_um2"),
         coarsening=None if coarsening is None else CoarseningRecord(**coarsening),
+        representation=None if representation is None else Representation(**representation),
         **fields,
     )
 
@@ -197,6 +196,8 @@ def _metadata(provenance: Provenance) -> dict[str, Any]:
     fields["angular_power_spectrum_um2"] = fields.pop("angular_power_spectrum")
     if provenance.coarsening is not None:
         fields["coarsening"] = _plain(vars(provenance.coarsening))
+    if provenance.representation is not None:
+        fields["representation"] = _plain(vars(provenance.representation))
     return fields
 
 

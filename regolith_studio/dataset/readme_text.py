@@ -1,6 +1,7 @@
 """The README.txt of a dataset folder, for whoever finds it without the program."""
 
 from regolith_studio.dataset.dataset import Dataset
+from regolith_studio.dataset.schema import SCHEMA_VERSION
 
 README = """\
 {name}
@@ -10,7 +11,7 @@ written by Regolith Studio.
 
 dataset.json   weights, size distributions, exact half-spaces, where everything comes from.
                Its fields are described by the JSON Schema of the program
-               (resources/schema/dataset.schema.json), schema version 1.
+               (resources/schema/dataset.schema.json), schema version {version}.
 meshes/        one binary STL a shape: closed, convex, outward normals, volume 1, centroid at
                the origin, longest principal axis along x, shortest along z. STL has no unit;
                these have none either.
@@ -26,7 +27,7 @@ To go back to the place of a shape in its particle: x_particle = scale rotation^
 
 To check the folder:   regolith-studio dataset validate .
 In Python:             import regolith_studio; regolith_studio.read_dataset(".")
-"""
+""".replace("{version}", str(SCHEMA_VERSION))
 
 
 def readme_text(dataset: Dataset) -> str:

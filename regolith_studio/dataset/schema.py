@@ -14,7 +14,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from regolith_studio.dataset.size_distribution import WEIGHT_TOLERANCE, AnySizes, Weighting
 
 FORMAT = "regolith-studio-dataset"
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 MESH_PATH = r"^meshes/[A-Za-z0-9_][A-Za-z0-9_.-]*\.stl$"
 
 Sha256 = Annotated[str, Field(pattern=r"^[0-9a-f]{64}$", description="SHA-256 of the file's bytes.")]
@@ -107,6 +107,18 @@ class CoarseningRecordModel(Record):
     settings: dict[str, Scalar]
 
 
+class RepresentationRecord(Record):
+    """How well the representatives stand for the population that they were chosen from."""
+
+    n_particles: Annotated[int, Field(ge=1, description="Of the population.")]
+    errors: dict[str, float] = Field(
+        description="Wasserstein distance per descriptor, in its standard deviations."
+    )
+    sampling_noise: dict[str, float] = Field(
+        description="The same between random halves of the population: better than this is not known."
+    )
+
+
 class MetadataRecord(Record):
     """How the dataset came about."""
 
@@ -119,6 +131,9 @@ class MetadataRecord(Record):
         description="A_l, l = 0..l_max, variance per order (real orthonormal, no Condon-Shortley phase)."
     )
     coarsening: CoarseningRecordModel | None
+    representation: RepresentationRecord | None = Field(
+        description="Null where every particle stands for itself, and in datasets of schema version 1."
+    )
     software: dict[str, str] = Field(description="Versions by package.")
 
 
@@ -126,7 +141,7 @@ class DatasetDocument(Record):
     """A dataset of representative particles (section 2.5)."""
 
     format: Literal["regolith-studio-dataset"]
-    schema_version: Literal[1]
+    schema_version: Literal[2]
     name: str
     length_unit: Literal["um"] = Field(description="Of all lengths whose key ends in _um.")
     shape_unit: Literal["unit volume"] = Field(description="Shapes have volume 1 and no length unit.")

@@ -26,8 +26,8 @@ class ContactParameters:
         J/m2, for JKR.
     restitution
         Dimensionless; not given in the paper.
-    wall_friction
-        Of particles on walls; not given in the paper.
+    wall_friction, plate_friction
+        Of particles on the cylinder and on the plate below; not given in the paper.
     """
 
     density: float = 3075.0
@@ -36,8 +36,9 @@ class ContactParameters:
     static_friction: float = 0.8
     dynamic_friction: float = 0.8
     surface_energy: float = 0.010
-    restitution: float = 0.5
-    wall_friction: float = 0.8
+    restitution: float = 0.3
+    wall_friction: float = 0.3
+    plate_friction: float = 0.8
 
     def __post_init__(self) -> None:
         _check_positive(self, ("density", "young_modulus"))
@@ -45,7 +46,13 @@ class ContactParameters:
             raise InputError(f"Poisson's ratio must lie between -1 and 0.5, got {self.poisson_ratio}.")
         if not 0.0 <= self.restitution <= 1.0:
             raise InputError(f"The coefficient of restitution must lie in 0..1, got {self.restitution}.")
-        for name in ("static_friction", "dynamic_friction", "surface_energy", "wall_friction"):
+        for name in (
+            "static_friction",
+            "dynamic_friction",
+            "surface_energy",
+            "wall_friction",
+            "plate_friction",
+        ):
             if not getattr(self, name) >= 0.0:
                 raise InputError(f"{name} must not be negative, got {getattr(self, name)}.")
 
@@ -67,7 +74,7 @@ class LiftingCylinder:
     diameter: float = 0.02
     height: float = 0.08
     total_mass: float = 0.015
-    lifting_speed: float = 0.01
+    lifting_speed: float = 0.03
     settling_time: float = 1.0
     resting_time: float = 1.0
 

@@ -123,7 +123,7 @@ def coarsen_chosen(
         known |= {one.index: one for one in outcomes}
         failed = {at for at in chosen.places if known[at].coarsened is None}
         if not failed:
-            return chosen, tuple(known[at] for at in chosen.places)
+            return chosen.measured(population), tuple(known[at] for at in chosen.places)
         if len(population.kept) - len(failed) < wish.count:
             first = known[min(failed)]
             raise DatasetError(f"Too few particles can be coarsened; {first.name}: {first.problem}")
@@ -178,7 +178,8 @@ def dataset_of(
             f"{len(classes)} representatives of {chosen.n_particles} particles by k-medoids on shape "
             f"descriptors, weighted by {weighting}."
         )
-        told = replace(told, processing_steps=(told.processing_steps[0], step, *told.processing_steps[1:]))
+        steps = (told.processing_steps[0], step, *told.processing_steps[1:])
+        told = replace(told, processing_steps=steps, representation=chosen.representation)
     if sizing is not None:
         classes = [replace(one, sizes=sizing(one)) for one in classes]
     return build_dataset(good, classes, name=name, weighting=weighting, provenance=told)

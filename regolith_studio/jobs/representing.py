@@ -1,10 +1,16 @@
 """Which particles stand for a sample: descriptors of all, then representatives for one number or for many."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from regolith_studio.dataset.dataset import Representation
 from regolith_studio.dataset.quality import QualityCurve, curve_counts, quality_steps
-from regolith_studio.dataset.representatives import Representatives, choose_representatives
+from regolith_studio.dataset.representatives import (
+    Representatives,
+    choose_representatives,
+    representation_error,
+    sampling_noise,
+)
 from regolith_studio.dataset.size_distribution import Weighting
 from regolith_studio.descriptors.describe import Descriptors
 from regolith_studio.errors import InputError
@@ -100,12 +106,20 @@ class ChosenParticles:
     places: tuple[int, ...]
     representatives: Representatives
     n_particles: int
+    representation: Representation | None = None
 
     @classmethod
     def of(cls, population: Population, found: Representatives) -> "ChosenParticles":
         """With the places of the population's particles in the sample."""
         places = tuple(population.kept[index] for index in found.chosen)
         return cls(places, found, len(population.kept))
+
+    def measured(self, population: Population) -> "ChosenParticles":
+        """With how well they stand for the population that they were chosen from."""
+        rows, weighting = population.descriptors, self.representatives.weighting
+        errors = representation_error(rows, self.representatives)
+        noise = sampling_noise(rows, weighting) if len(rows) > 1 else {}
+        return replace(self, representation=Representation(len(rows), errors, noise))
 
 
 def measure_population(particles: Sequence[Particle], workers: int | Crew = 1) -> Steps:

@@ -51,9 +51,9 @@ def set_physics(physics, case):
 
 
 def set_materials(study, case):
-    """One material for particles and one for walls, and how they meet."""
+    """One material for particles, tube and plate each, and how they meet."""
     contact, materials = case["contact"], study.GetMaterialCollection()
-    for name in ("regolith", "wall"):
+    for name in ("regolith", "tube", "plate"):
         material = materials.New()
         material.SetName(name)
         material.SetUseBulkDensity(False)
@@ -63,7 +63,8 @@ def set_materials(study, case):
     pairs = study.GetMaterialsInteractionCollection()
     for other, static, dynamic in (
         ("regolith", contact["static_friction"], contact["dynamic_friction"]),
-        ("wall", contact["wall_friction"], contact["wall_friction"]),
+        ("tube", contact["wall_friction"], contact["wall_friction"]),
+        ("plate", contact["plate_friction"], contact["plate_friction"]),
     ):
         pair = pairs.GetMaterialsInteraction("regolith", other)
         pair.SetStaticFriction(static)
@@ -99,7 +100,7 @@ def make_walls(study, folder, case):
     for name in ("plate", "tube"):
         walls[name] = study.ImportWall(str(folder / "walls" / (name + ".stl")), 1.0, False)[0]
         walls[name].SetName(name)
-        walls[name].SetMaterial("wall")
+        walls[name].SetMaterial(name)
     cylinder = case["cylinder"]
     frame = study.GetMotionFrameSource().NewFrame()
     frame.SetName("lift")

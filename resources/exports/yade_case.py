@@ -25,32 +25,29 @@ FOLDER = Path(sys.argv[0]).resolve().parent
 def build(case):
     """Material, particles, plate and tube; the ids of the tube's facets."""
     contact = case["contact"]
-    grain = wrapper.PolyhedraMat(
-        density=contact["density"],
-        young=case["volumetric_stiffness"],
-        poisson=contact["poisson_ratio"],
-        frictionAngle=math.atan(contact["dynamic_friction"]),
-        label="regolith",
-    )
-    wall = wrapper.PolyhedraMat(
-        density=contact["density"],
-        young=case["volumetric_stiffness"],
-        poisson=contact["poisson_ratio"],
-        frictionAngle=math.atan(contact["wall_friction"]),
-        label="wall",
-    )
-    O.materials.append([grain, wall])
+    frictions = {"regolith": "dynamic_friction", "tube": "wall_friction", "plate": "plate_friction"}
+    for label, friction in frictions.items():
+        O.materials.append(
+            wrapper.PolyhedraMat(
+                density=contact["density"],
+                young=case["volumetric_stiffness"],
+                poisson=contact["poisson_ratio"],
+                frictionAngle=math.atan(contact[friction]),
+                label=label,
+            )
+        )
+    grain = O.materials["regolith"]
     for record in read_particles():
         O.bodies.append(make_particle(case, record, grain))
     cylinder = case["cylinder"]
-    O.bodies.append(utils.wall(0.0, axis=2, sense=1, material="wall"))
+    O.bodies.append(utils.wall(0.0, axis=2, sense=1, material="plate"))
     tube = geom.facetCylinder(
         (0.0, 0.0, cylinder["height"] * case["tube_stretch"] / 2),
         radius=cylinder["diameter"] / 2,
         height=cylinder["height"] * case["tube_stretch"],
         segmentsNumber=48,
         wallMask=4,
-        material="wall",
+        material="tube",
     )
     return O.bodies.append(tube)
 

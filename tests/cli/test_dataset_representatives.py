@@ -43,6 +43,8 @@ def test_that_two_representatives_stand_for_balls_and_needles(command, crowd: Pa
     assert int(needles.name[-1]) >= 6
     assert len(needles.sizes.diameters_um) == 3
     assert "2 representatives of 9 particles" in dataset.provenance.processing_steps[1]
+    assert dataset.provenance.representation.n_particles == 9
+    assert 0 < dataset.provenance.representation.errors["aspect_ratio"] < 1
     with curve.open(newline="") as file:
         rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
     errors = [float(row["mean"]) for row in rows[:-1]]

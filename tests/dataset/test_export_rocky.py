@@ -116,6 +116,11 @@ def test_that_contacts_are_those_of_table_1(tmp_path: Path) -> None:
     assert pair.calls[0][1] == {"material_1": "regolith", "material_2": "regolith"}
     assert (pair.told("SetStaticFriction"), pair.told("SetDynamicFriction")) == (0.8, 0.8)
     assert pair.told("SetSurfaceEnergy") == (0.010, "J/m2")
+    frictions = {
+        one.calls[0][1]["material_2"]: one.told("SetStaticFriction") for one in study.of("interaction")
+    }
+    assert frictions == {"regolith": 0.8, "tube": 0.3, "plate": 0.8}
+    assert [wall.told("SetMaterial") for wall in study.of("wall")] == ["plate", "tube"]
 
 
 def test_that_the_tube_of_table_2_is_lifted_clear_after_settling(tmp_path: Path) -> None:

@@ -3,6 +3,9 @@
 import json
 from pathlib import Path
 
+import pytest
+
+from regolith_studio.dataset.folder import write_dataset
 from regolith_studio.dataset.schema import json_schema, main, schema_text
 from regolith_studio.resources import resource
 
@@ -35,3 +38,15 @@ def test_that_every_length_says_its_unit() -> None:
     found = set(keys(json.loads(schema_text())))
     assert {"centroid_um", "scale_um", "diameters_um", "median_um", "length_unit"} <= found
     assert not {"diameters", "centroid", "scale", "median"} & found
+
+
+def test_that_a_stranger_s_checker_admits_what_is_written_and_refuses_what_is_not(
+    tmp_path: Path, make_dataset
+) -> None:
+    jsonschema = pytest.importorskip("jsonschema")
+    document = json.loads((write_dataset(tmp_path / "set", make_dataset(2)) / "dataset.json").read_text())
+    checker = jsonschema.Draft202012Validator(json_schema())
+    checker.check_schema(json_schema())
+    assert list(checker.iter_errors(document)) == []
+    for change in ({"extra": 1}, {"schema_version": 1}, {"weighting": "mass"}, {"representatives": []}):
+        assert list(checker.iter_errors(document | change))

@@ -63,7 +63,7 @@ def _model(
             "  </asset>",
             "  <worldbody>",
             f'    <geom name="plate" type="plane" size="{reach!r} {reach!r} 1" '
-            f'friction="{contact.wall_friction!r} 0 0"/>',
+            f'friction="{contact.plate_friction!r} 0 0"/>',
             *bodies,
             "  </worldbody>",
             "</mujoco>",
