@@ -43,6 +43,8 @@ def number_rows(data: bytes, skip_headers: int = 1, numeric_headers: int = 0) ->
     FileError
         With the second half of a sentence that names the first line that is no row of numbers.
     """
+    if not data:
+        raise FileError("is empty: it has no bytes at all.")
     if b"\0" in data[:4096]:
         raise FileError("is no text of numbers: it holds zero bytes.")
     header: bytes = b""
