@@ -103,9 +103,14 @@ def _sentences(prepared: Prepared, bonds: tuple[float, float, float]) -> list[st
     real, given, simulated = bonds
     if prepared.case.contact.surface_energy > 0.0:
         said.append(
-            f"Cohesion over weight is {real:.2g} for the dataset's particles and {given:.2g} for the "
-            f"simulated ones at the given surface energy; this run has {simulated:.2g}."
+            f"Cohesion over weight is {_plain(real)} for the dataset's particles and {_plain(given)} for the "
+            f"simulated ones at the given surface energy; this run has {_plain(simulated)}."
         )
     if prepared.case.contact.static_friction != prepared.case.contact.dynamic_friction:
         said.append("The constraint solver knows one coefficient of friction; it takes the static one.")
     return said
+
+
+def _plain(number: float) -> str:
+    """Two digits, without powers of ten where people would not write them."""
+    return f"{number:.2g}" if number < 100 else f"{number:.0f}"

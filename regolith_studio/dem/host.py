@@ -1,19 +1,20 @@
 """Runs an engine in a process of its own, so that neither its crash nor its memory is ours."""
 
 import contextlib
-import multiprocessing
 import os
+import pickle
+import queue
 import signal
+import subprocess
+import sys
 import threading
-from collections.abc import Generator, Iterator
-from multiprocessing.connection import Connection
+from collections.abc import Generator
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 from regolith_studio.dem.case import Prepared
 from regolith_studio.dem.engine import Ending, Moment
 from regolith_studio.dem.engines import engine_named
-from regolith_studio.dem.run_folder import save_snapshot
 from regolith_studio.errors import EnvironmentProblem, RegolithError
 
 PATIENCE = 0.2
@@ -42,109 +43,81 @@ def run_engine(
     engine = engine_named(key)
     if problem := engine.find().problem:
         raise EnvironmentProblem(problem)
-    context = multiprocessing.get_context("spawn")
-    ours, theirs = context.Pipe(duplex=False)
-    child = context.Process(
-        target=_work, args=(theirs, key, prepared, settings, folder), name=f"engine {key}", daemon=False
-    )
-    with _one_thread():
-        child.start()
-    theirs.close()
+    child = _started((key, prepared, settings, folder))
+    news: queue.SimpleQueue[Any] = queue.SimpleQueue()
+    reader = threading.Thread(target=_listen, args=(child.stdout, news), name=f"engine {key}", daemon=True)
+    reader.start()
     last = "none"
     try:
         while True:
-            if not ours.poll(PATIENCE):
+            try:
+                word = news.get(timeout=PATIENCE)
+            except queue.Empty:
                 yield None
                 continue
-            try:
-                news = ours.recv()
-            except EOFError:
-                child.join()
-                raise EngineStopped(_death(engine.label, child.exitcode, last)) from None
-            match news:
+            match word:
                 case Moment():
-                    last = f"{news.pile.time:.2f} s"
-                    yield news
+                    last = f"{word.pile.time:.2f} s"
+                    yield word
                 case Ending():
-                    return news
+                    return word
                 case str():
-                    raise EngineStopped(news)
+                    raise EngineStopped(word)
+                case _:
+                    raise EngineStopped(_death(engine.label, child.wait(), last))
     finally:
         _end(child)
-        ours.close()
+        reader.join()
+        if child.stdout is not None:
+            child.stdout.close()
 
 
-def _work(told: Connection, key: str, prepared: Prepared, settings: Any, folder: Path) -> None:
-    """In the child: simulate, save, tell."""
-    with contextlib.suppress(OSError, AttributeError):
-        os.setsid()  # what the engine starts belongs to one group that can be ended together
-    _die_with_parent()
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+def _started(order: tuple[Any, ...]) -> subprocess.Popen[bytes]:
+    """The worker with its order; it leads a group of its own, which can be ended together."""
+    child = subprocess.Popen(
+        [sys.executable, "-P", "-m", "regolith_studio.dem.worker"],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        env=os.environ | dict.fromkeys(_THREAD_LIMITS, "1") | {"PYTHONPATH": _path()},
+        start_new_session=True,
+        creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
+    )
+    assert child.stdin is not None
+    with contextlib.suppress(OSError):  # it died at once: the reader will notice
+        pickle.dump(order, child.stdin, protocol=pickle.HIGHEST_PROTOCOL)
+        child.stdin.flush()
+    return child
+
+
+def _path() -> str:
+    """Where the child finds this program, also in a checkout that is not installed."""
+    own = str(Path(__file__).resolve().parents[2])
+    return os.pathsep.join(part for part in (own, os.environ.get("PYTHONPATH", "")) if part)
+
+
+def _listen(source: BinaryIO, news: "queue.SimpleQueue[Any]") -> None:
+    """Pass on what the child says; ``None`` when it says nothing more."""
     try:
-        steps = engine_named(key).simulate(prepared, settings)
-        for number in range(10**9):
-            try:
-                moment = next(steps)
-            except StopIteration as end:
-                told.send(end.value)
-                return
-            save_snapshot(folder, number, moment.pile)
-            told.send(moment)
-    except RegolithError as error:
-        told.send(str(error))
-    except MemoryError:
-        told.send("The simulation needs more memory than this machine has; take fewer particles.")
-    except OSError as error:
-        told.send(f"The simulation could not go on: {error.strerror or error}. What was saved is kept.")
-    except Exception as error:  # noqa: BLE001  the last who can tell the parent
-        told.send(f"The engine made a mistake ({type(error).__name__}: {error}). What was saved is kept.")
-    finally:
-        told.close()
+        while True:
+            news.put(pickle.load(source))
+    except (EOFError, OSError, ValueError, pickle.UnpicklingError):
+        news.put(None)
 
 
-def _die_with_parent() -> None:
-    """Do not outlive the program that waits for us, even if that was killed."""
-    parent = multiprocessing.parent_process()
-    if parent is None:
-        return
-
-    def watch() -> None:
-        parent.join()
-        if hasattr(os, "killpg") and os.getpgrp() == os.getpid():
-            os.killpg(os.getpid(), signal.SIGKILL)
-        os._exit(1)
-
-    threading.Thread(target=watch, name="parent", daemon=True).start()
-
-
-def _end(child: Any) -> None:
+def _end(child: subprocess.Popen[bytes]) -> None:
     """End the child and what it started, and wait for it."""
-    child.join(0.5)
-    if child.is_alive() and hasattr(os, "killpg"):
+    if child.poll() is None and hasattr(os, "killpg"):
         with contextlib.suppress(OSError):
-            if os.getpgid(child.pid) == child.pid:
-                os.killpg(child.pid, signal.SIGKILL)
-    if child.is_alive():
+            os.killpg(child.pid, signal.SIGKILL)
+    if child.poll() is None:
         child.kill()
-    child.join()
-    child.close()
+    child.wait()
+    if child.stdin is not None:
+        with contextlib.suppress(OSError):
+            child.stdin.close()
 
 
-def _death(label: str, code: int | None, last: str) -> str:
-    how = f"was ended by signal {-code}" if code is not None and code < 0 else f"ended with code {code}"
+def _death(label: str, code: int, last: str) -> str:
+    how = f"was ended by signal {-code}" if code < 0 else f"ended with code {code}"
     return f"The engine {label} {how}; the last snapshot ({last}) is kept."
-
-
-@contextlib.contextmanager
-def _one_thread() -> Iterator[None]:
-    """Lets a process that starts meanwhile keep to one thread for linear algebra."""
-    before = {name: os.environ.get(name) for name in _THREAD_LIMITS}
-    os.environ.update(dict.fromkeys(_THREAD_LIMITS, "1"))
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            if value is None:
-                os.environ.pop(name, None)
-            else:
-                os.environ[name] = value

@@ -20,13 +20,18 @@ def box(a: float, b: float, c: float) -> ConvexPolyhedron:
     return ConvexPolyhedron.from_half_spaces(HalfSpaces(normals, np.concatenate([half, half])))
 
 
-@pytest.fixture(scope="session")
-def boxes() -> Dataset:
+def box_dataset() -> Dataset:
     """Cubes and bricks with two sizes."""
     sizes = DiscreteSizes.of((80.0, 100.0), (1.0, 1.0))
     frame = Frame(np.eye(3), np.zeros(3), 100.0)
     shapes = {"cube": box(1, 1, 1), "brick": box(3, 2, 1.5)}
     return Dataset("boxes", tuple(Representative(k, v, 0.5, sizes, frame) for k, v in shapes.items()))
+
+
+@pytest.fixture(scope="session")
+def boxes() -> Dataset:
+    """The dataset in memory."""
+    return box_dataset()
 
 
 @pytest.fixture(scope="session")

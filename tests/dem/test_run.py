@@ -1,12 +1,12 @@
 """Whole runs on MuJoCo, small enough for every day: finished, repeated, crashed, cancelled."""
 
 import json
-import multiprocessing
 import shutil
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import psutil
 import pytest
 
 from regolith_studio.cli.entry import run
@@ -123,7 +123,7 @@ def test_that_a_crash_of_the_engine_is_one_sentence_and_keeps_the_last_snapshot(
         boxes_folder, tmp_path / "run", replace(ORDER, settings=replace(QUICK, snapshots=500))
     )
     _until_moment(steps)
-    victim = next(each for each in multiprocessing.active_children() if each.name == "engine mujoco")
+    (victim,) = _workers()
     victim.kill()
     with pytest.raises(
         EngineStopped, match=r"MuJoCo was ended by signal 9; the last snapshot \(.* s\) is kept\."
@@ -137,7 +137,7 @@ def test_that_a_cancelled_run_ends_its_process_and_says_so(boxes_folder: Path, t
     steps = simulate_repose(boxes_folder, tmp_path / "run", ORDER)
     _until_moment(steps)
     steps.close()
-    assert not [each for each in multiprocessing.active_children() if each.name == "engine mujoco"]
+    assert not _workers()
     assert read_run(tmp_path / "run").document["state"] == "stopped"
     assert [summary.angle for summary in find_runs(tmp_path)] == [None]
 
@@ -195,6 +195,11 @@ def test_that_the_engines_say_what_they_represent(capsys: pytest.CaptureFixture[
     assert all(row["missing"] for row in rows.values())
     assert run(["repose", "engines"]) == 0
     assert "polyhedra" in capsys.readouterr().out
+
+
+def _workers() -> list[psutil.Process]:
+    """Processes of engines that belong to this test."""
+    return [each for each in psutil.Process().children() if "regolith_studio.dem.worker" in each.cmdline()]
 
 
 def _until_moment(steps: object) -> Moment:

@@ -70,7 +70,8 @@ def evaluate_section(
     asymmetric = fit_asymmetric(u, z, settings.min_points)
     uncorrected = None if asymmetric is None else asymmetric.angle
     if asymmetric is not None and settings.grain_correction and settings.slab == 0.0:
-        z = z + silhouette_deficit(u, asymmetric, mean_diameter)
+        lacking = silhouette_deficit(u, asymmetric, mean_diameter)
+        z = z + lacking - lacking.mean()  # the lines still run through what is seen
         asymmetric = fit_asymmetric(u, z, settings.min_points)
     symmetric = fit_symmetric(u, z, settings.min_points)
     if asymmetric is None or symmetric is None or uncorrected is None:

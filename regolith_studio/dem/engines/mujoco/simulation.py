@@ -69,6 +69,7 @@ def simulate(prepared: Prepared, settings: MujocoSettings) -> Generator[Moment, 
     RegolithError
         If the solver diverges.
     """
+    mujoco.set_mju_user_warning(_be_silent)
     built = build(prepared, settings)
     run = _Run(prepared, settings, built, mujoco.MjData(built.model), Units.of(prepared))
     yield _moment(run)
@@ -76,6 +77,10 @@ def simulate(prepared: Prepared, settings: MujocoSettings) -> Generator[Moment, 
     yield from _lift(run)
     yield from _rest(run)
     return Ending(_pile(run), _checks(run), run.steps, run.time * run.units.time)
+
+
+def _be_silent(_message: str) -> None:
+    """MuJoCo would write a file into the current folder; what it warns of is looked at after every look."""
 
 
 def _fill(run: _Run) -> Generator[Moment, None, None]:

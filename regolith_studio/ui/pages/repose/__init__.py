@@ -1,0 +1,33 @@
+"""Page "Angle of repose": set up the lifting cylinder, watch it, measure the pile, compare runs."""
+
+from regolith_studio.ui.action_spec import BREAK, PAGE_MENU, ActionSpec
+from regolith_studio.ui.page import Page, PageContext, PageWidget
+
+
+def build(context: PageContext) -> PageWidget:
+    """The page's widget."""
+    from regolith_studio.ui.pages.repose.page import ReposePage
+
+    return ReposePage(context)
+
+
+PAGE = Page(
+    key="repose",
+    title="Angle of repose",
+    icon="page_repose",
+    order=70,
+    tip="Fill a cylinder with the particles of a dataset, lift it, measure the pile",
+    build=build,
+    actions=(
+        ActionSpec(PAGE_MENU, "open_dataset", "Open a &dataset …", tip="Choose the dataset to simulate"),
+        ActionSpec(PAGE_MENU, BREAK, ""),
+        ActionSpec(PAGE_MENU, "run_test", "&Run the test", "play", "Ctrl+Return", bar="words"),
+        ActionSpec(PAGE_MENU, "play", "&Play the run"),
+        ActionSpec(PAGE_MENU, BREAK, ""),
+        ActionSpec(
+            PAGE_MENU, "open_positions", "&Measure positions …", tip="Measure the pile of another program"
+        ),
+        ActionSpec(PAGE_MENU, "export_run", "&Export figure and JSON …", "export"),
+        ActionSpec(PAGE_MENU, "choose_folder", "Folder of r&uns …"),
+    ),
+)

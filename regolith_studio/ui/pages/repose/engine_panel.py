@@ -1,0 +1,31 @@
+"""The table of engines: what each represents, and what not."""
+
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QTableWidget, QTableWidgetItem, QWidget
+
+from regolith_studio.dem.engine_table import HEADINGS, engine_rows
+
+
+class EnginePanel(QTableWidget):
+    """One column an engine, one row a property."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        rows = engine_rows()
+        super().__init__(len(HEADINGS) + 1, len(rows), parent)
+        self.setObjectName("repose_engines")
+        self.setAccessibleName("Engines")
+        self.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
+        self.setSelectionMode(QAbstractItemView.SelectionMode.NoSelection)
+        self.setShowGrid(False)
+        self.setHorizontalHeaderLabels([row["label"] for row in rows])
+        self.setVerticalHeaderLabels(["Found", *HEADINGS.values()])
+        for column, row in enumerate(rows):
+            texts = [row["version"] or row["problem"], *(row[key] for key in HEADINGS)]
+            for at, text in enumerate(texts):
+                item = QTableWidgetItem(text)
+                item.setTextAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop)
+                item.setToolTip(text)
+                self.setItem(at, column, item)
+        self.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
+        self.verticalHeader().setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
+        self.setWordWrap(True)

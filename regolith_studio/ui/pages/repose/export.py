@@ -1,0 +1,63 @@
+"""Files of the page: Fig. 9 and JSON out, positions of other programs in."""
+
+from pathlib import Path
+
+import numpy as np
+from PySide6.QtWidgets import QFileDialog, QInputDialog, QWidget
+
+from regolith_studio.dem.pile import Pile, read_pile
+from regolith_studio.dem.repose import ReposeMeasurement, measurement_document
+from regolith_studio.errors import RegolithError
+from regolith_studio.readers.positions import read_positions
+from regolith_studio.session.outputs.staging import json_bytes, staged_folder
+from regolith_studio.studies.repose_figures import write_section_figure
+from regolith_studio.ui.widgets.toast import Toast
+
+POSITIONS = "Positions (*.npz *.csv *.txt *.dat *.xyz *.dump *.lammpstrj *.vtk *.vtp *.vtu);;All files (*)"
+UNITS = ("m", "cm", "mm", "um")
+
+
+def export_measurement(parent: QWidget, toast: Toast, pile: Pile, measured: ReposeMeasurement) -> None:
+    """Ask for a folder and write ``repose.json``, ``sections.png`` and ``sections.svg``."""
+    name = QFileDialog.getExistingDirectory(parent, "Export figure and JSON")
+    if not name:
+        return
+    try:
+        with staged_folder(Path(name)) as stage:
+            document = {"length_unit": "m"} | measurement_document(measured)
+            (stage / "repose.json").write_bytes(json_bytes(document))
+            write_section_figure(pile.points, pile.diameters, measured, stage)
+    except RegolithError as error:
+        toast.problem(str(error))
+        return
+    toast.note(f"Figure and JSON are in {name}.")
+
+
+def read_other(parent: QWidget, toast: Toast) -> Pile | None:
+    """Ask for a file of positions, its unit, and a diameter if it has none; or ``None``."""
+    name, _ = QFileDialog.getOpenFileName(parent, "Measure positions", "", POSITIONS)
+    if not name:
+        return None
+    try:
+        if name.endswith(".npz"):
+            return read_pile(Path(name))
+        unit, sure = QInputDialog.getItem(parent, "Unit", "Length unit of the file:", UNITS, 0, False)
+        if not sure:
+            return None
+        found = read_positions(name, unit)
+        diameters = found.diameters
+        if diameters is None:
+            number, sure = QInputDialog.getDouble(
+                parent, "Diameter", "The file has no diameters; one for all, in mm:", 1.0, 1e-6, 1e6, 4
+            )
+            if not sure:
+                return None
+            diameters = np.full(len(found), number * 1e-3)
+    except RegolithError as error:
+        toast.problem(str(error))
+        return None
+    for note in found.notes:
+        toast.note(note)
+    n = len(found)
+    still = np.tile([1.0, 0.0, 0.0, 0.0], (n, 1))
+    return Pile(found.points, diameters, still, np.zeros(n, dtype=np.int64), 0.0, float("inf"), "imported")

@@ -1,0 +1,348 @@
+"""Set-up on the left; particles above; sections, runs and engines below."""
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from platformdirs import user_data_path
+from PySide6.QtCore import QTimer
+from PySide6.QtWidgets import QFileDialog, QHBoxLayout, QWidget
+
+from regolith_studio.dem.case import Prepared
+from regolith_studio.dem.consequences import consequences
+from regolith_studio.dem.engine import Moment
+from regolith_studio.dem.engines import engine_named
+from regolith_studio.dem.evaluation.refusal import NoPile
+from regolith_studio.dem.parameters import LiftingCylinderTest
+from regolith_studio.dem.pile import Pile, read_pile
+from regolith_studio.dem.repose import ReposeMeasurement
+from regolith_studio.dem.run_folder import FINAL, RunSummary, find_runs, read_shapes, snapshot_files
+from regolith_studio.errors import RegolithError
+from regolith_studio.jobs.building import DatasetOptions, build_dataset_folder
+from regolith_studio.jobs.events import Failed, Job
+from regolith_studio.jobs.repose import ReposeRun, preview_repose, remeasure, simulate_repose
+from regolith_studio.ui.layout import padded, scrolled_column, side_by_side, stacked, tabs
+from regolith_studio.ui.page import PageContext, PageWidget
+from regolith_studio.ui.pages.repose.engine_panel import EnginePanel
+from regolith_studio.ui.pages.repose.export import export_measurement, read_other
+from regolith_studio.ui.pages.repose.player import Player
+from regolith_studio.ui.pages.repose.runs import RunsPanel
+from regolith_studio.ui.pages.repose.section_plot import SectionPlot
+from regolith_studio.ui.pages.repose.setup import SetupPanel
+from regolith_studio.ui.pages.repose.words import angle_in_words, checks_in_words, duration
+from regolith_studio.ui.theme import Theme
+from regolith_studio.ui.widgets.labels import remark
+
+PREVIEW_DELAY = 250
+"""Milliseconds after the last change until the preview is drawn anew."""
+MOST_PREVIEWED = 20_000
+RUN, PREVIEW, MEASURE, BUILD = "run", "preview", "measure", "build"
+
+
+class ReposePage(PageWidget):
+    """Knows which pile is on screen; leaves the work to jobs."""
+
+    def __init__(self, context: PageContext) -> None:
+        super().__init__()
+        self.setObjectName("repose")
+        self._context = context
+        self._folder = Path(context.recall("folder", str(user_data_path("regolith-studio") / "repose")))
+        self._pile: Pile | None = None
+        self._measured: ReposeMeasurement | None = None
+        self._running = False
+        self.setup = SetupPanel()
+        self.player = Player(context.views)
+        self.x_z, self.y_z = SectionPlot("x"), SectionPlot("y")
+        self.verdict = remark("No pile yet.")
+        self.verdict.setObjectName("repose_verdict")
+        self.runs, self.engines = RunsPanel(), EnginePanel()
+        self._later = QTimer(self)
+        self._later.setSingleShot(True)
+        self._later.setInterval(PREVIEW_DELAY)
+        self._later.timeout.connect(self._preview)
+        self._place()
+        self._connect()
+        context.wiring.refresh("shelf", self._take_dataset)
+        self.setup.tell(["Open a dataset, or make one from the open particles."])
+        self._list_runs()
+
+    # --- the page of the window ----------------------------------------------------------------
+
+    def set_theme(self, theme: Theme) -> None:
+        self.player.set_theme(theme)
+        for plot in (self.x_z, self.y_z, self.runs):
+            plot.set_theme(theme)
+
+    def commands(self) -> Mapping[str, Callable[..., object]]:
+        return {
+            "open_dataset": self.open_dataset,
+            "run_test": self.run_test,
+            "play": self.player.toggle,
+            "open_positions": self.open_positions,
+            "export_run": self.export_run,
+            "choose_folder": self.choose_folder,
+        }
+
+    def busy(self) -> str:
+        return "A simulation of the angle of repose would be stopped." if self._running else ""
+
+    def state(self) -> dict[str, Any]:
+        return {"setup": self.setup.state()}
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        if isinstance(state.get("setup"), Mapping):
+            self.setup.restore(state["setup"])
+
+    def left(self) -> None:
+        self.player.stop()
+
+    def release(self) -> None:
+        self._later.stop()
+        self.player.release()
+
+    # --- commands ------------------------------------------------------------------------------
+
+    def open_dataset(self) -> None:
+        """Ask for a dataset folder."""
+        if name := QFileDialog.getExistingDirectory(self, "Open a dataset", str(self.setup.dataset or "")):
+            self.setup.set_dataset(Path(name))
+
+    def make_dataset(self) -> None:
+        """Coarsen the open particles as the choices say, into the folder of runs."""
+        session = self._context.session
+        particles = [entry.particle for entry in session.particles]
+        if not particles:
+            self._context.toast.problem("No particles are open; open some, or the shipped sample.")
+            return
+        folder = self._folder / "datasets" / "open-particles"
+        options = DatasetOptions(name="open particles", preset=session.choices.preset, overwrite=True)
+        job = Job(build_dataset_folder, (particles, session.choices.order, folder, options))
+        self._context.start(
+            "Making a dataset", job, lambda built: self.setup.set_dataset(built.folder), lane=BUILD
+        )
+
+    def run_test(self) -> None:
+        """Simulate what the panel says."""
+        dataset = self.setup.dataset
+        if dataset is None:
+            self._context.toast.problem("There is no dataset yet: open one, or make one first.")
+            return
+        try:
+            order = self.setup.order()
+        except RegolithError as error:
+            self._context.toast.problem(str(error))
+            return
+        self._later.stop()
+        self._context.stop(PREVIEW)
+        folder = self._new_folder(f"{dataset.name}-{order.case.n_particles}")
+        self._set_running(True)
+        self._context.start(
+            f"Angle of repose, {order.case.n_particles:,} particles",
+            Job(simulate_repose, (dataset, folder, order)),
+            self._finished,
+            partial=self._show_moment,
+            failed=self._failed,
+            stopped=self._stopped,
+            lane=RUN,
+        )
+
+    def open_positions(self) -> None:
+        """Measure the pile of another program, from a file of positions."""
+        pile = read_other(self, self._context.toast)
+        if pile is not None:
+            ball = (self.player_ball(),)
+            self.player.set_scene(ball, True, LiftingCylinderTest())
+            self.player.show_moment(pile, "Imported particles", f"{len(pile):,} particles")
+            self._measure(pile)
+
+    def export_run(self) -> None:
+        """Ask for a folder and write Fig. 9 and the measurement."""
+        if self._pile is None or self._measured is None:
+            self._context.toast.problem("There is no measured pile to export yet.")
+            return
+        export_measurement(self, self._context.toast, self._pile, self._measured)
+
+    def choose_folder(self) -> None:
+        """Ask where runs are kept."""
+        if name := QFileDialog.getExistingDirectory(self, "Folder of runs", str(self._folder)):
+            self.set_runs_folder(Path(name))
+
+    def set_runs_folder(self, folder: Path) -> None:
+        """Keep runs there, and show what is there."""
+        self._folder = folder
+        self._context.remember("folder", str(folder))
+        self._list_runs()
+
+    @staticmethod
+    def player_ball() -> Any:
+        """A shape for particles of which only the size is known."""
+        from regolith_studio.geometry.directions import icosphere
+
+        return icosphere(1).vertices
+
+    # --- set-up and preview --------------------------------------------------------------------
+
+    def _take_dataset(self) -> None:
+        written = self._context.session.shelf.get("dataset_folder")
+        if written is not None and self.setup.dataset is None:
+            self.setup.set_dataset(Path(written))
+
+    def _ask_preview(self) -> None:
+        if not self._running:
+            self._later.start()
+
+    def _preview(self) -> None:
+        dataset = self.setup.dataset
+        if dataset is None or self._running:
+            return
+        try:
+            order = self.setup.order()
+        except RegolithError as error:
+            self.setup.tell([], str(error))
+            return
+        if order.case.n_particles > MOST_PREVIEWED:
+            self.setup.tell(
+                [f"More than {MOST_PREVIEWED:,} particles are for other programs: export the dataset."]
+            )
+            return
+
+        def show(drawn: tuple[Prepared, Pile]) -> None:
+            self._show_preview(order, *drawn)
+
+        job = Job(preview_repose, (dataset, order.case))
+        self._context.start(
+            "Drawing particles",
+            job,
+            show,
+            failed=lambda each: self.setup.tell([], each.sentence),
+            lane=PREVIEW,
+        )
+
+    def _show_preview(self, order: Any, prepared: Prepared, pile: Pile) -> None:
+        seconds = engine_named(order.engine).seconds(prepared, order.settings)
+        time = f"About {duration(seconds)} on one core."
+        self.setup.tell([time, *consequences(prepared).sentences])
+        self.player.set_scene(prepared.shapes, order.case.shapes == "spheres", order.case.test)
+        self.player.show_moment(
+            pile, "Before the fall", f"{len(pile):,} particles of {prepared.dataset_name}"
+        )
+
+    # --- a run ---------------------------------------------------------------------------------
+
+    def _show_moment(self, moment: Any) -> None:
+        if isinstance(moment, Moment):
+            self.player.show_moment(moment.pile, "Running", moment.message)
+
+    def _finished(self, run: ReposeRun) -> None:
+        self._set_running(False)
+        self._list_runs(run.folder)
+        self._show_run(RunSummary(run.folder, run.document))
+        for problem in run.document["checks"]["problems"]:
+            self._context.toast.problem(problem)
+
+    def _failed(self, failure: Failed) -> None:
+        self._set_running(False)
+        self._list_runs()
+        self._context.toast.problem(failure.sentence, failure.details)
+
+    def _stopped(self) -> None:
+        self._set_running(False)
+        self._list_runs()
+
+    def _set_running(self, running: bool) -> None:
+        self._running = running
+        self.setup.run.setText("Running …" if running else "Run the test")
+        self.setup.run.setEnabled(not running and self.setup.dataset is not None)
+
+    # --- what a run left -----------------------------------------------------------------------
+
+    def _list_runs(self, chosen: Path | None = None) -> None:
+        self.runs.set_runs(find_runs(self._folder) if self._folder.is_dir() else [], chosen)
+
+    def _show_run(self, run: RunSummary) -> None:
+        case = run.document["case"]
+        try:
+            shapes = read_shapes(run.folder)
+            test = LiftingCylinderTest(**case["test"])
+            files = snapshot_files(run.folder)
+            final = run.folder / FINAL
+            self.player.set_scene(shapes, case["shapes"] == "spheres", test)
+            self.player.show_run(
+                [*files, final] if final.exists() else files, run.folder.name, checks_in_words(run)
+            )
+            pile = read_pile(final) if final.exists() else None
+        except (RegolithError, TypeError) as error:
+            self._context.toast.problem(str(error))
+            return
+        if pile is not None:
+            self._measure(pile)
+        else:
+            self._show_measurement(NoPile(f"This run was not finished: {run.document['state']}."))
+
+    def _measure(self, pile: Pile) -> None:
+        self._pile = pile
+        self._measure_again()
+
+    def _measure_again(self) -> None:
+        if self._pile is None:
+            return
+        try:
+            job = Job(remeasure, (self._pile, self.setup.evaluation_settings()))
+        except RegolithError as error:
+            self._context.toast.problem(str(error))
+            return
+        self._context.start("Measuring the pile", job, self._show_measurement, lane=MEASURE)
+
+    def _show_measurement(self, measured: ReposeMeasurement | NoPile) -> None:
+        if isinstance(measured, NoPile) or self._pile is None:
+            self._measured = None
+            self.verdict.setText(str(measured))
+            for plot in (self.x_z, self.y_z):
+                plot.show_nothing(str(measured))
+            return
+        self._measured = measured
+        self.verdict.setText(angle_in_words(measured))
+        self.x_z.show_section(self._pile, measured.sections[0])
+        self.y_z.show_section(self._pile, measured.sections[1])
+
+    def _take_cut(self, name: str, share: float) -> None:
+        if name == "low":
+            self.setup.set_evaluation(cut_bottom=round(min(share, 0.45), 3), toe=0.0)
+        else:
+            self.setup.set_evaluation(cut_top=round(min(1.0 - share, 0.45), 3))
+
+    # --- layout --------------------------------------------------------------------------------
+
+    def _place(self) -> None:
+        sections = QWidget()
+        row = QHBoxLayout(sections)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.addWidget(self.x_z)
+        row.addWidget(self.y_z)
+        measured = stacked([sections, self.verdict], [300, 40], stretch=0)
+        pages = [(measured, "Sections"), (self.runs, "Runs"), (self.engines, "Engines")]
+        below = tabs("repose_tabs", pages)
+        pictures = stacked([self.player, below], [480, 340], stretch=0)
+        pictures.setObjectName("repose_pictures")
+        controls = scrolled_column([self.setup])
+        columns = side_by_side([padded(controls, 6, 0, 0, 0), pictures], [330, 1200], stretch=1)
+        columns.setObjectName("repose_columns")
+        layout = QHBoxLayout(self)
+        layout.setContentsMargins(0, 0, 8, 8)
+        layout.addWidget(columns)
+
+    def _connect(self) -> None:
+        self.setup.valueChanged.connect(self._ask_preview)
+        self.setup.evaluationChanged.connect(self._measure_again)
+        self.setup.datasetWanted.connect(self.open_dataset)
+        self.setup.sampleWanted.connect(self.make_dataset)
+        self.setup.runWanted.connect(self.run_test)
+        self.runs.chosen.connect(self._show_run)
+        for plot in (self.x_z, self.y_z):
+            plot.cutDragged.connect(self._take_cut)
+
+    def _new_folder(self, stem: str) -> Path:
+        number = 1
+        while (self._folder / f"{stem}-{number:03d}").exists():
+            number += 1
+        return self._folder / f"{stem}-{number:03d}"

@@ -1,0 +1,153 @@
+"""The particles in three dimensions, live or from the snapshots of a run, with a slider for the time."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from PySide6.QtCore import QSignalBlocker, Qt, QTimer
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QSlider, QVBoxLayout, QWidget
+
+from regolith_studio.dem.parameters import LiftingCylinderTest
+from regolith_studio.dem.pile import Pile, read_pile
+from regolith_studio.errors import FileError
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.scene import heap
+from regolith_studio.scene.cameras import framing_pose
+from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.views.camera_link import CameraLink
+from regolith_studio.ui.views.factory import make_view
+from regolith_studio.ui.views.view_frame import ViewFrame
+
+FRAME = 50
+"""Milliseconds between two pictures of a replay."""
+
+
+class Player(QWidget):
+    """Shows piles; never asks where they come from."""
+
+    def __init__(self, views: str, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.frame = ViewFrame(make_view(views, current_theme().surroundings), "repose_view")
+        self._camera = CameraLink([self.frame.view])
+        self._theme = current_theme()
+        self._shapes: tuple[FloatArray, ...] = ()
+        self._spheres = False
+        self._test = LiftingCylinderTest()
+        self._files: list[Path] = []
+        self.pile: Pile | None = None
+        self.slider = QSlider(Qt.Orientation.Horizontal)
+        self.slider.setObjectName("repose_time")
+        self.slider.setAccessibleName("Time of the run")
+        self.button = QPushButton("Play")
+        self.button.setObjectName("repose_play")
+        self.clock = QLabel()
+        self.clock.setProperty("role", "remark")
+        self.clock.setMinimumWidth(110)
+        self._timer = QTimer(self)
+        self._timer.setInterval(FRAME)
+        self._timer.timeout.connect(self._next)
+        self.button.clicked.connect(self.toggle)
+        self.slider.valueChanged.connect(self._show_file)
+        row = QHBoxLayout()
+        row.setContentsMargins(8, 2, 8, 4)
+        row.addWidget(self.button)
+        row.addWidget(self.slider, 1)
+        row.addWidget(self.clock)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.addWidget(self.frame, 1)
+        column.addLayout(row)
+        self.frame.set_texts("Lifting cylinder", "Choose a dataset to see the cylinder filled.")
+        self._set_files([])
+
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        self._theme = theme
+        self.frame.view.set_surroundings(theme.surroundings)
+        self.frame.set_colour(theme.polyhedron)
+        self._draw()
+
+    def set_scene(self, shapes: Sequence[FloatArray], spheres: bool, test: LiftingCylinderTest) -> None:
+        """Shapes and apparatus of what is shown from now on; the camera frames the test."""
+        fresh = (test.diameter, test.height) != (self._test.diameter, self._test.height) or not self._shapes
+        self._shapes, self._spheres, self._test = tuple(shapes), spheres, test
+        if fresh:
+            widget = self.frame.view.widget
+            aspect = max(0.2, widget.width() / max(1, widget.height()))
+            corners = heap.framing_corners(test.diameter, test.height)
+            self.frame.view.set_pose(framing_pose(corners, "isometric", aspect, 0.95))
+
+    def show_moment(self, pile: Pile, title: str, detail: str = "") -> None:
+        """One moment that is not in a file: a preview, or what a simulation has just said."""
+        self.stop()
+        self._set_files([])
+        self.frame.set_texts(title, detail)
+        self._show(pile)
+
+    def show_run(self, files: Sequence[Path], title: str, detail: str = "") -> None:
+        """Snapshots to look through; the last one is shown."""
+        self.stop()
+        self.frame.set_texts(title, detail)
+        self._set_files(list(files))
+        if files:
+            self._show_file(len(files) - 1)
+
+    def toggle(self) -> None:
+        """Play from the beginning, or from here, or pause."""
+        if self._timer.isActive():
+            self.stop()
+        elif self._files:
+            if self.slider.value() == self.slider.maximum():
+                self.slider.setValue(0)
+            self.button.setText("Pause")
+            self._timer.start()
+
+    def stop(self) -> None:
+        """Pause."""
+        self._timer.stop()
+        self.button.setText("Play")
+
+    def release(self) -> None:
+        """Give the graphics memory back."""
+        self.stop()
+        self.frame.view.release()
+
+    def _set_files(self, files: list[Path]) -> None:
+        self._files = files
+        with QSignalBlocker(self.slider):
+            self.slider.setRange(0, max(0, len(files) - 1))
+            self.slider.setValue(max(0, len(files) - 1))
+        self.slider.setEnabled(len(files) > 1)
+        self.button.setEnabled(len(files) > 1)
+
+    def _next(self) -> None:
+        if self.slider.value() >= self.slider.maximum():
+            self.stop()
+        else:
+            self.slider.setValue(self.slider.value() + 1)
+
+    def _show_file(self, number: int) -> None:
+        try:
+            self._show(read_pile(self._files[number]))
+        except FileError as error:
+            self.stop()
+            self.clock.setText(str(error))
+
+    def _show(self, pile: Pile) -> None:
+        self.pile = pile
+        self.clock.setText(f"{pile.time:.2f} s  {pile.phase}")
+        self._draw()
+
+    def _draw(self) -> None:
+        pile = self.pile
+        if pile is None or not self._shapes:
+            return
+        reach = 1.3 * max(self._test.diameter, float(np.abs(pile.points[:, :2]).max()) / 1.25)
+
+        def fill(plotter: object) -> None:
+            heap.show_heap(plotter, self._shapes, pile, self._spheres)
+            heap.show_apparatus(
+                plotter, pile, self._test.diameter, self._test.height, reach, self._theme.surroundings
+            )
+
+        self.frame.view.draw(fill)

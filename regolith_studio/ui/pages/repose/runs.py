@@ -1,0 +1,157 @@
+"""The table of runs, and their angles against what differs between them."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from PySide6.QtCore import QSignalBlocker, Qt, Signal
+from PySide6.QtWidgets import (
+    QAbstractItemView,
+    QComboBox,
+    QHBoxLayout,
+    QHeaderView,
+    QTableWidget,
+    QTableWidgetItem,
+    QVBoxLayout,
+    QWidget,
+)
+
+from regolith_studio.dem.run_folder import RunSummary
+from regolith_studio.ui.theme import Theme
+from regolith_studio.ui.widgets.curve_plot import Curve, CurvePlot
+
+AGAINST: Mapping[str, tuple[str, ...]] = {
+    "Static friction": ("case", "contact", "static_friction"),
+    "Rolling resistance": ("case", "contact", "rolling_friction"),
+    "Gravity [m/s²]": ("case", "test", "gravity"),
+    "Wall friction": ("case", "test", "wall_friction"),
+    "Lift speed [m/s]": ("case", "test", "lift_speed"),
+    "Number of particles": ("case", "n_particles"),
+    "Seed": ("case", "seed"),
+}
+HEADINGS = ("Run", "Angle", "Interval", "N", "Friction", "Shapes", "Gravity", "Seed", "Engine", "Checks")
+
+
+class RunsPanel(QWidget):
+    """Chooses one run; shows all of them."""
+
+    chosen = Signal(object)
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._runs: list[RunSummary] = []
+        self.table = QTableWidget(0, len(HEADINGS))
+        self.table.setObjectName("repose_runs")
+        self.table.setAccessibleName("Runs")
+        self.table.setHorizontalHeaderLabels(HEADINGS)
+        self.table.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
+        self.table.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)
+        self.table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
+        self.table.setShowGrid(False)
+        self.table.verticalHeader().hide()
+        self.table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
+        self.against = QComboBox()
+        self.against.setObjectName("repose_against")
+        self.against.setAccessibleName("Compare the angle against")
+        self.against.addItems(list(AGAINST))
+        self.plot = CurvePlot("Static friction", "Angle [°]", "Runs that became piles are compared here.")
+        right = QWidget()
+        column = QVBoxLayout(right)
+        column.setContentsMargins(0, 4, 0, 0)
+        column.addWidget(self.against)
+        column.addWidget(self.plot, 1)
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.addWidget(self.table, 3)
+        row.addWidget(right, 2)
+        self.table.itemSelectionChanged.connect(self._announce)
+        self.against.currentIndexChanged.connect(lambda *_: self._compare())
+
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        self.plot.set_theme(theme)
+
+    def set_runs(self, runs: Sequence[RunSummary], chosen: Path | None = None) -> None:
+        """Show these runs, one of them chosen; announces nothing."""
+        self._runs = list(runs)
+        with QSignalBlocker(self.table):
+            self.table.setRowCount(len(runs))
+            for row, run in enumerate(runs):
+                for column, text in enumerate(_cells(run)):
+                    item = QTableWidgetItem(text)
+                    item.setToolTip(_explained(run))
+                    if column:
+                        item.setTextAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+                    self.table.setItem(row, column, item)
+                if run.folder == chosen:
+                    self.table.selectRow(row)
+        self._compare()
+
+    def current(self) -> RunSummary | None:
+        """The chosen run."""
+        rows = self.table.selectionModel().selectedRows()
+        return self._runs[rows[0].row()] if rows else None
+
+    def _announce(self) -> None:
+        if run := self.current():
+            self.chosen.emit(run)
+
+    def _compare(self) -> None:
+        key = self.against.currentText()
+        points = sorted(
+            (float(value), run.angle, run.document["case"]["shapes"])
+            for run in self._runs
+            if run.angle is not None and (value := _at(run.document, AGAINST[key])) is not None
+        )
+        colours = {"polyhedra": self.plot.theme.polyhedron, "spheres": self.plot.theme.fit}
+        self.plot.set_labels(key, "Angle [°]")
+        self.plot.set_curves(
+            [
+                Curve(
+                    shapes,
+                    colour,
+                    tuple(x for x, _, kind in points if kind == shapes),
+                    tuple(angle for _, angle, kind in points if kind == shapes),
+                    markers=True,
+                )
+                for shapes, colour in colours.items()
+                if any(kind == shapes for _, _, kind in points)
+            ]
+        )
+
+
+def _cells(run: RunSummary) -> tuple[str, ...]:
+    case, document = run.document["case"], run.document
+    measurement = document.get("measurement") or {}
+    interval = measurement.get("interval_deg")
+    checks = document.get("checks")
+    angle = (
+        f"{run.angle:.1f}°" if run.angle is not None else str(measurement.get("status", document["state"]))
+    )
+    return (
+        run.folder.name,
+        angle,
+        f"{interval[0]:.1f} to {interval[1]:.1f}" if interval else "",
+        f"{case['n_particles']:,}",
+        f"{case['contact']['static_friction']:g}",
+        str(case["shapes"]),
+        f"{case['test']['gravity']:g}",
+        str(case["seed"]),
+        str(document["engine"]["label"]),
+        "" if checks is None else "passed" if checks["passed"] else "see tip",
+    )
+
+
+def _explained(run: RunSummary) -> str:
+    """Why there is no angle, or what the checks say."""
+    measurement = run.document.get("measurement") or {}
+    checks = run.document.get("checks") or {}
+    said = [run.document.get("problem"), measurement.get("reason"), *checks.get("problems", ())]
+    return "\n".join(each for each in said if each)
+
+
+def _at(document: Mapping[str, Any], path: tuple[str, ...]) -> Any:
+    found: Any = document
+    for key in path:
+        found = found.get(key) if isinstance(found, Mapping) else None
+    return found

@@ -1,0 +1,125 @@
+"""One section of Fig. 9, with cuts that can be dragged."""
+
+import numpy as np
+import pyqtgraph as pg
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import QWidget
+
+from regolith_studio.dem.evaluation.profile import project
+from regolith_studio.dem.evaluation.section import Section
+from regolith_studio.dem.pile import Pile
+from regolith_studio.ui.widgets.plot import Plot
+
+MILLIMETRE = 1e3
+LEFT, RIGHT, BOTH = "#0072b2", "#e69f00", "#009e73"
+"""Left flank, right flank, symmetric model, as in the paper's figure."""
+
+
+class SectionPlot(Plot):
+    """Projected particles, surface points in the regression range, both models.
+
+    ``cutDragged`` says which cut (``low`` or ``high``) the user has let go at which share of the height.
+    """
+
+    cutDragged = Signal(str, float)  # noqa: N815
+
+    def __init__(self, axis: str, parent: QWidget | None = None) -> None:
+        self._pile: Pile | None = None
+        self._section: Section | None = None
+        self._items: list[pg.GraphicsObject] = []
+        self._cuts: dict[str, pg.InfiniteLine] = {}
+        super().__init__(f"{axis} [mm]", "z [mm]", "Run a test or open positions to see its section.", parent)
+        self.canvas.setAspectLocked(True)
+
+    @property
+    def section(self) -> Section | None:
+        """What is shown."""
+        return self._section
+
+    def cut(self, name: str) -> pg.InfiniteLine:
+        """The line of a cut, ``low`` or ``high``."""
+        return self._cuts[name]
+
+    def show_section(self, pile: Pile, section: Section) -> None:
+        """Draw a section of a pile."""
+        self._pile, self._section = pile, section
+        two, one = section.asymmetric, section.symmetric
+        self.set_legend(
+            [
+                (LEFT, f"left {two.left.angle:.1f}°"),
+                (RIGHT, f"right {two.right.angle:.1f}°"),
+                (BOTH, f"symmetric {one.angle:.1f}°"),
+            ]
+        )
+        self.set_empty(False)
+        self.redraw()
+
+    def show_nothing(self, sentence: str) -> None:
+        """Say why there is no section."""
+        self._pile = self._section = None
+        self.set_empty(True, sentence)
+        self.redraw()
+
+    def redraw(self) -> None:
+        for item in (*self._items, *self._cuts.values()):
+            self.canvas.removeItem(item)
+        self._items, self._cuts = [], {}
+        if self._pile is None or self._section is None:
+            return
+        self._draw_grains(self._pile, self._section)
+        self._draw_models(self._section)
+        self._draw_cuts(self._section)
+
+    def _draw_grains(self, pile: Pile, section: Section) -> None:
+        discs = project(pile.points, pile.diameters, 0.0, np.radians(section.azimuth))
+        grains = pg.ScatterPlotItem(
+            x=MILLIMETRE * discs.u,
+            y=MILLIMETRE * discs.z,
+            size=2 * MILLIMETRE * discs.radius,
+            pxMode=False,
+            pen=pg.mkPen(self.theme.border),
+            brush=pg.mkBrush(self.theme.raised if self.theme.dark else "#dcdfe3"),
+        )
+        used, profile = section.used, section.profile
+        surface = pg.ScatterPlotItem(
+            x=MILLIMETRE * profile.u[used],
+            y=MILLIMETRE * profile.height[used],
+            size=5,
+            pen=None,
+            brush=pg.mkBrush(self.theme.text),
+        )
+        self._add(grains)
+        self._add(surface)
+
+    def _draw_models(self, section: Section) -> None:
+        two, one = section.asymmetric, section.symmetric
+        for line, colour in ((two.left, LEFT), (two.right, RIGHT)):
+            u = np.array([two.apex[0], -line.intercept / line.slope])
+            self._line(u, line.slope * u + line.intercept, colour, False)
+        reach = one.apex[1] / one.slope
+        u = np.array([one.apex[0] - reach, one.apex[0], one.apex[0] + reach])
+        self._line(u, np.array([0.0, one.apex[1], 0.0]), BOTH, True)
+
+    def _draw_cuts(self, section: Section) -> None:
+        top = MILLIMETRE * section.profile.top
+        for name, height in (("low", section.low), ("high", section.high)):
+            cut = pg.InfiniteLine(
+                MILLIMETRE * height,
+                angle=0,
+                movable=True,
+                bounds=(0.02 * top, 0.98 * top),
+                pen=self.pen(self.theme.muted, dash=True),
+                hoverPen=self.pen(self.theme.accent, 2.0),
+            )
+            cut.sigPositionChangeFinished.connect(
+                lambda line, name=name: self.cutDragged.emit(name, float(line.value()) / top)
+            )
+            self.canvas.addItem(cut, ignoreBounds=True)
+            self._cuts[name] = cut
+
+    def _line(self, u: np.ndarray, z: np.ndarray, colour: str, dash: bool) -> None:
+        self._add(pg.PlotDataItem(MILLIMETRE * u, MILLIMETRE * z, pen=self.pen(colour, 2.0, dash)))
+
+    def _add(self, item: pg.GraphicsObject) -> None:
+        self.canvas.addItem(item)
+        self._items.append(item)

@@ -1,0 +1,260 @@
+"""What is simulated: dataset, number of particles, Tables 1 and 2, engine, evaluation."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from PySide6.QtCore import QSignalBlocker, Signal
+from PySide6.QtWidgets import (
+    QComboBox,
+    QFormLayout,
+    QHBoxLayout,
+    QPushButton,
+    QSpinBox,
+    QVBoxLayout,
+    QWidget,
+)
+
+from regolith_studio.dem.case import ReposeCase
+from regolith_studio.dem.engines import DEFAULT_ENGINE, ENGINES, engine_named
+from regolith_studio.dem.evaluation.settings import EvaluationSettings
+from regolith_studio.dem.parameters import GRAVITIES, ContactParameters, LiftingCylinderTest
+from regolith_studio.errors import InputError
+from regolith_studio.jobs.repose import ReposeOrder
+from regolith_studio.ui.pages.repose.parameter_form import ParameterForm
+from regolith_studio.ui.widgets.collapsible import Collapsible
+from regolith_studio.ui.widgets.labels import ElidedLabel, heading, remark
+from regolith_studio.ui.widgets.settings_form import SettingsForm
+
+PRESETS = {"Teaching": 300, "Usual": 1000, "Fine": 5000}
+SHAPES = {"The dataset's polyhedra": "polyhedra", "Spheres of the same volumes": "spheres"}
+COHESION = {
+    "None": "none",
+    "As given (experimental)": "given",
+    "Scaled with the size (experimental)": "scaled",
+}
+
+
+class SetupPanel(QWidget):
+    """Edits one order."""
+
+    valueChanged = Signal()  # noqa: N815
+    evaluationChanged = Signal()  # noqa: N815
+    datasetWanted = Signal()  # noqa: N815
+    sampleWanted = Signal()  # noqa: N815
+    runWanted = Signal()  # noqa: N815
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("repose_setup")
+        self._dataset: Path | None = None
+        self.dataset_label = ElidedLabel("No dataset yet")
+        self.open_button = _button("Open …", "repose_open", "Choose a dataset folder")
+        self.sample_button = _button(
+            "From open particles", "repose_sample", "Coarsen the open particles first"
+        )
+        self.particles = QSpinBox()
+        self.particles.setObjectName("repose_particles")
+        self.particles.setAccessibleName("Number of particles")
+        self.particles.setRange(40, 400_000)
+        self.particles.setSingleStep(100)
+        self.particles.setKeyboardTracking(False)
+        self.particles.setValue(PRESETS["Teaching"])
+        self.seed = QSpinBox()
+        self.seed.setObjectName("repose_seed")
+        self.seed.setAccessibleName("Seed")
+        self.seed.setRange(0, 2**31 - 1)
+        self.shapes = _choice(SHAPES, "repose_shapes", "Shapes")
+        self.cohesion = _choice(COHESION, "repose_cohesion", "Cohesion")
+        self.engine = _choice(
+            {engine.label: key for key, engine in ENGINES.items()}, "repose_engine", "Engine"
+        )
+        self.gravity = _choice(
+            {f"{name} ({value:g} m/s²)": str(value) for name, value in GRAVITIES.items()} | {"Other": ""},
+            "repose_gravity_of",
+            "Gravity of",
+        )
+        self.test = ParameterForm(LiftingCylinderTest, "test")
+        self.contact = ParameterForm(ContactParameters, "contact")
+        self.evaluation = SettingsForm(EvaluationSettings)
+        self.numerics = SettingsForm(engine_named(DEFAULT_ENGINE).Settings)
+        self.told = remark()
+        self.told.setObjectName("repose_consequences")
+        self.problem = remark(role="warning")
+        self.problem.hide()
+        self.run = _button("Run the test", "repose_run", "Fill, lift, measure")
+        self.run.setDefault(True)
+        self._place()
+        self._connect()
+
+    @property
+    def dataset(self) -> Path | None:
+        """The chosen dataset folder."""
+        return self._dataset
+
+    def set_dataset(self, folder: Path | None) -> None:
+        """Choose a dataset."""
+        self._dataset = folder
+        self.dataset_label.setText(str(folder) if folder else "No dataset yet")
+        self.valueChanged.emit()
+
+    def order(self) -> ReposeOrder:
+        """What the panel says.
+
+        Raises
+        ------
+        InputError
+            If values do not go together.
+        """
+        engine = engine_named(self.engine.currentData())
+        case = ReposeCase(
+            test=self.test.value(),
+            contact=self.contact.value(),
+            n_particles=self.particles.value(),
+            shapes=self.shapes.currentData(),
+            cohesion=self.cohesion.currentData(),
+            seed=self.seed.value(),
+        )
+        settings: dict[str, Any] = self.numerics.value() if engine.key == DEFAULT_ENGINE else {}
+        return ReposeOrder(case, engine.key, engine.Settings(**settings), self.evaluation_settings())
+
+    def evaluation_settings(self) -> EvaluationSettings:
+        """How piles are measured.
+
+        Raises
+        ------
+        InputError
+            If values do not go together.
+        """
+        return EvaluationSettings(**self.evaluation.value())  # type: ignore[arg-type]
+
+    def set_evaluation(self, **changes: Any) -> None:
+        """Change settings of the evaluation, as the draggable cuts do."""
+        self.evaluation.setValue(self.evaluation.value() | changes)
+        self.evaluationChanged.emit()
+
+    def tell(self, sentences: list[str], problem: str = "") -> None:
+        """Show the consequences of the choices, or why they cannot be."""
+        self.told.setText("<br>".join(sentences))
+        self.problem.setText(problem)
+        self.problem.setVisible(bool(problem))
+        self.run.setEnabled(self._dataset is not None and not problem)
+
+    def state(self) -> dict[str, Any]:
+        """As plain JSON."""
+        return {
+            "particles": self.particles.value(),
+            "seed": self.seed.value(),
+            "shapes": self.shapes.currentData(),
+            "cohesion": self.cohesion.currentData(),
+            "engine": self.engine.currentData(),
+            "test": self.test.changes(),
+            "contact": self.contact.changes(),
+            "evaluation": self.evaluation.value(),
+            "numerics": self.numerics.value(),
+            "dataset": str(self._dataset) if self._dataset else None,
+        }
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Show what :meth:`state` returned; what cannot be read is left as it is."""
+        try:
+            self.test.restore(state.get("test", {}))
+            self.contact.restore(state.get("contact", {}))
+            self.particles.setValue(int(state.get("particles", self.particles.value())))
+            self.seed.setValue(int(state.get("seed", 0)))
+            self.evaluation.setValue(state.get("evaluation", {}))
+            self.numerics.setValue(state.get("numerics", {}))
+        except (InputError, TypeError, ValueError, AttributeError):
+            return
+        for box, name in ((self.shapes, "shapes"), (self.cohesion, "cohesion"), (self.engine, "engine")):
+            box.setCurrentIndex(max(0, box.findData(state.get(name, box.currentData()))))
+        folder = state.get("dataset")
+        if folder and Path(str(folder)).is_dir():
+            self.set_dataset(Path(str(folder)))
+
+    def _place(self) -> None:
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(8)
+        column.addWidget(heading("Dataset"))
+        column.addWidget(self.dataset_label)
+        column.addLayout(_row(self.open_button, self.sample_button))
+        column.addWidget(heading("Particles"))
+        presets = [
+            _button(name, f"repose_preset_{count}", f"{count:,} particles") for name, count in PRESETS.items()
+        ]
+        for button, count in zip(presets, PRESETS.values(), strict=True):
+            button.clicked.connect(lambda _=False, count=count: self.particles.setValue(count))
+        column.addLayout(_row(*presets))
+        form = QFormLayout()
+        form.addRow("Number", self.particles)
+        form.addRow("Seed", self.seed)
+        form.addRow("Shapes", self.shapes)
+        form.addRow("Cohesion", self.cohesion)
+        form.addRow("Engine", self.engine)
+        form.addRow("Gravity of", self.gravity)
+        column.addLayout(form)
+        column.addWidget(self.run)
+        column.addWidget(self.problem)
+        column.addWidget(self.told)
+        column.addWidget(Collapsible("Test (Table 2)", self.test))
+        column.addWidget(Collapsible("Contact (Table 1)", self.contact))
+        column.addWidget(Collapsible("Evaluation (section 3.3)", self.evaluation))
+        column.addWidget(Collapsible("Numerics of MuJoCo", self.numerics))
+        column.addWidget(remark("* not given in the paper: a choice, yours to change."))
+
+    def _connect(self) -> None:
+        self.open_button.clicked.connect(self.datasetWanted)
+        self.sample_button.clicked.connect(self.sampleWanted)
+        self.run.clicked.connect(self.runWanted)
+        for signal in (
+            self.particles.valueChanged,
+            self.seed.valueChanged,
+            self.shapes.currentIndexChanged,
+            self.cohesion.currentIndexChanged,
+            self.engine.currentIndexChanged,
+            self.test.valueChanged,
+            self.contact.valueChanged,
+            self.numerics.valueChanged,
+        ):
+            signal.connect(lambda *_: self.valueChanged.emit())
+        self.evaluation.valueChanged.connect(lambda *_: self.evaluationChanged.emit())
+        self.gravity.currentIndexChanged.connect(self._take_gravity)
+        self.test.valueChanged.connect(self._show_gravity)
+
+    def _take_gravity(self) -> None:
+        if text := self.gravity.currentData():
+            changed = self.test.value()
+            self.test.restore({**vars(changed), "gravity": float(text)})
+            self.valueChanged.emit()
+
+    def _show_gravity(self) -> None:
+        now = self.test.value().gravity
+        names = list(GRAVITIES.values())
+        with QSignalBlocker(self.gravity):
+            self.gravity.setCurrentIndex(names.index(now) if now in names else len(names))
+
+
+def _button(text: str, name: str, tip: str) -> QPushButton:
+    button = QPushButton(text)
+    button.setObjectName(name)
+    button.setToolTip(tip)
+    button.setAccessibleName(tip)
+    return button
+
+
+def _choice(entries: Mapping[str, str], name: str, spoken: str) -> QComboBox:
+    box = QComboBox()
+    box.setObjectName(name)
+    box.setAccessibleName(spoken)
+    for text, data in entries.items():
+        box.addItem(text, data)
+    return box
+
+
+def _row(*widgets: QWidget) -> QHBoxLayout:
+    row = QHBoxLayout()
+    row.setSpacing(6)
+    for widget in widgets:
+        row.addWidget(widget)
+    return row

@@ -1,0 +1,37 @@
+"""Sentences of the page."""
+
+from regolith_studio.dem.repose import ReposeMeasurement
+from regolith_studio.dem.run_folder import RunSummary
+
+
+def checks_in_words(run: RunSummary) -> str:
+    """What the checks of a run say, or what became of it."""
+    checks = run.document.get("checks")
+    if checks is None:
+        return str(run.document.get("problem") or run.document["state"])
+    if checks["problems"]:
+        return " ".join(checks["problems"])
+    overlap = 100 * checks["largest_overlap"]
+    return f"Checked: {checks['particles_out']:,} particles, overlap at most {overlap:.1f} % of d"
+
+
+def duration(seconds: float) -> str:
+    """A time as people say it."""
+    return (
+        f"{seconds:.0f} s"
+        if seconds < 100
+        else f"{seconds / 60:.0f} min"
+        if seconds < 6000
+        else f"{seconds / 3600:.0f} h"
+    )
+
+
+def angle_in_words(measured: ReposeMeasurement) -> str:
+    """The result as rich text."""
+    low, high = measured.interval
+    return (
+        f"<b>Angle of repose {measured.angle:.1f}°</b> ({low:.1f}° to {high:.1f}°, "
+        f"{len(measured.sections)} sections); the paper's two sections: asymmetric "
+        f"{measured.paper_asymmetric.mean:.1f}°, symmetric {measured.paper_symmetric.mean:.1f}°. "
+        + " ".join(measured.warnings[:2])
+    )

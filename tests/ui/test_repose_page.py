@@ -1,0 +1,201 @@
+"""The page "Angle of repose": set up, preview, run, replay, sections with cuts, runs, refusals."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from PySide6.QtWidgets import QFileDialog, QInputDialog, QWidget
+
+from regolith_studio.dataset.folder import write_dataset
+from regolith_studio.dem.parameters import ContactParameters, LiftingCylinderTest
+from regolith_studio.dem.pile import Pile, pile_bytes
+from regolith_studio.dem.run_folder import read_run
+from regolith_studio.jobs.runners.inline import InlineRunner
+from regolith_studio.session.session import Session
+from regolith_studio.ui.commands import Commands
+from regolith_studio.ui.page import PageContext
+from regolith_studio.ui.pages.repose import PAGE
+from regolith_studio.ui.pages.repose.parameter_form import ParameterForm
+from regolith_studio.ui.widgets.toast import Toast
+from regolith_studio.ui.wiring import Wiring
+from tests.dem.conftest import box_dataset
+from tests.dem.packings import cone
+
+QUICK = {"time_step": 0.04, "iterations": 15, "calm": 2e-3, "calm_time": 1.0, "snapshots": 12}
+
+
+@pytest.fixture
+def page(shown, preferences, tmp_path):
+    session = Session(InlineRunner())
+    window = shown(QWidget())
+    toast = Toast(window)
+    wiring = Wiring(session, toast.problem, window)
+    commands = Commands(session, preferences, toast, window)
+    context = PageContext("repose", session, wiring, preferences, toast, commands, "image", lambda _key: None)
+    made = shown(PAGE.build(context))
+    made.resize(1200, 800)
+    made.set_runs_folder(tmp_path / "runs")
+    yield made
+    wiring.cut()
+    made.release()
+    session.close()
+
+
+@pytest.fixture
+def dataset(tmp_path):
+    return write_dataset(tmp_path / "boxes", box_dataset())
+
+
+def small(page, dataset):
+    page.setup.set_dataset(dataset)
+    page.setup.particles.setValue(40)
+    page.setup.test.setValue(LiftingCylinderTest(mass=0.003, lift_speed=0.15))
+    page.setup.numerics.setValue(QUICK)
+
+
+def pile_of(angle, n=700):
+    points = 2e-3 * cone(angle, n, 1)
+    turns = np.tile([1.0, 0, 0, 0], (n, 1))
+    return Pile(points, np.full(n, 2e-3), turns, np.zeros(n, dtype=int), 1.0, float("inf"), "rest")
+
+
+def test_that_tables_are_edited_in_the_paper_s_units_and_missing_values_are_marked(shown):
+    form = shown(ParameterForm(ContactParameters, "contact"))
+    assert form._editors["youngs_modulus"].value() == pytest.approx(30.0)
+    assert form._editors["youngs_modulus"].suffix() == " GPa"
+    assert form.value() == ContactParameters()
+    form._editors["surface_energy"].setValue(25.0)
+    assert form.value().surface_energy == pytest.approx(0.025)
+    assert set(form.changes()) == {"surface_energy"}
+    assert "not given" in form._editors["restitution"].toolTip()
+    assert "Table 1" in form._editors["density"].toolTip()
+
+
+def test_that_a_dataset_is_previewed_with_the_consequences(page, dataset, wait):
+    page.setup.set_dataset(dataset)
+    wait(lambda: page.player.pile is not None)
+    assert len(page.player.pile) == 300
+    assert "300 particles" in page.setup.told.text()
+    assert "on one core" in page.setup.told.text()
+    picture = page.player.frame.view.picture()
+    assert picture.std() > 5.0
+    page.setup.test.setValue(LiftingCylinderTest(diameter=0.004))
+    page.setup.valueChanged.emit()
+    wait(lambda: page.setup.problem.text() != "")
+    assert "wider cylinder" in page.setup.problem.text()
+    assert not page.setup.run.isEnabled()
+
+
+def test_that_a_test_is_run_listed_and_replayed(page, dataset, wait):
+    small(page, dataset)
+    page.run_test()
+    wait(lambda: page.runs.table.rowCount() == 1)
+    run = page.runs.current()
+    assert run.document["state"] == "finished"
+    assert run.document["case"]["n_particles"] == 40
+    assert "too few" in page.verdict.text()
+    assert page.player.slider.maximum() >= 4
+    last = page.player.pile.points.copy()
+    page.player.slider.setValue(0)
+    assert page.player.pile.phase == "fill"
+    page.player.toggle()
+    wait(lambda: page.player.slider.value() >= 2)
+    page.player.stop()
+    page.player.slider.setValue(page.player.slider.maximum())
+    np.testing.assert_array_equal(page.player.pile.points, last)
+    assert not page.busy()
+
+
+def test_that_positions_are_measured_and_a_dragged_cut_changes_the_angle(page, tmp_path, monkeypatch, wait):
+    path = tmp_path / "pile.npz"
+    path.write_bytes(pile_bytes(pile_of(30.0)))
+    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (str(path), ""))
+    page.open_positions()
+    wait(lambda: page.x_z.section is not None)
+    assert page._measured.angle == pytest.approx(30.0, abs=2.0)
+    before = page._measured
+    assert "Angle of repose" in page.verdict.text()
+    cut = page.x_z.cut("high")
+    cut.setValue(0.7 * 1e3 * page.x_z.section.profile.top)
+    cut.sigPositionChangeFinished.emit(cut)
+    wait(lambda: page._measured is not before)
+    assert page._measured.settings.cut_top == pytest.approx(0.3, abs=0.002)
+    assert page.setup.evaluation.value()["cut_top"] == pytest.approx(0.3, abs=0.002)
+    out = tmp_path / "out"
+    monkeypatch.setattr(QFileDialog, "getExistingDirectory", lambda *_: str(out))
+    page.export_run()
+    assert json.loads((out / "repose.json").read_text("utf-8"))["angle_deg"] == page._measured.angle
+    assert (out / "sections.svg").exists()
+
+
+def test_that_a_table_of_another_program_asks_for_its_unit(page, tmp_path, monkeypatch, wait):
+    pile = pile_of(35.0)
+    path = tmp_path / "rocky.csv"
+    np.savetxt(
+        path, 1e3 * np.column_stack([pile.points, pile.diameters]), delimiter=",", header="x,y,z,diameter"
+    )
+    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (str(path), ""))
+    monkeypatch.setattr(QInputDialog, "getItem", lambda *_: ("mm", True))
+    page.open_positions()
+    wait(lambda: page._measured is not None)
+    assert page._measured.angle == pytest.approx(35.0, abs=2.0)
+    assert page._pile.diameters == pytest.approx(2e-3)
+
+
+def test_that_what_is_no_pile_says_so(page, tmp_path, monkeypatch, wait):
+    flat = pile_of(30.0)
+    path = tmp_path / "flat.npz"
+    path.write_bytes(pile_bytes(replace(flat, points=flat.points * [3.0, 3.0, 0.0] + [0, 0, 1e-3])))
+    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (str(path), ""))
+    page.open_positions()
+    wait(lambda: "layer" in page.verdict.text())
+    assert page.x_z.is_empty()
+    page.export_run()
+    assert "no measured pile" in page._context.toast.sentence.text()
+
+
+def test_that_wishes_without_a_dataset_are_one_sentence(page):
+    page.run_test()
+    assert "no dataset yet" in page._context.toast.sentence.text()
+    page.make_dataset()
+    assert "No particles are open" in page._context.toast.sentence.text()
+
+
+def test_that_gravity_can_be_chosen_by_name_and_the_state_comes_back(page, dataset):
+    page.setup.gravity.setCurrentIndex(1)
+    assert page.setup.order().case.test.gravity == 1.62
+    page.setup.test.setValue(replace(page.setup.test.value(), gravity=5.0))
+    page.setup.test.valueChanged.emit()
+    assert page.setup.gravity.currentText() == "Other"
+    page.setup.set_dataset(dataset)
+    page.setup.seed.setValue(7)
+    kept = json.loads(json.dumps(page.state()))
+    page.setup.seed.setValue(0)
+    page.setup.test.setValue(LiftingCylinderTest())
+    page.restore(kept)
+    order = page.setup.order()
+    assert (order.case.seed, order.case.test.gravity) == (7, 5.0)
+    page.restore({"setup": {"test": {"gravity": "heavy"}, "unknown": 1}})
+    page.restore({"setup": 3})
+
+
+def test_that_runs_are_compared(page, dataset, wait):
+    small(page, dataset)
+    page.run_test()
+    wait(lambda: page.runs.table.rowCount() == 1)
+    run = read_run(page.runs.current().folder)
+    for value, angle in ((0.2, 18.0), (0.8, 26.0)):
+        document = json.loads(json.dumps(run.document))
+        document["case"]["contact"]["static_friction"] = value
+        document["measurement"] = {
+            "status": "pile",
+            "angle_deg": angle,
+            "interval_deg": [angle - 1, angle + 1],
+        }
+        folder = run.folder.with_name(f"friction-{value}")
+        folder.mkdir()
+        (folder / "repose.json").write_text(json.dumps(document))
+    page.set_runs_folder(run.folder.parent)
+    (curve,) = page.runs.plot.curves
+    assert (curve.x, curve.y) == ((0.2, 0.8), (18.0, 26.0))
