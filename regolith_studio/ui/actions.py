@@ -8,6 +8,7 @@ from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import QMainWindow, QMenu, QToolBar, QToolButton
 
 from regolith_studio.ui.action_spec import BREAK, PAGE_MENU, ActionSpec
+from regolith_studio.ui.dialogs.command_palette import Command
 from regolith_studio.ui.icons import icon
 from regolith_studio.ui.page import Page
 from regolith_studio.ui.theme import Theme
@@ -26,17 +27,30 @@ ROWS: tuple[ActionSpec, ...] = (
     ActionSpec(
         "&File", "export", "&Export dataset …", "export", "Ctrl+E", "Export a DEM dataset", None, "words"
     ),
-    ActionSpec("&File", "save_recipe", "Save re&cipe …", "recipe", "Ctrl+S", "Save the choices as a recipe"),
+    ActionSpec("&File", "save_recipe", "Save re&cipe …", "recipe", "Ctrl+Alt+S", "For regolith-studio run"),
+    ActionSpec("&File", BREAK, ""),
+    ActionSpec("&File", "save_project", "&Save project", "", "Ctrl+S"),
+    ActionSpec("&File", "save_project_as", "Save project &as …", "", "Ctrl+Shift+S"),
     ActionSpec("&File", BREAK, ""),
     ActionSpec("&File", "quit", "&Quit", "", "Ctrl+Q"),
     ActionSpec("&Edit", "undo", "&Undo", "undo", "Ctrl+Z", bar="icon"),
     ActionSpec("&Edit", "redo", "&Redo", "redo", "Ctrl+Shift+Z", bar="icon"),
+    ActionSpec("&Edit", BREAK, ""),
+    ActionSpec("&Edit", "copy_command", "Copy as co&mmand", "", "", "The command line that does the same"),
+    ActionSpec("&Edit", "copy_python", "Copy as &Python", "", "", "A script that does the same"),
+    ActionSpec("&Edit", BREAK, ""),
+    ActionSpec("&Edit", "palette", "&Commands …", "", "Ctrl+Shift+P", "Any command by a few letters"),
     ActionSpec("&Go", "next_page", "&Next page", "", "Ctrl+PgDown"),
     ActionSpec("&Go", "previous_page", "&Previous page", "", "Ctrl+PgUp"),
     ActionSpec("&Go", BREAK, ""),
     ActionSpec("&Theme", "theme_system", "As the &system"),
     ActionSpec("&Theme", "theme_light", "&Light"),
     ActionSpec("&Theme", "theme_dark", "&Dark"),
+    ActionSpec("&View", "tasks", "&Tasks", "", "Ctrl+T", "What is running"),
+    ActionSpec("&View", "log", "L&og", "", "Ctrl+Shift+L", "What was said"),
+    ActionSpec("&View", "standard_layout", "Standard la&yout", "", "", "Forget sizes and borders"),
+    ActionSpec("&View", BREAK, ""),
+    ActionSpec("&Help", "tour", "&Tour", "tour", "", "Ten steps through the window"),
     ActionSpec("&Help", "shortcuts", "&Keyboard and mouse", "help", "F1"),
     ActionSpec("&Help", "about", "&About Regolith Studio"),
 )
@@ -93,9 +107,19 @@ class Actions:
             if menu := self._menus.get(title):
                 menu.menuAction().setVisible(any(each.isVisible() for each in menu.actions()))
 
-    def page_of(self, action: QAction) -> str:
-        """Key of the page that an action belongs to; empty for those of the window."""
-        return next((key for key, actions in self._of_page.items() if action in actions), "")
+    def palette(self, pages: Mapping[str, Page], run: Callable[..., object]) -> list[Command]:
+        """Every command of the window and of all pages, for the palette."""
+        found = []
+        for name, action in self.by_name.items():
+            key, _, command = name.partition(".")
+            place = pages[key].title if key in pages else action.data() or ""
+            begin: Callable[[], object] = action.trigger
+            if key in pages and not action.isEnabled() and not action.isCheckable():
+                begin = partial(run, key, command)
+            if action.menu() is None and name != "palette":
+                keys = action.shortcut().toString()
+                found.append(Command(place, action.text().replace("&", "").rstrip(" …"), keys, begin))
+        return found
 
     def set_theme(self, theme: Theme) -> None:
         """Draw the icons in the colours of a theme."""
@@ -119,6 +143,7 @@ class Actions:
             return menu.addSeparator()
         action = QAction(row.text, self._window)
         action.setObjectName(name)
+        action.setData(row.menu.replace("&", ""))
         if row.shortcut:
             action.setShortcut(QKeySequence(row.shortcut))
         keys = f" ({row.shortcut})" if row.shortcut else ""

@@ -3,21 +3,33 @@
 import dataclasses
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import TypeVar
 
 from PySide6.QtCore import QObject
+from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import QDialog, QFileDialog, QWidget
 
 from regolith_studio.errors import RegolithError
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.plan import Kind
 from regolith_studio.session.preferences import Preferences
+from regolith_studio.session.project import inputs_of
 from regolith_studio.session.recipe import SAMPLE, Recipe, read_recipe
+from regolith_studio.session.scripting import as_command, as_python
 from regolith_studio.session.session import Session
 from regolith_studio.ui.dialogs.export import ExportDialog, ExportOrder
 from regolith_studio.ui.dialogs.unit import UnitDialog
 from regolith_studio.ui.widgets.toast import Toast
 
-MESH_FILTER = "Meshes (*.stl *.ply *.obj *.off *.glb *.gltf *.3mf);;Recipes (*.json);;All files (*)"
+MESH_FILTER = ";;".join(
+    (
+        "Meshes (*.stl *.ply *.obj *.off *.glb *.gltf *.3mf)",
+        "Projects (*.regolith)",
+        "Recipes (*.json)",
+        "All files (*)",
+    )
+)
+T = TypeVar("T")
 
 
 class Commands(QObject):
@@ -38,6 +50,7 @@ class Commands(QObject):
     def __init__(self, session: Session, preferences: Preferences, toast: Toast, window: QWidget) -> None:
         super().__init__(window)
         self._session, self._preferences, self._toast, self._window = session, preferences, toast, window
+        self.openers: dict[str, Callable[[Path], object]] = {".json": self._open_recipe}
         self._export: ExportDialog | None = None
         self._export_task = 0
 
@@ -56,11 +69,13 @@ class Commands(QObject):
         self._session.open_sample()
 
     def open_paths(self, paths: Sequence[Path], unit: str | None = None) -> None:
-        """Open files and folders, or one recipe; asks for the unit of meshes unless it is given."""
+        """Open meshes and folders, or one file of another kind; asks for the unit of meshes if need be."""
         if not paths:
             return
-        if len(paths) == 1 and paths[0].suffix.lower() == ".json":
-            self._try(lambda: self._open_recipe(paths[0]))
+        opener = self.openers.get(paths[0].suffix.lower())
+        if opener is not None and len(paths) == 1:
+            self._try(lambda: opener(paths[0]))
+            self._preferences.remember_opened(paths[0], unit or self._session.choices.unit)
             return
         unit = unit or self._ask_unit(list(paths))
         if unit is None:
@@ -76,16 +91,23 @@ class Commands(QObject):
         name, _ = QFileDialog.getSaveFileName(self._window, "Save recipe", start, "Recipes (*.json)")
         if not name:
             return
-        sources = [entry.particle.source for entry in self._session.particles]
-        paths = [source.path for source in sources if source]
-        inputs = [SAMPLE if path.startswith("sample:") else path for path in paths]
-        text = Recipe.from_choices(self._session.choices, list(dict.fromkeys(inputs)) or [SAMPLE]).to_json()
+        text = Recipe.from_choices(self._session.choices, inputs_of(self._session)).to_json()
         try:
             Path(name).write_text(text, encoding="utf-8")
         except OSError as error:
             self._toast.problem(f"The recipe {name} cannot be written ({error.strerror}).")
             return
         self._toast.note(f"Saved {name}; run it with: regolith-studio run {Path(name).name}")
+
+    def copy_command(self) -> None:
+        """Put the command line that does the same onto the clipboard."""
+        QGuiApplication.clipboard().setText(as_command(self._session.choices, inputs_of(self._session)))
+        self._toast.note("The command is on the clipboard.")
+
+    def copy_python(self) -> None:
+        """Put a script that does the same onto the clipboard."""
+        QGuiApplication.clipboard().setText(as_python(self._session.choices, inputs_of(self._session)))
+        self._toast.note("The script is on the clipboard.")
 
     def export(self) -> None:
         """Show what will be written, ask for the folder, and export."""
@@ -165,7 +187,7 @@ class Commands(QObject):
         folders = [path if path.is_dir() else path.parent for path in recent]
         return str(next((folder for folder in folders if folder.is_dir()), Path.home()))
 
-    def _try(self, action: Callable[[], int]) -> int | None:
+    def _try(self, action: Callable[[], T]) -> T | None:
         try:
             return action()
         except RegolithError as error:

@@ -10,15 +10,22 @@ from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QGuiApplicat
 from PySide6.QtWidgets import QApplication, QMainWindow
 
 from regolith_studio.session.preferences import Preferences
+from regolith_studio.session.project import SUFFIX
 from regolith_studio.session.session import Session
 from regolith_studio.ui.actions import Actions
+from regolith_studio.ui.activity import ActivityDock
 from regolith_studio.ui.commands import Commands
+from regolith_studio.ui.dialogs.closing import may_close, worth_asking
+from regolith_studio.ui.dialogs.command_palette import CommandPalette
 from regolith_studio.ui.dialogs.help import about_dialog, shortcuts_dialog
+from regolith_studio.ui.memory import LayoutMemory
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.page_stack import PageStack
 from regolith_studio.ui.pages import pages
 from regolith_studio.ui.panels.tasks import TasksPanel
+from regolith_studio.ui.projects import Projects
 from regolith_studio.ui.theme import THEMES, apply_theme, choose_theme, current_theme
+from regolith_studio.ui.tour import start_tour
 from regolith_studio.ui.widgets.toast import Toast
 from regolith_studio.ui.wiring import Wiring
 
@@ -48,17 +55,21 @@ class MainWindow(QMainWindow):
         self.commands = Commands(session, preferences, self.toast, self)
         self.wiring = Wiring(session, self.toast.problem, self)
         self.pages = PageStack(pages(), self._context)
+        self.projects = Projects(session, self.pages, self.toast, self)
+        self.memory = LayoutMemory(preferences)
         self.tasks = TasksPanel()
+        self.activity = ActivityDock(self)
         self.setCentralWidget(self.pages)
         self.statusBar().addWidget(self.tasks, 1)
         self.statusBar().setSizeGripEnabled(False)
         self.menus = Actions(self, self._command_table(), self.pages.pages, self.pages.run)
         self.pages.changed.connect(self.menus.show_page)
         self._apply_theme()
-        self.go(next(iter(self.pages.pages)))
+        self.resize(1480, 900)
+        self.memory.restore_window(self)
+        self.go(str(preferences.window.get("page", "")) or next(iter(self.pages.pages)))
         self._wire()
         self.toast.raise_()
-        self.resize(1480, 900)
 
     @property
     def page(self) -> PageWidget:
@@ -66,8 +77,8 @@ class MainWindow(QMainWindow):
         return self.pages.widgets[self.pages.current]
 
     def go(self, key: str) -> PageWidget:
-        """Show a page."""
-        return self.pages.go(key)
+        """Show a page, the first one if there is none of this key."""
+        return self.pages.go(key if key in self.pages.pages else next(iter(self.pages.pages)))
 
     def _context(self, key: str) -> PageContext:
         wiring = Wiring(self.session, self.toast.problem, self)
@@ -77,9 +88,16 @@ class MainWindow(QMainWindow):
 
     def _command_table(self) -> dict[str, Callable[..., object]]:
         ours = ("open", "open_folder", "open_sample", "export", "save_recipe", "undo", "redo")
+        copying = ("copy_command", "copy_python")
         return {
-            **{name: getattr(self.commands, name) for name in ours},
+            **{name: getattr(self.commands, name) for name in (*ours, *copying)},
             **{f"theme_{name}": partial(self._choose_theme, name) for name in ("system", *THEMES)},
+            **{name: partial(self.activity.show_tab, name) for name in ("tasks", "log")},
+            "save_project": self.projects.save,
+            "save_project_as": self.projects.save_as,
+            "palette": self._open_palette,
+            "standard_layout": self._standard_layout,
+            "tour": lambda: start_tour(self),
             "quit": self.close,
             "go": self.go,
             "next_page": partial(self.pages.neighbour, 1),
@@ -90,6 +108,13 @@ class MainWindow(QMainWindow):
 
     def _wire(self) -> None:
         session, wiring = self.session, self.wiring
+        self.activity.wire(session, wiring, self.toast)
+        self.commands.openers[SUFFIX] = self.projects.open
+        for page in self.pages.pages.values():
+            self.commands.openers |= dict.fromkeys(page.opens, partial(self._open_in, page.key))
+        self.pages.built.connect(lambda key: self.memory.restore_parts(self.pages.widgets[key]))
+        self.memory.restore_parts(self)
+        self.projects.changed.connect(lambda: self.setWindowTitle(self.projects.title()))
         wiring.refresh("tasks", lambda: self.tasks.setValue(session.tasks), slow=True)
         wiring.refresh("tasks", self.commands.show_tasks, slow=True)
         wiring.hear("choices", self._show_undo)
@@ -100,6 +125,16 @@ class MainWindow(QMainWindow):
         self.tasks.cancelRequested.connect(self.commands.stop)
         QGuiApplication.styleHints().colorSchemeChanged.connect(self._apply_theme)
         self.menus.recent.aboutToShow.connect(self._list_recent)
+
+    def _open_in(self, key: str, path: Path) -> None:
+        self.go(key).open_path(path)
+
+    def _open_palette(self) -> None:
+        CommandPalette(self.menus.palette(self.pages.pages, self.pages.run), self).open()
+
+    def _standard_layout(self) -> None:
+        self.memory.forget()
+        self.toast.note("The next window stands as a new one.")
 
     def _show_undo(self) -> None:
         self.menus.by_name["undo"].setEnabled(self.session.can_undo)
@@ -133,9 +168,17 @@ class MainWindow(QMainWindow):
         QTimer.singleShot(0, self, lambda: self.commands.open_paths(paths))
 
     def closeEvent(self, event: QCloseEvent) -> None:
+        reasons = worth_asking(self.session.tasks, [*self.pages.busy(), *self.projects.unsaved()])
+        if not may_close(self, reasons):
+            event.ignore()
+            return
+        self.memory.keep(self)
+        self.preferences.window = self.preferences.window | {"page": self.pages.current}
+        self.preferences.save()
         QGuiApplication.styleHints().colorSchemeChanged.disconnect(self._apply_theme)
         self.hide()
         self.wiring.cut()
+        self.projects.close()
         self.session.close()
         self.pages.release()
         event.accept()

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from PySide6.QtWidgets import QWidget
@@ -31,6 +32,9 @@ class PageWidget(QWidget):
 
     def left(self) -> None:
         """Another page is seen from now on."""
+
+    def open_path(self, path: Path) -> None:
+        """Open a file whose suffix is one of :attr:`Page.opens`: dropped, chosen, or named at start."""
 
     def busy(self) -> str:
         """One sentence on what closing would lose or stop, or nothing; tasks need not be named."""
@@ -139,6 +143,8 @@ class Page:
         One sentence on what can be done there.
     build
         Makes the widget at the first visit; imports its modules inside, so that the window starts fast.
+    opens
+        Suffixes of files, such as ``.tif``, that :meth:`PageWidget.open_path` of this page opens.
     actions
         Commands of the page, in menus and tool bar while it is seen, in the command palette always.
     """
@@ -150,3 +156,4 @@ class Page:
     tip: str
     build: Callable[[PageContext], PageWidget]
     actions: tuple[ActionSpec, ...] = ()
+    opens: tuple[str, ...] = ()

@@ -33,6 +33,7 @@ class PageStack(QWidget):
     """
 
     changed = Signal(str)
+    built = Signal(str)
 
     def __init__(self, pages: tuple[Page, ...], context_of: Callable[[str], PageContext]) -> None:
         super().__init__()
@@ -98,6 +99,7 @@ class PageStack(QWidget):
         widget = self.widgets[key] = self.pages[key].build(context)
         widget.set_theme(current_theme())
         self._stack.addWidget(widget)
+        self.built.emit(key)
         return widget
 
     def _leave(self) -> None:

@@ -1,6 +1,6 @@
 """A sentence that appears in the corner of the window and goes away by itself."""
 
-from PySide6.QtCore import QEvent, QObject, Qt, QTimer
+from PySide6.QtCore import QEvent, QObject, Qt, QTimer, Signal
 from PySide6.QtWidgets import (
     QDialog,
     QDialogButtonBox,
@@ -20,7 +20,12 @@ _MARGIN = 14
 
 
 class Toast(QFrame):
-    """Shows one sentence at a time at the lower right of its parent; the details only on demand."""
+    """Shows one sentence at a time at the lower right of its parent; the details only on demand.
+
+    ``said`` carries mood, sentence and details of everything that is said.
+    """
+
+    said = Signal(str, str, str)
 
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)
@@ -80,6 +85,7 @@ class Toast(QFrame):
         self._place()
         self.raise_()
         self._timer.start(1000 * seconds)
+        self.said.emit(mood, sentence, details)
 
     def _place(self) -> None:
         parent = self.parentWidget()

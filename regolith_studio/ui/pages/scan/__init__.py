@@ -18,8 +18,9 @@ PAGE = Page(
     order=30,
     tip="Find the grains in a CT volume and make particles of them",
     build=build,
+    opens=(".tif", ".tiff", ".h5", ".hdf5", ".nrrd", ".mha", ".mhd", ".nii", ".npy"),
     actions=(
-        ActionSpec(PAGE_MENU, "open_volume", "Open &volume …", "open", "Ctrl+Shift+O", "Open a CT volume"),
+        ActionSpec(PAGE_MENU, "open_volume", "Open &volume …", "open", "Ctrl+Alt+O", "Open a CT volume"),
         ActionSpec(PAGE_MENU, "open_slices", "Open a folder of s&lices …"),
         ActionSpec(PAGE_MENU, "sample_volume", "Open the sample &scan", "sample"),
         ActionSpec(PAGE_MENU, BREAK, ""),

@@ -63,6 +63,9 @@ class ScanPage(PageWidget):
 
     # --- opening -------------------------------------------------------------------------------
 
+    def open_path(self, path: Path) -> None:
+        self.open(path)
+
     def ask_for_file(self) -> None:
         """Ask for a volume and open it."""
         name, _ = QFileDialog.getOpenFileName(self, "Open a volume", self._folder(), VOLUMES)

@@ -1,0 +1,101 @@
+"""A project file: what was open, what was chosen, and how the window stood; it reopens to the same state."""
+
+import dataclasses
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, Literal, Self
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from regolith_studio.errors import FileError
+from regolith_studio.session.outputs.staging import write_bytes
+from regolith_studio.session.recipe import SAMPLE, Recipe
+from regolith_studio.session.session import Session
+
+FORMAT: Literal["regolith-studio project"] = "regolith-studio project"
+SUFFIX = ".regolith"
+"""Of project files."""
+
+
+class Project(BaseModel):
+    """The recipe that repeats the work, and what a sitting adds to it.
+
+    Parameters
+    ----------
+    recipe
+        Inputs and choices, as ``regolith-studio run`` takes them.
+    selected
+        Id of the particle on screen.
+    page
+        Key of the page that was seen.
+    pages
+        What each page keeps, by its key.
+    """
+
+    model_config = ConfigDict(extra="ignore", frozen=True)
+
+    format: Literal["regolith-studio project"] = FORMAT
+    version: Literal[1] = 1
+    recipe: Recipe = Field(default_factory=Recipe)
+    selected: str = ""
+    page: str = ""
+    pages: dict[str, dict[str, Any]] = Field(default_factory=dict)
+
+    @classmethod
+    def of(cls, session: Session, page: str = "", pages: dict[str, dict[str, Any]] | None = None) -> Self:
+        """The present state of a session."""
+        recipe = Recipe.from_choices(session.choices, inputs_of(session))
+        return cls(recipe=recipe, selected=session.choices.selected, page=page, pages=pages or {})
+
+    def save(self, path: Path) -> None:
+        """Write it in one step.
+
+        Raises
+        ------
+        FileError
+            If the file cannot be written.
+        """
+        write_bytes(path, self.model_dump_json(indent=2).encode("utf-8") + b"\n")
+
+    def open_in(self, session: Session, beside: Path) -> int:
+        """Choose what was chosen and read what was open; returns the task's id.
+
+        Parameters
+        ----------
+        beside
+            Folder that relative inputs are looked up in.
+        """
+        chosen = self.recipe.choices()
+        names = {each.name for each in dataclasses.fields(chosen)} - {"selected"}
+        session.choose(**{name: getattr(chosen, name) for name in names})
+        paths = [beside / name for name in self.recipe.inputs if name != SAMPLE]
+        return session.open(paths, self.recipe.unit) if paths else session.open_sample()
+
+
+def read_project(path: Path) -> Project:
+    """Read a project file.
+
+    Raises
+    ------
+    FileError
+        If it cannot be read or is none.
+    """
+    try:
+        return Project.model_validate_json(path.read_bytes())
+    except OSError as error:
+        raise FileError(f"The project {path} cannot be read ({error.strerror}).") from error
+    except ValidationError as error:
+        where = ".".join(str(part) for part in error.errors(include_url=False)[0]["loc"]) or "the file"
+        raise FileError(f"{path} is not a project of this program; look at {where}.") from error
+
+
+def inputs_of(session: Session) -> list[str]:
+    """The files that the open particles came from, the sample by its name; the sample if there are none."""
+    sources = [entry.particle.source for entry in session.particles]
+    paths = [source.path for source in sources if source]
+    return list(dict.fromkeys(SAMPLE if path.startswith("sample:") else path for path in paths)) or [SAMPLE]
+
+
+def without_file(session: Session) -> Sequence[str]:
+    """Ids of open particles that came from no file: a project cannot bring them back."""
+    return [entry.id for entry in session.particles if entry.particle.source is None]

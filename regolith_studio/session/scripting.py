@@ -1,0 +1,49 @@
+"""What was chosen in the window as a command line and as Python, to be pasted elsewhere."""
+
+import shlex
+
+from regolith_studio.session.choices import Choices
+from regolith_studio.session.recipe import SAMPLE
+
+
+def as_command(choices: Choices, inputs: list[str]) -> str:
+    """The ``coarsen`` command that does to all particles what the window does to one."""
+    words = ["regolith-studio", "coarsen", *inputs]
+    words += ["-o", "coarsened", "--faces", str(choices.n_faces), "--method", choices.method]
+    words += ["--seed", str(choices.seed), "--target", choices.target]
+    if choices.target == "fit":
+        words += ["--l-max", str(choices.l_max)]
+    words += ["--preset", choices.preset]
+    if choices.preset_modified:
+        words += [word for key, value in choices.weights.items() for word in ("--weight", f"{key}={value:g}")]
+    words += [word for name, value in choices.settings for word in ("--set", f"{name}={value}")]
+    words += ["--unit", choices.unit]
+    return shlex.join(words)
+
+
+def as_python(choices: Choices, inputs: list[str]) -> str:
+    """A script that fits and coarsens the first particle as the window does."""
+    sample = inputs[:1] in ([], [SAMPLE])
+    reading = "sample_particles()[0]" if sample else f"read_mesh({inputs[0]!r}, unit={choices.unit!r})"
+    body = "reconstruct(fit, l_max, level)" if choices.target == "fit" else "particle.mesh"
+    doors = "coarsen, fit_harmonics" if sample else "coarsen, fit_harmonics, read_mesh"
+    lines = [
+        f"from regolith_studio import {doors}",
+        "from regolith_studio.coarsening.coarsen import settings_of",
+        "from regolith_studio.coarsening.weights import LossWeights",
+        "from regolith_studio.harmonics.surface import reconstruct",
+        *(["from regolith_studio.readers.sample import sample_particles"] if sample else []),
+        "",
+        f"l_max, level = {choices.l_max}, {choices.level}",
+        f"particle = {reading}",
+        "fit = fit_harmonics(particle.mesh, l_max=30)",
+        f"target = {body}",
+        f"weights = LossWeights.of(**{dict(choices.weights)!r})",
+        f"settings = settings_of({choices.method!r}, {dict(choices.settings)!r})",
+        "done = coarsen(",
+        f"    target, n_faces={choices.n_faces}, method={choices.method!r}, weights=weights,",
+        f"    seed={choices.seed}, settings=settings,",
+        ")",
+        "print(done.n_faces, done.errors, done.jaccard_distance)",
+    ]
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,39 @@
+"""What runs and what was said: a dock below the pages, shown when it is asked for."""
+
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QDockWidget, QMainWindow
+
+from regolith_studio.session.session import Session
+from regolith_studio.ui.layout import tabs
+from regolith_studio.ui.panels.log import LogPanel
+from regolith_studio.ui.panels.task_list import TaskListPanel
+from regolith_studio.ui.widgets.toast import Toast
+from regolith_studio.ui.wiring import Wiring
+
+
+class ActivityDock(QDockWidget):
+    """Two tabs: tasks and log."""
+
+    def __init__(self, window: QMainWindow) -> None:
+        super().__init__("Activity", window)
+        self.setObjectName("activity")
+        self.tasks, self.log = TaskListPanel(), LogPanel()
+        self.tabs = tabs("activity_tabs", [(self.tasks, "Tasks"), (self.log, "Log")])
+        self.setWidget(self.tabs)
+        self.setAllowedAreas(Qt.DockWidgetArea.BottomDockWidgetArea)
+        window.addDockWidget(Qt.DockWidgetArea.BottomDockWidgetArea, self)
+        self.hide()
+
+    def wire(self, session: Session, wiring: Wiring, toast: Toast) -> None:
+        """Follow the session and what the toast says, from now on."""
+        wiring.refresh("tasks", lambda: self.tasks.show_tasks(session.tasks), slow=True)
+        wiring.hear("exported", lambda folder: self.log.add("note", f"A dataset was written to {folder}."))
+        self.tasks.cancelRequested.connect(session.cancel)
+        toast.said.connect(self.log.add)
+
+    def show_tab(self, name: str) -> None:
+        """Show ``tasks`` or ``log``; hide the dock if that is seen already."""
+        panel = self.tasks if name == "tasks" else self.log
+        seen = self.isVisible() and self.tabs.currentWidget() is panel
+        self.setVisible(not seen)
+        self.tabs.setCurrentWidget(panel)

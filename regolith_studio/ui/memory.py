@@ -1,0 +1,64 @@
+"""Remembers where things stood: the size of the window and the borders between its parts."""
+
+import base64
+import binascii
+from typing import Any
+
+from PySide6.QtCore import QByteArray
+from PySide6.QtWidgets import QMainWindow, QSplitter, QWidget
+
+from regolith_studio.session.preferences import Preferences
+
+LAYOUT = "layout"
+
+
+class LayoutMemory:
+    """Keeps geometry and splitters in the preferences; splitters without an object name are left alone.
+
+    Parameters
+    ----------
+    preferences
+        Where it is kept, under ``window["layout"]``.
+    """
+
+    def __init__(self, preferences: Preferences) -> None:
+        self._preferences = preferences
+
+    def restore_window(self, window: QMainWindow) -> bool:
+        """Give the window its last size and place; says whether there was one."""
+        kept = _bytes(self._kept().get("window"))
+        return kept is not None and window.restoreGeometry(kept)
+
+    def restore_parts(self, root: QWidget) -> None:
+        """Put the borders in a page back where they were."""
+        kept = self._kept()
+        for splitter in root.findChildren(QSplitter):
+            sizes = kept.get(splitter.objectName())
+            if splitter.objectName() and isinstance(sizes, list) and len(sizes) == splitter.count():
+                splitter.setSizes([int(size) for size in sizes])
+
+    def keep(self, window: QMainWindow) -> None:
+        """Note down how everything stands now."""
+        kept: dict[str, Any] = self._kept()
+        kept["window"] = base64.b64encode(window.saveGeometry().data()).decode("ascii")
+        for splitter in window.findChildren(QSplitter):
+            if splitter.objectName() and sum(splitter.sizes()):
+                kept[splitter.objectName()] = splitter.sizes()
+        self._preferences.window = self._preferences.window | {LAYOUT: kept}
+
+    def forget(self) -> None:
+        """Let the next window stand as a new one."""
+        self._preferences.window = self._preferences.window | {LAYOUT: {}}
+
+    def _kept(self) -> dict[str, Any]:
+        kept = self._preferences.window.get(LAYOUT)
+        return dict(kept) if isinstance(kept, dict) else {}
+
+
+def _bytes(text: object) -> QByteArray | None:
+    if not isinstance(text, str):
+        return None
+    try:
+        return QByteArray(base64.b64decode(text, validate=True))
+    except (binascii.Error, ValueError):
+        return None

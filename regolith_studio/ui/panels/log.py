@@ -1,0 +1,36 @@
+"""What was said since the window opened, with the details of what went wrong."""
+
+import time
+
+from PySide6.QtWidgets import QApplication, QHBoxLayout, QPlainTextEdit, QPushButton, QVBoxLayout, QWidget
+
+LIMIT = 2000
+"""Lines kept."""
+
+
+class LogPanel(QWidget):
+    """One line a sentence, its details indented below."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("log")
+        self.text = QPlainTextEdit()
+        self.text.setReadOnly(True)
+        self.text.setMaximumBlockCount(LIMIT)
+        self.text.setAccessibleName("Log")
+        self.copy = QPushButton("Copy report")
+        self.copy.setObjectName("copy_log")
+        self.copy.clicked.connect(lambda: QApplication.clipboard().setText(self.text.toPlainText()))
+        row = QHBoxLayout()
+        row.addStretch(1)
+        row.addWidget(self.copy)
+        layout = QVBoxLayout(self)
+        layout.addWidget(self.text, 1)
+        layout.addLayout(row)
+
+    def add(self, mood: str, sentence: str, details: str = "") -> None:
+        """Note down a sentence of the mood ``note`` or ``problem``."""
+        clock = time.strftime("%H:%M:%S")
+        lines = [f"{clock}  {mood:8s} {sentence}"]
+        lines += [f"          {line}" for line in details.splitlines()]
+        self.text.appendPlainText("\n".join(lines))

@@ -1,0 +1,193 @@
+"""Project files in the window: saved, opened, saved by themselves, and brought back after a crash."""
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+from PySide6.QtCore import QLockFile, QObject, QTimer, Signal
+from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
+
+from regolith_studio.errors import RegolithError
+from regolith_studio.session.preferences import preferences_path
+from regolith_studio.session.project import SUFFIX, Project, read_project, without_file
+from regolith_studio.session.session import Session
+from regolith_studio.ui.page_stack import PageStack
+from regolith_studio.ui.widgets.toast import Toast
+
+FILTER = f"Projects (*{SUFFIX})"
+AUTOSAVE_SECONDS = 10
+"""Between a change and the copy of it that is kept for the case of a crash."""
+
+
+class Projects(QObject):
+    """Knows which file the work belongs to, and whether it has changed since.
+
+    Parameters
+    ----------
+    session, pages
+        What is saved.
+    toast
+        Says what came of it.
+    window
+        Parent of the dialogs.
+    """
+
+    changed = Signal()
+
+    def __init__(self, session: Session, pages: PageStack, toast: Toast, window: QWidget) -> None:
+        super().__init__(window)
+        self._session, self._pages, self._toast, self._window = session, pages, toast, window
+        self.path: Path | None = None
+        self._saved: Project | None = None
+        self._lock = _lock_of(autosave_path())
+        self._timer = QTimer(self, interval=1000 * AUTOSAVE_SECONDS, singleShot=True)
+        self._timer.timeout.connect(self._autosave)
+        self._cuts: list[Callable[[], None]] = [
+            session.topics.choices.connect(self._note_change),
+            session.topics.particles.connect(self._note_change),
+        ]
+
+    @property
+    def modified(self) -> bool:
+        """Whether a project is open and no longer what its file holds."""
+        return self.path is not None and self._state() != self._saved
+
+    def title(self) -> str:
+        """Of the window."""
+        if self.path is None:
+            return "Regolith Studio"
+        return f"{self.path.stem}{' *' if self.modified else ''} – Regolith Studio"
+
+    def unsaved(self) -> list[str]:
+        """What closing would lose, in sentences."""
+        return [f"{self.path.name} has changes that are not saved."] if self.path and self.modified else []
+
+    def save(self) -> bool:
+        """Write the project into its file, asking for one the first time; says whether it was written."""
+        return self.save_as() if self.path is None else self._write(self.path)
+
+    def save_as(self) -> bool:
+        """Ask for a file and write the project into it."""
+        start = str(self.path or Path.home() / f"project{SUFFIX}")
+        name, _ = QFileDialog.getSaveFileName(self._window, "Save project", start, FILTER)
+        return bool(name) and self._write(Path(name).with_suffix(SUFFIX))
+
+    def open(self, path: Path) -> None:
+        """Bring a project back."""
+        if self._bring_back(path):
+            self.path = path
+            self._saved = None
+            self.changed.emit()
+
+    def offer_recovery(self) -> None:
+        """Ask whether to bring back what a window that crashed has left."""
+        left = stale_autosaves()
+        if not left:
+            return
+        text = "Regolith Studio was not closed properly the last time. Bring its state back?"
+        box = QMessageBox(QMessageBox.Icon.Question, "Recover", text, parent=self._window)
+        box.setObjectName("recovery")
+        box.setStandardButtons(QMessageBox.StandardButton.Yes | QMessageBox.StandardButton.No)
+
+        def decided(answer: int) -> None:
+            if answer == QMessageBox.StandardButton.Yes.value:
+                self._bring_back(left[0])
+            for path in left:
+                path.unlink(missing_ok=True)
+                _lock_of(path).removeStaleLockFile()
+            box.deleteLater()
+
+        box.finished.connect(decided)
+        box.open()
+
+    def close(self) -> None:
+        """The window closes as it should: nothing needs to be brought back."""
+        self._timer.stop()
+        for cut in self._cuts:
+            cut()
+        autosave_path().unlink(missing_ok=True)
+        self._lock.unlock()
+
+    def _state(self) -> Project:
+        pages = {key: state for key, widget in self._pages.widgets.items() if (state := widget.state())}
+        return Project.of(self._session, self._pages.current, pages)
+
+    def _write(self, path: Path) -> bool:
+        state = self._state()
+        try:
+            state.save(path)
+        except RegolithError as error:
+            self._toast.problem(str(error))
+            return False
+        self.path, self._saved = path, state
+        lost = without_file(self._session)
+        note = f" {len(lost)} particles came from no file and are not in it; export them." if lost else ""
+        self._toast.note(f"Saved {path}.{note}")
+        self.changed.emit()
+        return True
+
+    def _bring_back(self, path: Path) -> bool:
+        try:
+            project = read_project(path)
+            project.open_in(self._session, path.parent)
+        except RegolithError as error:
+            self._toast.problem(str(error))
+            return False
+        for key, state in project.pages.items():
+            if key in self._pages.pages:
+                self._pages.go(key).restore(state)
+        if project.page in self._pages.pages:
+            self._pages.go(project.page)
+        self._select_later(project.selected)
+        return True
+
+    def _select_later(self, name: str) -> None:
+        """Put the particle back on screen as soon as it has been read."""
+
+        def select() -> None:
+            cut()
+            if any(entry.id == name for entry in self._session.particles):
+                self._session.select(name)
+            if self.path is not None:
+                self._saved = self._state()
+                self.changed.emit()
+
+        cut = self._session.topics.particles.connect(lambda: QTimer.singleShot(0, self, select))
+
+    def _note_change(self) -> None:
+        if not self._timer.isActive():
+            self._timer.start()
+        self.changed.emit()
+
+    def _autosave(self) -> None:
+        try:
+            self._state().save(autosave_path())
+            self._lock.tryLock(0)
+        except RegolithError as error:
+            self._toast.problem(str(error))
+
+
+def autosave_path() -> Path:
+    """Where this process keeps its state for the case of a crash."""
+    return preferences_path().with_name(f"autosave-{os.getpid()}{SUFFIX}")
+
+
+def stale_autosaves() -> list[Path]:
+    """What windows that no longer live have left, the newest first."""
+    found = preferences_path().parent.glob(f"autosave-*{SUFFIX}")
+    left = [path for path in found if path != autosave_path() and _is_abandoned(path)]
+    return sorted(left, key=lambda path: path.stat().st_mtime, reverse=True)
+
+
+def _lock_of(path: Path) -> QLockFile:
+    lock = QLockFile(f"{path}.lock")
+    lock.setStaleLockTime(0)
+    return lock
+
+
+def _is_abandoned(path: Path) -> bool:
+    lock = _lock_of(path)
+    if not lock.tryLock(0):
+        return False
+    lock.unlock()
+    return True

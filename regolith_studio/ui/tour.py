@@ -1,0 +1,160 @@
+"""The guided tour: a bubble beside one part of the window after another; texts in ``resources/tour``."""
+
+import json
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QEvent, QObject, QPoint, QRect, Qt
+from PySide6.QtGui import QColor, QKeyEvent, QPainter, QPaintEvent, QPen, QRegion
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
+
+from regolith_studio.resources import resource
+from regolith_studio.ui.theme import current_theme
+from regolith_studio.ui.widgets.labels import heading, remark
+
+if TYPE_CHECKING:
+    from regolith_studio.ui.main_window import MainWindow
+
+TOUR_SEEN = "tour_seen"
+"""In the preferences of the window: that the tour need not start by itself any more."""
+_WIDTH = 340
+_GAP = 14
+
+
+@dataclass(frozen=True)
+class Step:
+    """One stop: the page it is on, the object name of what it shows, what it says."""
+
+    page: str
+    target: str
+    title: str
+    text: str
+
+
+def steps() -> tuple[Step, ...]:
+    """All stops, in order."""
+    entries = json.loads(resource("tour", "en.json").read_text(encoding="utf-8"))
+    return tuple(Step(**entry) for entry in entries)
+
+
+def start_tour(window: "MainWindow") -> "Tour":
+    """Begin at the first stop, instead of a tour that is under way."""
+    for old in window.findChildren(Tour):
+        old.finish()
+    return Tour(window)
+
+
+class Tour(QWidget):
+    """A frame about what is shown, and a bubble with text; the window stays usable meanwhile."""
+
+    def __init__(self, window: "MainWindow") -> None:
+        super().__init__(window)
+        self.setObjectName("tour")
+        self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
+        self._window, self._steps, self._at = window, steps(), 0
+        self._spot = QRect()
+        self._bubble = QFrame(window)
+        self._bubble.setObjectName("tour_bubble")
+        self._bubble.setProperty("role", "toast")
+        self._bubble.setProperty("mood", "note")
+        self._title, self._text, self._count = heading(""), QLabel(), remark()
+        self._text.setWordWrap(True)
+        self.back, self.next, self.end = QPushButton("Back"), QPushButton("Next"), QPushButton("End tour")
+        for button, name in ((self.back, "tour_back"), (self.next, "tour_next"), (self.end, "tour_end")):
+            button.setObjectName(name)
+        self._arrange()
+        self.back.clicked.connect(lambda: self.go(self._at - 1))
+        self.next.clicked.connect(lambda: self.go(self._at + 1))
+        self.end.clicked.connect(self.finish)
+        window.installEventFilter(self)
+        self.go(0)
+        self.next.setFocus()
+
+    @property
+    def at(self) -> int:
+        """Number of the present stop, from 0."""
+        return self._at
+
+    def go(self, number: int) -> None:
+        """Show another stop; past the last one the tour ends."""
+        if number >= len(self._steps):
+            self.finish()
+            return
+        self._at = max(0, number)
+        step = self._steps[self._at]
+        self._window.go(step.page)
+        self._title.setText(step.title)
+        self._text.setText(step.text)
+        self._count.setText(f"{self._at + 1} of {len(self._steps)}")
+        self.back.setEnabled(self._at > 0)
+        self.next.setText("Done" if self._at == len(self._steps) - 1 else "Next")
+        self._bubble.setAccessibleName(f"{step.title}. {step.text}")
+        self._place()
+
+    def finish(self) -> None:
+        """End the tour, and remember that it was seen."""
+        self._window.removeEventFilter(self)
+        self._window.preferences.window = self._window.preferences.window | {TOUR_SEEN: True}
+        self._window.preferences.save()
+        for widget in (self._bubble, self):
+            widget.hide()
+            widget.deleteLater()
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        if event.type() == QEvent.Type.Resize:
+            self._place()
+        if isinstance(event, QKeyEvent) and event.key() == Qt.Key.Key_Escape:
+            self.finish()
+        return super().eventFilter(watched, event)
+
+    def paintEvent(self, event: QPaintEvent) -> None:  # noqa: ARG002
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setPen(QPen(QColor(current_theme().accent), 3))
+        painter.drawRoundedRect(self._spot.adjusted(2, 2, -2, -2), 7, 7)
+        painter.end()
+
+    def _place(self) -> None:
+        self.setGeometry(self._window.rect())
+        target = self._window.findChild(QWidget, self._steps[self._at].target)
+        if target is None or not target.isVisible():
+            self._spot = QRect(self.rect().center(), self.rect().center())
+        else:
+            self._spot = QRect(target.mapTo(self._window, QPoint(0, 0)), target.size()).adjusted(-5, -5, 5, 5)
+        self._spot &= self.rect()
+        ring = QRegion(self._spot) - QRegion(self._spot.adjusted(5, 5, -5, -5))
+        self.setMask(ring)  # nothing but the frame is drawn over views that draw by themselves
+        self._bubble.setFixedWidth(_WIDTH)
+        self._bubble.adjustSize()
+        self._bubble.move(_beside(self._spot, self._bubble.rect(), self.rect()))
+        for widget in (self, self._bubble):
+            widget.show()
+            widget.raise_()
+
+    def _arrange(self) -> None:
+        row = QHBoxLayout()
+        row.addWidget(self._count, 1)
+        for button in (self.end, self.back, self.next):
+            row.addWidget(button)
+        layout = QVBoxLayout(self._bubble)
+        layout.setContentsMargins(16, 14, 16, 12)
+        layout.setSpacing(8)
+        for widget in (self._title, self._text):
+            layout.addWidget(widget)
+        layout.addLayout(row)
+
+
+def _beside(spot: QRect, bubble: QRect, room: QRect) -> QPoint:
+    """Where the bubble stands: right of the spot, left of it, below, above, or in its middle."""
+    width, height = bubble.width(), bubble.height()
+    top = max(_GAP, min(spot.center().y() - height // 2, room.height() - height - _GAP))
+    left = max(_GAP, min(spot.center().x() - width // 2, room.width() - width - _GAP))
+    if spot.right() + _GAP + width < room.width():
+        return QPoint(spot.right() + _GAP, top)
+    if spot.left() - _GAP - width > 0:
+        return QPoint(spot.left() - _GAP - width, top)
+    if spot.bottom() + _GAP + height < room.height():
+        return QPoint(left, spot.bottom() + _GAP)
+    if spot.top() - _GAP - height > 0:
+        return QPoint(left, spot.top() - _GAP - height)
+    return QPoint(left, top)

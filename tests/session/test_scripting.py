@@ -1,0 +1,86 @@
+"""What is copied out of the window runs, and does what the window did."""
+
+import shlex
+from pathlib import Path
+
+import pytest
+
+from regolith_studio.cli.entry import run
+from regolith_studio.geometry.directions import icosphere
+from regolith_studio.imaging.stl import stl_bytes
+from regolith_studio.jobs.runners.inline import InlineRunner
+from regolith_studio.session.choices import Choices
+from regolith_studio.session.project import Project, inputs_of, read_project, without_file
+from regolith_studio.session.recipe import SAMPLE
+from regolith_studio.session.scripting import as_command, as_python
+from regolith_studio.session.session import Session
+
+CHOICES = Choices(method="quadric", level=2, l_max=4, n_faces=14, seed=3)
+
+
+@pytest.fixture
+def grain(tmp_path: Path) -> Path:
+    path = tmp_path / "a grain.stl"
+    path.write_bytes(stl_bytes(icosphere(3).moved(scale=12.0), "test"))
+    return path
+
+
+@pytest.fixture
+def session(grain: Path) -> Session:
+    made = Session(InlineRunner(), CHOICES)
+    made.open([grain])
+    return made
+
+
+def test_that_the_copied_script_finds_the_polyhedron_of_the_window(session: Session) -> None:
+    names: dict[str, object] = {}
+    exec(as_python(session.choices, inputs_of(session)), names)
+    done, shown = names["done"], session.results.coarsened
+    assert shown is not None
+    assert done.loss == pytest.approx(shown.loss, rel=1e-9)  # type: ignore[attr-defined]
+    assert done.n_faces == shown.n_faces  # type: ignore[attr-defined]
+
+
+def test_that_the_script_of_the_sample_and_of_the_bare_particle_compile() -> None:
+    for choices in (CHOICES, CHOICES.replaced(target="particle")):
+        compile(as_python(choices, [SAMPLE]), "copied", "exec")
+
+
+def test_that_the_copied_command_is_understood_and_coarsens(
+    session: Session, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    session.choose(weights=session.choices.weights.replaced(volume=0.5))
+    words = shlex.split(as_command(session.choices, inputs_of(session)))
+    assert words[0] == "regolith-studio"
+    monkeypatch.chdir(tmp_path)
+    assert run(words[1:]) == 0
+    assert (tmp_path / "coarsened" / "a grain.stl").exists()
+
+
+def test_that_a_project_brings_back_particles_choices_and_pages(session: Session, tmp_path: Path) -> None:
+    session.choose(n_faces=11, l_max=3)
+    Project.of(session, "sample", {"sample": {"filter": "S<1"}}).save(tmp_path / "work.regolith")
+    again = Session(InlineRunner())
+    project = read_project(tmp_path / "work.regolith")
+    project.open_in(again, tmp_path)
+    assert again.choices == session.choices
+    assert [entry.id for entry in again.particles] == ["a grain"]
+    assert (project.page, project.pages) == ("sample", {"sample": {"filter": "S<1"}})
+
+
+def test_that_a_project_says_what_it_cannot_bring_back(session: Session) -> None:
+    assert without_file(session) == []
+    particle = session.particles[0].particle
+    session.adopt([type(particle)("virtual", particle.mesh)], add=True)
+    assert without_file(session) == ["virtual"]
+    assert inputs_of(session) == [session.particles[0].particle.source.path]  # type: ignore[union-attr]
+
+
+def test_that_what_is_no_project_is_refused_in_a_sentence(tmp_path: Path) -> None:
+    path = tmp_path / "work.regolith"
+    for text in ("", "{}x", '{"format": "something else"}', '{"recipe": {"l_max": "ten"}}'):
+        path.write_text(text)
+        with pytest.raises(Exception, match="is not a project"):
+            read_project(path)
+    with pytest.raises(Exception, match="cannot be read"):
+        read_project(tmp_path / "nowhere.regolith")

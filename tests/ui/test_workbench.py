@@ -1,0 +1,225 @@
+"""What makes the window a workbench: palette, projects, recovery, tasks, log, tour, layout, closing."""
+
+import json
+
+import pytest
+from PySide6.QtCore import Qt, QTimer
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication, QMessageBox, QPushButton, QSplitter, QWidget
+
+from regolith_studio.session.preferences import Preferences
+from regolith_studio.session.project import Project
+from regolith_studio.session.tasks import Task
+from regolith_studio.ui.app import open_window
+from regolith_studio.ui.dialogs.closing import worth_asking
+from regolith_studio.ui.dialogs.command_palette import CommandPalette
+from regolith_studio.ui.panels.task_list import time_left
+from regolith_studio.ui.projects import autosave_path, stale_autosaves
+from regolith_studio.ui.tour import TOUR_SEEN, Tour, start_tour, steps
+
+SECONDS = 120.0
+
+
+@pytest.fixture
+def window(shown, preferences, wait):
+    made = open_window(views="image", preferences=preferences)
+    made.resize(1200, 760)
+    shown(made)
+    wait(lambda: made.session.results.coarsened is not None and not made.session.tasks, SECONDS)
+    return made
+
+
+def answer(name):
+    """Press the button of this object name as soon as it is seen."""
+
+    def look():
+        for box in QApplication.topLevelWidgets():
+            button = box.findChild(QPushButton, name) if box.isVisible() else None
+            if button is not None:
+                timer.stop()
+                button.click()
+                return
+
+    timer = QTimer()
+    timer.timeout.connect(look)
+    timer.start(20)
+    return timer
+
+
+def test_that_the_palette_finds_commands_of_the_window_and_of_hidden_pages(window, wait):
+    window.menus.by_name["palette"].trigger()
+    palette = window.findChild(CommandPalette)
+    QTest.keyClicks(palette.line, "sample export")
+    assert palette.list.item(0).text().startswith("Sample: Export table")
+    palette.line.clear()
+    QTest.keyClicks(palette.line, "theme dark")
+    assert palette.list.count() == 1
+    palette.line.clear()
+    QTest.keyClicks(palette.line, "go sample")
+    QTest.keyClick(palette.line, Qt.Key.Key_Return)
+    assert window.pages.current == "sample"
+    wait(lambda: window.findChild(CommandPalette) is None)
+
+
+def test_that_shortcuts_of_a_page_do_not_collide_with_those_of_the_window(window):
+    fixed = {}
+    for name, action in window.menus.by_name.items():
+        keys = action.shortcut().toString()
+        if keys and (name.startswith("go.") or "." not in name):
+            fixed[keys] = name
+    for name, action in window.menus.by_name.items():
+        if "." in name and not name.startswith("go."):
+            assert action.shortcut().toString() not in fixed, name
+
+
+def test_that_a_project_is_saved_and_brought_back(window, wait, tmp_path, monkeypatch):
+    target = tmp_path / "work.regolith"
+    monkeypatch.setattr(
+        "regolith_studio.ui.projects.QFileDialog.getSaveFileName", lambda *_: (str(target), "")
+    )
+    window.session.choose(selected="flat-1", n_faces=14, l_max=6)
+    window.go("sample").filter.setText("flat")
+    window.menus.by_name["save_project"].trigger()
+    assert not window.projects.modified
+    assert window.windowTitle().startswith("work – ")
+    window.session.choose(n_faces=30)
+    assert window.projects.modified
+    assert window.windowTitle().startswith("work * – ")
+    assert worth_asking((), window.projects.unsaved()) == ["work.regolith has changes that are not saved."]
+    window.go("sample").filter.clear()
+    window.go("explore")
+    window.commands.open_paths([target])
+    wait(lambda: window.session.choices.selected == "flat-1" and not window.projects.modified, SECONDS)
+    assert (window.session.choices.n_faces, window.session.choices.l_max) == (14, 6)
+    assert window.pages.current == "sample"
+    assert window.page.filter.text() == "flat"
+    assert window.preferences.recent[0] == str(target)
+
+
+def test_that_a_crash_leaves_a_state_that_can_be_brought_back(window, wait):
+    window.session.choose(n_faces=13)
+    window.projects._autosave()
+    assert autosave_path().exists()
+    assert stale_autosaves() == []  # this process lives
+    left = autosave_path().with_name("autosave-999999999.regolith")
+    left.write_text(Project.of(window.session).model_dump_json())
+    assert stale_autosaves() == [left]
+    window.session.choose(n_faces=40)
+    window.projects.offer_recovery()
+    box = window.findChild(QMessageBox, "recovery")
+    box.button(QMessageBox.StandardButton.Yes).click()
+    assert window.session.choices.n_faces == 13
+    wait(lambda: not left.exists())
+    wait(lambda: not window.session.tasks, SECONDS)
+
+
+def test_that_a_proper_close_leaves_nothing_to_bring_back(window):
+    window.projects._autosave()
+    window.close()
+    assert not list(autosave_path().parent.glob("autosave-*"))
+
+
+def test_that_every_stop_of_the_tour_shows_something_that_is_there(window):
+    tour = start_tour(window)
+    for number, step in enumerate(steps()):
+        assert tour.at == number
+        assert window.pages.current == step.page
+        target = window.findChild(QWidget, step.target)
+        assert target is not None, step.target
+        assert target.isVisible(), step.target
+        assert window.rect().contains(tour._bubble.geometry()), step.title
+        tour.next.click()
+    assert window.preferences.window[TOUR_SEEN] is True
+    assert not tour.isVisible()
+    assert len(steps()) == 10
+
+
+def test_that_escape_ends_the_tour(window):
+    tour = start_tour(window)
+    QTest.keyClick(tour.next, Qt.Key.Key_Escape)
+    assert not tour.isVisible()
+    assert all(not each.isVisible() for each in window.findChildren(Tour))
+
+
+def test_that_the_log_keeps_what_was_said_with_its_details(window):
+    window.menus.by_name["log"].trigger()
+    assert window.activity.isVisible()
+    window.toast.problem("The grain is too shy.", "because of\nstage fright")
+    text = window.activity.log.text.toPlainText()
+    assert "The grain is too shy." in text
+    assert "stage fright" in text
+    window.activity.log.copy.click()
+    assert "stage fright" in QApplication.clipboard().text()
+    window.menus.by_name["log"].trigger()
+    assert not window.activity.isVisible()
+
+
+def test_that_tasks_are_listed_and_can_be_stopped_one_by_one(window):
+    window.menus.by_name["tasks"].trigger()
+    panel, asked = window.activity.tasks, []
+    panel.cancelRequested.disconnect()
+    panel.cancelRequested.connect(asked.append)
+    panel.show_tasks([Task(3, "a", "Reading", 1, 4, "x.stl"), Task(5, "b", "Building", 0, 0)])
+    panel.findChild(QPushButton, "stop_task_5").click()
+    assert asked == [5]
+    assert not panel.idle.isVisible()
+    panel.show_tasks([])
+    assert panel.idle.isVisible()
+
+
+@pytest.mark.parametrize(
+    ("done", "total", "seconds", "words"),
+    [(0, 10, 5.0, ""), (5, 10, 5.0, "about 5 s left"), (1, 10, 60.0, "about 9 min left"), (10, 10, 5.0, ""),
+     (1, 100, 0.4, ""), (1, 101, 72.0, "about 2.0 h left")],
+)  # fmt: skip
+def test_that_the_time_left_follows_from_the_time_gone(done, total, seconds, words):
+    assert time_left(done, total, seconds) == words
+
+
+def test_that_the_borders_between_parts_are_remembered(window, shown):
+    columns = window.page.findChild(QSplitter, "explore_columns")
+    total = sum(columns.sizes())
+    columns.setSizes([total // 3, total // 3, total // 3])
+    wanted = columns.sizes()
+    window.close()
+    kept = Preferences.load()
+    again = shown(open_window(views="image", preferences=kept))
+    again.resize(window.size())
+    QTest.qWait(20)
+    assert again.size() == window.size()
+    found = again.page.findChild(QSplitter, "explore_columns").sizes()
+    assert all(abs(one - other) <= 8 for one, other in zip(found, wanted, strict=True))
+
+
+def test_that_closing_asks_while_a_study_runs(window):
+    window.session.start_study("lmax_study")
+    assert worth_asking(window.session.tasks, [])
+    timer = answer("closing_stay")
+    assert not window.close()
+    timer.stop()
+    assert window.isVisible()
+    assert (
+        any(task.lane == "lmax_study" for task in window.session.tasks) or window.session.results.lmax_study
+    )
+    timer = answer("closing_leave")
+    if window.session.tasks:
+        assert window.close()
+    timer.stop()
+
+
+def test_that_short_work_is_not_asked_about():
+    lanes = ("fit", "surface", "descriptors", "coarsening", "load", "inspect", "warm-up")
+    assert worth_asking([Task(n, lane, "x") for n, lane in enumerate(lanes)], []) == []
+    assert len(worth_asking([Task(1, "export", "Building the dataset")], ["A run is not saved."])) == 2
+
+
+def test_that_what_is_done_can_be_copied_as_command_and_as_python(window):
+    window.menus.by_name["copy_command"].trigger()
+    assert QApplication.clipboard().text().startswith("regolith-studio coarsen sample:all")
+    window.menus.by_name["copy_python"].trigger()
+    compile(QApplication.clipboard().text(), "copied", "exec")
+
+
+def test_that_preferences_of_the_window_are_plain_json(window):
+    window.close()
+    assert json.loads(json.dumps(window.preferences.window)) == window.preferences.window
