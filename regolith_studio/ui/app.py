@@ -21,7 +21,7 @@ from regolith_studio.session.session import Session
 from regolith_studio.ui.environment import check_display
 from regolith_studio.ui.main_window import MainWindow
 from regolith_studio.ui.posting import Poster
-from regolith_studio.ui.tour import TOUR_SEEN, start_tour
+from regolith_studio.ui.tour import TOUR_SEEN
 from regolith_studio.ui.views.factory import best_kind, surface_format
 
 
@@ -55,7 +55,7 @@ def _welcome(window: MainWindow) -> None:
     """Bring back what a crash has left; show who is new around."""
     window.projects.offer_recovery()
     if not window.preferences.window.get(TOUR_SEEN):
-        start_tour(window)
+        window.show_round()
 
 
 def make_application(arguments: Sequence[str]) -> QApplication:

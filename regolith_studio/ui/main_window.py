@@ -80,6 +80,10 @@ class MainWindow(QMainWindow):
         """Show a page, the first one if there is none of this key."""
         return self.pages.go(key if key in self.pages.pages else next(iter(self.pages.pages)))
 
+    def show_round(self) -> None:
+        """Begin the guided tour."""
+        start_tour(self, self.go, self.preferences)
+
     def _context(self, key: str) -> PageContext:
         wiring = Wiring(self.session, self.toast.problem, self)
         return PageContext(
@@ -97,7 +101,7 @@ class MainWindow(QMainWindow):
             "save_project_as": self.projects.save_as,
             "palette": self._open_palette,
             "standard_layout": self._standard_layout,
-            "tour": lambda: start_tour(self),
+            "tour": self.show_round,
             "quit": self.close,
             "go": self.go,
             "next_page": partial(self.pages.neighbour, 1),

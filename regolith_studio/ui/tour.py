@@ -1,19 +1,17 @@
 """The guided tour: a bubble beside one part of the window after another; texts in ``resources/tour``."""
 
 import json
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QEvent, QObject, QPoint, QRect, Qt
 from PySide6.QtGui import QColor, QKeyEvent, QPainter, QPaintEvent, QPen, QRegion
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
 from regolith_studio.resources import resource
+from regolith_studio.session.preferences import Preferences
 from regolith_studio.ui.theme import current_theme
 from regolith_studio.ui.widgets.labels import heading, remark
-
-if TYPE_CHECKING:
-    from regolith_studio.ui.main_window import MainWindow
 
 TOUR_SEEN = "tour_seen"
 """In the preferences of the window: that the tour need not start by itself any more."""
@@ -37,21 +35,22 @@ def steps() -> tuple[Step, ...]:
     return tuple(Step(**entry) for entry in entries)
 
 
-def start_tour(window: "MainWindow") -> "Tour":
-    """Begin at the first stop, instead of a tour that is under way."""
+def start_tour(window: QWidget, go: Callable[[str], object], preferences: Preferences) -> "Tour":
+    """Begin at the first stop, instead of a tour that is under way; `go` shows a page by its key."""
     for old in window.findChildren(Tour):
         old.finish()
-    return Tour(window)
+    return Tour(window, go, preferences)
 
 
 class Tour(QWidget):
     """A frame about what is shown, and a bubble with text; the window stays usable meanwhile."""
 
-    def __init__(self, window: "MainWindow") -> None:
+    def __init__(self, window: QWidget, go: Callable[[str], object], preferences: Preferences) -> None:
         super().__init__(window)
         self.setObjectName("tour")
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
-        self._window, self._steps, self._at = window, steps(), 0
+        self._window, self._go, self._preferences = window, go, preferences
+        self._steps, self._at = steps(), 0
         self._spot = QRect()
         self._bubble = QFrame(window)
         self._bubble.setObjectName("tour_bubble")
@@ -82,7 +81,7 @@ class Tour(QWidget):
             return
         self._at = max(0, number)
         step = self._steps[self._at]
-        self._window.go(step.page)
+        self._go(step.page)
         self._title.setText(step.title)
         self._text.setText(step.text)
         self._count.setText(f"{self._at + 1} of {len(self._steps)}")
@@ -94,8 +93,8 @@ class Tour(QWidget):
     def finish(self) -> None:
         """End the tour, and remember that it was seen."""
         self._window.removeEventFilter(self)
-        self._window.preferences.window = self._window.preferences.window | {TOUR_SEEN: True}
-        self._window.preferences.save()
+        self._preferences.window = self._preferences.window | {TOUR_SEEN: True}
+        self._preferences.save()
         for widget in (self._bubble, self):
             widget.hide()
             widget.deleteLater()
@@ -124,8 +123,7 @@ class Tour(QWidget):
         self._spot &= self.rect()
         ring = QRegion(self._spot) - QRegion(self._spot.adjusted(5, 5, -5, -5))
         self.setMask(ring)  # nothing but the frame is drawn over views that draw by themselves
-        self._bubble.setFixedWidth(_WIDTH)
-        self._bubble.adjustSize()
+        self._bubble.setFixedSize(_WIDTH, max(90, self._bubble.heightForWidth(_WIDTH)))
         self._bubble.move(_beside(self._spot, self._bubble.rect(), self.rect()))
         for widget in (self, self._bubble):
             widget.show()
@@ -133,6 +131,7 @@ class Tour(QWidget):
 
     def _arrange(self) -> None:
         row = QHBoxLayout()
+        self._count.setWordWrap(False)
         row.addWidget(self._count, 1)
         for button in (self.end, self.back, self.next):
             row.addWidget(button)

@@ -120,7 +120,7 @@ def test_that_a_proper_close_leaves_nothing_to_bring_back(window):
 
 
 def test_that_every_stop_of_the_tour_shows_something_that_is_there(window):
-    tour = start_tour(window)
+    tour = start_tour(window, window.go, window.preferences)
     for number, step in enumerate(steps()):
         assert tour.at == number
         assert window.pages.current == step.page
@@ -135,7 +135,7 @@ def test_that_every_stop_of_the_tour_shows_something_that_is_there(window):
 
 
 def test_that_escape_ends_the_tour(window):
-    tour = start_tour(window)
+    tour = start_tour(window, window.go, window.preferences)
     QTest.keyClick(tour.next, Qt.Key.Key_Escape)
     assert not tour.isVisible()
     assert all(not each.isVisible() for each in window.findChildren(Tour))
