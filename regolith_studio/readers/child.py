@@ -39,6 +39,12 @@ def read_mesh_file(request: dict[str, Any]) -> Message:
     return Message(header, (parsed.vertices.astype("<f8"), parsed.faces.astype("<i8")))
 
 
+def spin(_request: dict[str, Any]) -> Message:
+    """Work for ever, as a parser does on a file made to that end; the tests ask for it."""
+    while True:
+        pass
+
+
 def sleep(_request: dict[str, Any]) -> Message:
     """Hang, as a parser does on a file made to that end; the tests ask for it."""
     time.sleep(3600.0)
@@ -64,6 +70,7 @@ TASKS: dict[str, Task] = {
     "positions": later("position_task", "read_positions_file"),
     "numbers": later("position_task", "read_number_rows"),
     "sleep": sleep,
+    "spin": spin,
 }
 """What the child can be asked for; another kind of file is another row."""
 
@@ -96,10 +103,10 @@ def main() -> None:
     with contextlib.suppress(EOFError, OSError, KeyboardInterrupt):
         while True:
             request = receive(source).header
-            _alarm(float(request.get("seconds", 60.0)))
+            _alarm(float(request.get("seconds", 60.0)), float(request.get("work", 60.0)))
             _allow_memory(int(request.get("memory", 0)), limit)
             send(sink, answer(request))
-            _alarm(0.0)
+            _alarm(0.0, 0.0)
 
 
 def _private_pipes() -> tuple[Any, Any]:
@@ -112,11 +119,13 @@ def _private_pipes() -> tuple[Any, Any]:
     return os.fdopen(source, "rb", buffering=0), os.fdopen(sink, "wb", buffering=0)
 
 
-def _alarm(seconds: float) -> None:
-    """Die after so many seconds, even inside compiled code; never for 0."""
+def _alarm(seconds: float, work: float) -> None:
+    """Die after so many seconds, or of so much processor time, even inside compiled code; never for 0."""
     if hasattr(signal, "setitimer"):
         signal.signal(signal.SIGALRM, signal.SIG_DFL)
+        signal.signal(signal.SIGPROF, signal.SIG_DFL)
         signal.setitimer(signal.ITIMER_REAL, seconds)
+        signal.setitimer(signal.ITIMER_PROF, work)
 
 
 def _limit_memory(limit: int) -> None:

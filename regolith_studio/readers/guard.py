@@ -1,7 +1,9 @@
 """The guard of the reading child: starts it, keeps it warm, limits it, replaces it when it dies."""
 
+import contextlib
 import multiprocessing.util as process_end
 import os
+import signal
 import stat
 import subprocess
 import sys
@@ -21,6 +23,8 @@ SHARE_OF_MEMORY = 0.75
 """Nor may it use more than this share of what the machine has."""
 
 BASE_SECONDS = 10.0
+WORKING_SECONDS = 1.5
+"""A small file may keep the processor busy for so long; the rest is patience with a busy machine."""
 SECONDS_PER_BYTE = 1.0 / 1e6
 START_SECONDS = 60.0
 LARGEST_WARM_RESULT = 256 * 1024**2
@@ -36,7 +40,8 @@ class Guard:
         Bytes of addresses that the child may use, where the system can limit them; by default 6 GiB, or
         three quarters of the machine's memory where that is less.
     seconds
-        Wall time for a small file; larger ones get a second more for each million bytes.
+        Wall time for a small file, of which no more than 1.5 s may be work; larger ones get a second
+        more of both for each million bytes.
     """
 
     def __init__(self, memory: int | None = None, seconds: float = BASE_SECONDS) -> None:
@@ -59,20 +64,28 @@ class Guard:
         FileError
             With one sentence if the file is refused, hangs or kills its reader.
         """
-        return self.ask(task, path, self._seconds + checked_size(path) * SECONDS_PER_BYTE, **options)
+        more = checked_size(path) * SECONDS_PER_BYTE
+        work = min(self._seconds, WORKING_SECONDS) + more
+        return self.ask(task, path, self._seconds + more, work, **options)
 
-    def ask(self, task: str, path: Path, seconds: float, **options: Any) -> Message:
+    def ask(
+        self, task: str, path: Path, seconds: float, work: float | None = None, **options: Any
+    ) -> Message:
         """As `request`, for who has looked at the file or folder before: no check of its size.
 
         Parameters
         ----------
         seconds
             Wall time that the task may take.
+        work
+            Processor time that it may take, where the system counts it; by default as much.
         options
             More of what the task needs; ``memory`` is how many bytes it may use above what the child
             has already, so that a damaged file cannot take all that the child may ever have.
         """
-        header = {"task": task, "path": str(path.absolute()), "seconds": seconds + 2.0, **options}
+        work = min(work or seconds, seconds)
+        limits = {"seconds": seconds + 2.0, "work": work}
+        header = {"task": task, "path": str(path.absolute()), **limits, **options}
         with self._lock:
             message = self._asked(Message(header), seconds)
         match message.header["status"]:
@@ -83,6 +96,10 @@ class Guard:
             case "memory":
                 limit = options.get("memory", self._memory) / 1024**3
                 reason = f"needs more than the {limit:.3g} GiB of memory that a reader may use."
+            case "busy":
+                reason = (
+                    f"was given up after {work:.2g} s of work: it is damaged, or far larger than it looks."
+                )
             case "late":
                 reason = f"was given up after {seconds:.2g} s: it is damaged, or far larger than it looks."
             case _:
@@ -108,7 +125,7 @@ class Guard:
                     pipe.close()
 
     def _asked(self, message: Message, seconds: float) -> Message:
-        """The child's answer, or a message of status ``late`` or ``dead``."""
+        """The child's answer, or a message of status ``late``, ``busy`` or ``dead``."""
         answer = self._exchanged(self._running(), message, seconds)
         if answer.header["status"] == "unheard":
             self.close()
@@ -138,7 +155,7 @@ class Guard:
         try:
             return receive(process.stdout)  # type: ignore[arg-type]
         except (EOFError, OSError, ValueError, KeyError):
-            return Message({"status": "late" if late.is_set() else "dead"})
+            return Message({"status": "late" if late.is_set() else _cause_of_death(process)})
         except BaseException:
             self.close()
             raise
@@ -159,6 +176,14 @@ class Guard:
             process_end.Finalize(None, self.close, exitpriority=100)
             self._ends_with_process = True
         return process
+
+
+def _cause_of_death(process: subprocess.Popen[bytes]) -> str:
+    """``busy`` if the child's own limit of work has ended it, else ``dead``."""
+    with contextlib.suppress(subprocess.TimeoutExpired):
+        if process.wait(timeout=1.0) == -getattr(signal, "SIGPROF", 0):
+            return "busy"
+    return "dead"
 
 
 def _ends_child(answer: Message) -> bool:

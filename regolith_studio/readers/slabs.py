@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
-from regolith_studio.readers.guard import START_SECONDS, Guard, checked_size, volume_guard
+from regolith_studio.readers.guard import START_SECONDS, WORKING_SECONDS, Guard, checked_size, volume_guard
 from regolith_studio.readers.plain_voxels import PlainVoxels, plain_voxels
 from regolith_studio.readers.sentences import sentence_about
 from regolith_studio.readers.volume_files import slice_names, slices_stamp
@@ -20,8 +20,9 @@ SLAB = 64 * 1024**2
 """Bytes that the child hands over at a time, or one slice where that has more."""
 LARGEST_LAYER = 256 * 1024**2
 """Bytes that may be handed over at once where a file is packed in chunks of so many slices."""
-OPEN_SECONDS, OPEN_BYTES_A_SECOND = 1.5, 2e7
-SLAB_SECONDS, SLAB_BYTES_A_SECOND, SKIPPED_BYTES_A_SECOND = 1.5, 1e7, 3e7
+BYTES_OPENED_A_SECOND, BYTES_READ_A_SECOND, BYTES_SKIPPED_A_SECOND = 2e7, 1e7, 3e7
+PATIENCE = 6.0
+"""How much longer than its work a task may take on a busy machine."""
 LEAST_MEMORY = 512 * 1024**2
 
 Progress = Callable[[int, int], None]
@@ -127,11 +128,11 @@ class OpenedFile:
                 reason = str(error) if isinstance(error, FileError) else f"cannot be read: {error.strerror}."
                 raise FileError(sentence_about(self.path, reason)) from None
         size = (z1 - z0) * self.slice_bytes
-        seconds = SLAB_SECONDS + size / SLAB_BYTES_A_SECOND
+        work = WORKING_SECONDS + size / BYTES_READ_A_SECOND
         if self.answer["in_order"]:
-            seconds += z0 * self.slice_bytes / SKIPPED_BYTES_A_SECOND
+            work += z0 * self.slice_bytes / BYTES_SKIPPED_A_SECOND
         request = {**self.request, "memory": LEAST_MEMORY + 6 * size}
-        message = self.guard.ask("volume-slices", self.path, seconds, z0=z0, z1=z1, **request)
+        message = self.guard.ask("volume-slices", self.path, PATIENCE * work, work, z0=z0, z1=z1, **request)
         voxels = message.arrays[0]
         if voxels.shape != (z1 - z0, *self.shape[1:]) or voxels.dtype != self.dtype:
             raise FileError(sentence_about(self.path, "changed while it was read."))
@@ -162,8 +163,8 @@ def opened_file(
         "names": list(names),
     }
     guard.ask("volume-prepare", path, START_SECONDS)
-    seconds = OPEN_SECONDS + size / OPEN_BYTES_A_SECOND
-    answer = guard.ask("volume-open", path, seconds, memory=LEAST_MEMORY, **request).header
+    work = WORKING_SECONDS + size / BYTES_OPENED_A_SECOND
+    answer = guard.ask("volume-open", path, PATIENCE * work, work, memory=LEAST_MEMORY, **request).header
     opened = OpenedFile(path, request, answer, guard, size)
     if answer["plain"] is None:
         return opened

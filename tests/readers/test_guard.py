@@ -1,6 +1,7 @@
 """The reading child: warm, limited, replaced when it dies, gone when its parent goes."""
 
 import os
+import signal
 import subprocess
 import sys
 import threading
@@ -77,6 +78,15 @@ def test_that_a_file_that_takes_too_long_is_given_up(stl):
     guard = Guard(seconds=0.3)
     with pytest.raises(FileError, match=r"cube\.stl was given up after 0\.3 s"):
         guard.request("sleep", stl)
+    assert guard.request("mesh", stl).arrays[1].shape == (12, 3)
+    guard.close()
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGPROF"), reason="this system does not count a process's work")
+def test_that_a_file_that_keeps_the_processor_busy_is_given_up_long_before_it_is_late(stl):
+    guard = Guard(seconds=60.0)
+    with pytest.raises(FileError, match=r"cube\.stl was given up after 1\.5 s of work"):
+        guard.request("spin", stl)
     assert guard.request("mesh", stl).arrays[1].shape == (12, 3)
     guard.close()
 
