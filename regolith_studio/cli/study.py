@@ -58,7 +58,7 @@ DescriptorKeys = Annotated[
     str,
     typer.Option(
         "--descriptors",
-        help="Keys of descriptors, separated by commas.",
+        help="Keys of descriptors, separated by commas; or all.",
         metavar="LIST",
         show_default="r_eq, A, AR, S, V/CH",
     ),
@@ -141,6 +141,7 @@ def population(
     """Drawn against measured particles: models fitted to one half, judged on the other (Figs. 4-6)."""
     from regolith_studio.cli.generate import shape_source
     from regolith_studio.cli.terminal import complain
+    from regolith_studio.descriptors.catalogue import CATALOGUE
     from regolith_studio.errors import InputError
     from regolith_studio.jobs.generating import GenerateOrder
     from regolith_studio.jobs.studying import study_population
@@ -163,7 +164,7 @@ def population(
         n_draws=draws or None,
         n_splits=splits,
         n_repeats=repeats,
-        keys=_words(descriptors) or KEYS,
+        keys=tuple(CATALOGUE) if descriptors == "all" else _words(descriptors) or KEYS,
         seed=seed,
     )
     _conclude("population_study", steps, output, json)

@@ -11,13 +11,18 @@ from typing import Any, Protocol
 
 import numpy as np
 from scipy.optimize import brentq
-from scipy.special import log_ndtr, ndtr, ndtri
+from scipy.special import log_ndtr, logsumexp, ndtr, ndtri
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
 
 Bounds = tuple[float, float] | None
 _TABLE = 4001
+MOST_MODES = 6
+FEWEST_A_MODE = 10
+"""Particles for each part of a mixture of log-normal laws."""
+NARROWEST = 0.05
+_STEPS = 500
 
 
 class SizeLaw(Protocol):
@@ -92,6 +97,19 @@ class LogNormalSizes:
             quarter = float(np.subtract(*np.percentile(logs, [75, 25]))) / 1.34
             width = 0.9 * min(float(_deviation(logs)), quarter or np.inf) * n**-0.2
         return cls(np.full(n, 1 / n), logs, np.full(n, max(width, 1e-9)))
+
+    @classmethod
+    def mixture(cls, radii: FloatArray) -> "LogNormalSizes":
+        """Several log-normal laws, 1 to :data:`MOST_MODES` of them by Bayes' criterion.
+
+        Expectation and maximisation, from parts of equal numbers in the order of size; no part is narrower
+        than a twentieth of the whole.
+        """
+        logs = np.log(radii)
+        most = max(1, min(MOST_MODES, len(logs) // FEWEST_A_MODE))
+        fits = [_modes(logs, k) for k in range(1, most + 1)]
+        criterion = [(3 * k - 1) * np.log(len(logs)) - 2 * fit[1] for k, fit in enumerate(fits, start=1)]
+        return fits[int(np.argmin(criterion))][0]
 
     def draw(self, n: int, rng: np.random.Generator, bounds: Bounds = None) -> tuple[FloatArray, IntArray]:
         """Exactly `n` radii from the law cut to `bounds`, whatever its share there.
@@ -199,6 +217,7 @@ class RosinRammlerSizes:
 SIZE_LAWS: Mapping[str, Callable[[FloatArray], SizeLaw]] = {
     "kernel": LogNormalSizes.kernel,
     "log_normal": LogNormalSizes.log_normal,
+    "log_normal_mixture": LogNormalSizes.mixture,
     "rosin_rammler": RosinRammlerSizes.fitted,
 }
 """What a law can be fitted as, from equivalent radii (n,)."""
@@ -222,6 +241,27 @@ def size_law_from(values: Mapping[str, Any]) -> SizeLaw:
     except (KeyError, TypeError, ValueError) as error:
         raise InputError(f"The law of sizes is broken: {error}.") from error
     raise InputError(f"There is no law of sizes called {values['type']!r}.")
+
+
+def _modes(logs: FloatArray, k: int) -> tuple[LogNormalSizes, float]:
+    """The mixture of `k` normal laws, and its log-likelihood."""
+    floor = float(_deviation(logs)) * (NARROWEST if k > 1 else 1e-9)
+    rank = np.argsort(np.argsort(logs, kind="stable"), kind="stable")
+    shares = 0.9 * np.eye(k)[rank * k // len(logs)] + 0.1 / k
+    before = now = -np.inf
+    for _ in range(_STEPS):
+        members = np.maximum(shares.sum(axis=0), 1e-3)
+        means = shares.T @ logs / members
+        variances = (shares * (logs[:, None] - means) ** 2).sum(axis=0) / members
+        widths = np.maximum(np.sqrt(variances), max(floor, 1e-9))
+        weights = members / members.sum()
+        joint = np.log(weights) - ((logs[:, None] - means) / widths) ** 2 / 2 - np.log(widths)
+        total = logsumexp(joint, axis=1, keepdims=True)
+        shares, now = np.exp(joint - total), float(total.sum()) - len(logs) * np.log(2 * np.pi) / 2
+        if now - before < 1e-9 * abs(now):
+            break
+        before = now
+    return LogNormalSizes(weights, means, widths), now
 
 
 def _deviation(logs: FloatArray) -> FloatArray:

@@ -16,11 +16,17 @@ from regolith_studio.descriptors.describe import describe
 from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.model.draws import Draws, virtual_mesh
-from regolith_studio.model.judging import novelty_in_frame, pairs_of
+from regolith_studio.model.judging import novelty_in_frame
 from regolith_studio.model.models import MODELS
 from regolith_studio.model.principal_axes import canonical
 from regolith_studio.model.sample import Sample
-from regolith_studio.studies.population_distances import Distances, Intervals, distances, intervals
+from regolith_studio.studies.population_distances import (
+    Distances,
+    Intervals,
+    distances,
+    intervals,
+    paired_columns,
+)
 from regolith_studio.studies.progress import StudyProgress
 
 KEYS = ("equivalent_radius", "surface_area", "aspect_ratio", "sphericity", "convexity")
@@ -110,7 +116,7 @@ class PopulationStudy:
     @property
     def pairs(self) -> list[tuple[str, str]]:
         """Pairs of descriptors, as in the energy distances."""
-        return [(self.keys[i], self.keys[j]) for i, j in pairs_of(len(self.keys))]
+        return [(self.keys[i], self.keys[j]) for i, j in paired_columns(len(self.keys))]
 
 
 def population_study(

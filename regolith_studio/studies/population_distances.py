@@ -18,6 +18,8 @@ from regolith_studio.model.judging import (
 WEIGHTINGS = ("number", "volume")
 CONFIDENCE = 0.95
 N_RESAMPLES = 200
+MOST_PAIRED = 5
+"""Descriptors, the first of a study, whose pairs are compared: their number grows with the square."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +73,9 @@ def distances(
             [[relative_wasserstein(one[:, j], two[:, j], *pair) for j in columns] for pair in weights]
         )
         gaps.append([[kolmogorov_smirnov(one[:, j], two[:, j], *pair) for j in columns] for pair in weights])
-        energies.append([energy_distance(one[:, [i, j]], two[:, [i, j]]) for i, j in pairs_of(one.shape[1])])
+        energies.append(
+            [energy_distance(one[:, [i, j]], two[:, [i, j]]) for i, j in paired_columns(one.shape[1])]
+        )
         rng = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(number,)))
         accuracies.append(classifier_accuracy(one, two, rng))
     return Distances(*map(np.array, (near, gaps, energies, accuracies)))
@@ -94,6 +98,11 @@ def intervals(
             near[:, w, j] = _interval(far, found.wasserstein[0, w, j])
             gaps[:, w, j] = _interval(gap, found.kolmogorov[0, w, j])
     return Intervals(near, gaps)
+
+
+def paired_columns(n_columns: int) -> list[tuple[int, int]]:
+    """Which columns are compared in pairs: those of the first :data:`MOST_PAIRED`."""
+    return pairs_of(min(n_columns, MOST_PAIRED))
 
 
 def class_weights(table: FloatArray, weighting: str, size_column: int | None) -> FloatArray:

@@ -71,3 +71,18 @@ def test_that_a_law_read_back_draws_the_same(key: str) -> None:
 def test_that_a_broken_law_is_refused(values: dict[str, object]) -> None:
     with pytest.raises(InputError, match="law of sizes"):
         size_law_from(values)
+
+
+def test_that_a_mixture_of_log_normal_laws_finds_the_two_that_drew() -> None:
+    radii = np.concatenate([RNG(0).lognormal(0.0, 0.1, 600), RNG(1).lognormal(1.5, 0.25, 300)])
+    law = LogNormalSizes.mixture(radii)
+    order = np.argsort(law.means)
+    np.testing.assert_allclose(law.weights[order], [2 / 3, 1 / 3], atol=0.01)
+    np.testing.assert_allclose(law.means[order], [0.0, 1.5], atol=0.04)
+    np.testing.assert_allclose(law.deviations[order], [0.1, 0.25], rtol=0.08)
+
+
+def test_that_one_log_normal_law_is_found_to_be_one() -> None:
+    law = LogNormalSizes.mixture(RNG(0).lognormal(1.0, 0.4, 500))
+    assert len(law.weights) == 1
+    assert law.deviations[0] == pytest.approx(0.4, rel=0.08)

@@ -137,6 +137,23 @@ def test_that_models_are_judged_on_the_sample_that_was_fitted(page):
     assert page.judgement.pictures["components"].is_empty()
 
 
+def test_that_the_parts_of_a_mixture_are_named(page):
+    take(page, rough_sample())
+    page.source.model.setCurrentIndex(page.source.model.findData("mixture_field"))
+    page.source.forms["mixture_field"].setValue({"n_components": 2})
+    page.source.fit.click()
+    assert page.drawing.names.text() == "part 1, part 2"
+    page.drawing.names.setText("basalt, glass")
+    page.drawing.names.editingFinished.emit()
+    page.drawing.setValue({"n": 12})
+    page.drawing.draw.click()
+    page.drawing.adopt.click()
+    assert {entry.particle.group for entry in page._context.session.particles} == {"basalt", "glass"}
+    page.drawing.names.setText("one")
+    page.drawing.names.editingFinished.emit()
+    assert page.drawing.names.text() == "basalt, glass"
+
+
 def test_that_half_of_the_sample_can_be_kept_away_from_the_model(page):
     take(page, rough_sample())
     page.source.half.setChecked(True)

@@ -11,6 +11,8 @@ from PySide6.QtWidgets import (
     QDoubleSpinBox,
     QFormLayout,
     QHBoxLayout,
+    QLabel,
+    QLineEdit,
     QPushButton,
     QSpinBox,
     QStackedWidget,
@@ -160,6 +162,7 @@ class DrawControls(QWidget):
 
     drawRequested = Signal()  # noqa: N815
     adoptRequested = Signal()  # noqa: N815
+    namesChanged = Signal(tuple)  # noqa: N815
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -169,13 +172,27 @@ class DrawControls(QWidget):
         self.smallest, self.largest = QDoubleSpinBox(), QDoubleSpinBox()
         self.draw, self.adopt = QPushButton("Draw"), QPushButton("Use as population")
         self.findings = remark()
+        self.names = QLineEdit()
+        self._names_label = QLabel("Parts")
         self._dress()
         self._place()
+        self.names.editingFinished.connect(self._rename)
         self.limited.toggled.connect(self._limit)
         self.draw.clicked.connect(self.drawRequested)
         self.adopt.clicked.connect(self.adoptRequested)
         self._limit(False)
         self.set_ready(model=False, drawn=False)
+        self.show_names(())
+
+    def show_names(self, names: tuple[str, ...]) -> None:
+        """Names of the parts of a mixture, or none for other models."""
+        self.names.setVisible(bool(names))
+        self._names_label.setVisible(bool(names))
+        self.names.setText(", ".join(names))
+
+    def _rename(self) -> None:
+        names = tuple(name.strip() for name in self.names.text().split(",") if name.strip())
+        self.namesChanged.emit(names)
 
     def set_ready(self, *, model: bool, drawn: bool) -> None:
         """Whether there is a model to draw from, and whether particles have been drawn."""
@@ -224,18 +241,21 @@ class DrawControls(QWidget):
             "limited": "Limit the sizes",
             "smallest": "Smallest equivalent radius",
             "largest": "Largest equivalent radius",
+            "names": "Names of the parts, the most numerous first",
             "draw": "Draw particles",
             "adopt": "Use the drawn particles as population",
         }
         for name, words in names.items():
             getattr(self, name).setObjectName(f"model_{name}")
             getattr(self, name).setAccessibleName(words)
+        self.names.setToolTip("Constituents of the mixture, separated by commas, the most numerous first.")
         self.adopt.setToolTip("Open the drawn particles: to be coarsened and made a dataset.")
 
     def _place(self) -> None:
         form = QFormLayout()
         form.addRow("Particles", self.number)
         form.addRow("Seed", self.seed)
+        form.addRow(self._names_label, self.names)
         sizes = QHBoxLayout()
         sizes.addWidget(self.smallest, 1)
         sizes.addWidget(self.largest, 1)

@@ -94,7 +94,7 @@ class JudgementPanel(QWidget):
         """Show other choices."""
         self.all_models.setChecked(bool(value.get("all_models", False)))
         self.splits.setValue(int(value.get("splits", 5)))
-        self.repeats.setValue(int(value.get("repeats", 5)))
+        self.repeats.setValue(int(value.get("repeats", 1)))
 
     def show_judged(self, judged: JudgedShapes | None) -> None:
         """Show a study, finished or not, or nothing."""
@@ -130,7 +130,7 @@ class JudgementPanel(QWidget):
             ("repeats", self.repeats, "drawings from each fit"),
         ):
             field.setRange(1, 50)
-            field.setValue(5)
+            field.setValue(5 if name == "splits" else 1)
             field.setObjectName(f"model_{name}")
             field.setAccessibleName(words.capitalize())
             row.addWidget(field)

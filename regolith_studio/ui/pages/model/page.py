@@ -201,6 +201,7 @@ class ModelPage(PageWidget):
         self.gallery.show_shapes(fitted.examples, ())
         self.judgement.show_judged(None)
         self._show_state()
+        self.drawing.show_names(getattr(model, "names", ()))
         if isinstance(fitted.source.content, Sample):
             radii = fitted.source.content.equivalent_radii
             self.drawing.suggest(float(radii.min()), float(radii.max()))
@@ -233,6 +234,15 @@ class ModelPage(PageWidget):
             changed = self.live.spectrum.is_changed()
             self._model = with_amplitudes(self._fitted.model, amplitudes) if changed else self._fitted.model
             self._show_live()
+
+    def _rename(self, names: tuple[str, ...]) -> None:
+        model: Any = self._model
+        if not hasattr(model, "renamed") or names == model.names:
+            return
+        try:
+            self._model = model.renamed(names)
+        finally:
+            self.drawing.show_names(getattr(self._model, "names", ()))
 
     def _take_over(self, particles: tuple[Particle, ...]) -> None:
         self._context.session.shelf.put("population", particles)
@@ -295,6 +305,7 @@ class ModelPage(PageWidget):
         self.source.fitRequested.connect(self.fit_model)
         self.drawing.drawRequested.connect(self.draw)
         self.drawing.adoptRequested.connect(self.adopt)
+        self.drawing.namesChanged.connect(lambda names: self._try(lambda: self._rename(names)))
         self.live.spectrum.valueChanged.connect(self._edit)
         self.live.reset.clicked.connect(self.live.spectrum.reset)
         self.live.another.clicked.connect(self.another)
