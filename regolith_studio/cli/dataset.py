@@ -1,4 +1,4 @@
-"""``dataset``: build, validate, sample, export, formats."""
+"""``dataset``: build, validate, list, sample, export, formats."""
 
 from pathlib import Path
 from typing import Annotated
@@ -23,11 +23,15 @@ from regolith_studio.cli.options import (
     as_bad_use,
     values,
 )
+from regolith_studio.cli.whole_help import WholeHelp
 
 DatasetFolder = Annotated[Path, typer.Argument(metavar="FOLDER", help="A dataset folder.")]
 
 app = typer.Typer(
-    help="Datasets for DEM programs (section 2.5).", no_args_is_help=True, rich_markup_mode=None
+    cls=WholeHelp,
+    help="Datasets for DEM programs (section 2.5).",
+    no_args_is_help=True,
+    rich_markup_mode=None,
 )
 
 
@@ -124,6 +128,35 @@ def validate(
     else:
         typer.echo("\n".join(problems) or f"{folder} is a sound dataset.")
     raise typer.Exit(1 if problems else 0)
+
+
+@app.command("list")
+def list_(
+    root: Annotated[Path, typer.Argument(metavar="FOLDER", help="A folder with datasets below it.")],
+    words: Annotated[
+        str, typer.Option("--filter", help="Only entries with these words.", metavar="WORDS")
+    ] = "",
+    json: Json = False,
+    jobs: Jobs = 1,
+    seed: Seed = 0,
+) -> None:
+    """List the datasets below a folder, each with what was exported and simulated from it."""
+    from regolith_studio.cli.terminal import follow, print_json
+    from regolith_studio.dataset.library import provenance_tree
+    from regolith_studio.jobs.datasets import list_library
+
+    del jobs, seed  # taken by every command
+    tree = provenance_tree(entry for entry in follow(list_library(root)) if entry.matches(words))
+    names = ("kind", "name", "folder", "sha256", "detail", "problem")
+    if json:
+        rows = [
+            [{key: str(getattr(one, key)) for key in names} for one in (top, *below)] for top, below in tree
+        ]
+        print_json([top | {"from_it": below} for top, *below in rows])
+        return
+    for top, below in tree:
+        for indent, entry in [("", top), *(("    ", one) for one in below)]:
+            typer.echo(f"{indent}{entry.name}: {entry.problem or entry.detail}\n{indent}  {entry.folder}")
 
 
 @app.command("sample")

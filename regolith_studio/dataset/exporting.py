@@ -1,6 +1,9 @@
 """What an exporter is, what it is told, and how its folder is written: as a whole, with a README."""
 
 import hashlib
+import os
+import shlex
+import subprocess
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
@@ -95,7 +98,8 @@ class Exporter:
         What of a dataset the format holds, and what it has no room for; said before the export and in the
         README.
     load_command
-        What to type to use the files; ``{folder}`` stands for where they are.
+        What to type, or to write into an input file, to use the files; ``{folder}`` stands for where they
+        are, ``{shell}`` for the same as a shell wants it.
     files
         Every file by its relative path, the same bytes for the same input. The entry :data:`NOTES` is
         no file: text for the README, such as what was measured.
@@ -173,7 +177,13 @@ def write_export(
         raise DatasetError(
             f"The export could not be written to {target}: {error.strerror or error}."
         ) from error
-    return Exported(exporter.key, target, tuple(sorted(content)), exporter.load_command.format(folder=target))
+    return Exported(exporter.key, target, tuple(sorted(content)), load_command(exporter, target))
+
+
+def load_command(exporter: Exporter, folder: Path) -> str:
+    """The exporter's command for files in `folder`, safe for blanks in its path."""
+    shell = subprocess.list2cmdline([str(folder)]) if os.name == "nt" else shlex.quote(str(folder))
+    return exporter.load_command.format(folder=folder, shell=shell)
 
 
 def check_consent(exporter: Exporter, accept_loss: bool) -> None:
@@ -224,7 +234,7 @@ def _readme(
         f"Written by Regolith Studio {regolith_studio.__version__} from a dataset of {len(dataset)} shapes.",
         "",
         f"Units: {exporter.units}",
-        f"To use: {exporter.load_command.format(folder='.')}",
+        f"To use: {load_command(exporter, Path())}",
         "",
         "Carried:",
         *(f"  - {one}" for one in exporter.carries),

@@ -1,10 +1,11 @@
-"""Reads and checks dataset folders in the background."""
+"""Reads, checks and lists dataset folders in the background."""
 
 from pathlib import Path
 
 from regolith_studio.dataset.folder import read_dataset
+from regolith_studio.dataset.library import LibraryEntry, scan_library
 from regolith_studio.dataset.validation import validate_dataset
-from regolith_studio.jobs.events import Started, Steps
+from regolith_studio.jobs.events import Partial, Progress, Started, Steps
 
 
 def open_dataset_folder(folder: Path) -> Steps:
@@ -17,3 +18,14 @@ def validate_dataset_folder(folder: Path) -> Steps:
     """Returns the problems of the folder, one sentence each."""
     yield Started("Checking the dataset")
     return tuple(validate_dataset(folder))
+
+
+def list_library(root: Path) -> Steps:
+    """Datasets, exports and results below a folder; partial results are single ones, the result all."""
+    yield Started("Looking for datasets")
+    found: list[LibraryEntry] = []
+    for entry in scan_library(root):
+        found.append(entry)
+        yield Partial(entry)
+        yield Progress(len(found), 0, entry.name)
+    return tuple(found)

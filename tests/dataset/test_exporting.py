@@ -2,6 +2,9 @@
 
 import hashlib
 import json
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +13,7 @@ import pytest
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.disk import leftovers
 from regolith_studio.dataset.exporters import EXPORTERS
-from regolith_studio.dataset.exporting import NOTES, Exporter, ExportOptions, write_export
+from regolith_studio.dataset.exporting import NOTES, Exporter, ExportOptions, load_command, write_export
 from regolith_studio.dataset.simulation_case import particle_count
 from regolith_studio.errors import DatasetError, InputError
 
@@ -51,7 +54,7 @@ def test_that_an_export_says_what_it_is_and_gives_the_same_bytes_again(
     assert all(
         said in readme for said in (exporter.units, *exporter.carries, *exporter.loses, exporter.alters)
     )
-    assert exporter.load_command.format(folder=".") in readme
+    assert load_command(exporter, Path()) in readme
     assert "{" not in readme.replace("{folder}", "")
 
 
@@ -101,6 +104,16 @@ def test_that_an_exporter_that_fails_leaves_the_old_export(tmp_path: Path, make_
     with pytest.raises(DatasetError):
         write_export(make_dataset(1), Exporter("x", "X", "", (), (), "", fail), folder)
     assert contents(folder) == before
+
+
+@pytest.mark.skipif(os.name == "nt", reason="another shell")
+def test_that_commands_bear_blanks_in_paths(tmp_path: Path, make_dataset) -> None:
+    folder = tmp_path / "my sets" / "it's here"
+    said = write_export(make_dataset(1), EXPORTERS["half-spaces"], folder, OPTIONS).load_command
+    done = subprocess.run(
+        said.replace("python", sys.executable, 1), shell=True, capture_output=True, check=True
+    )
+    assert json.loads(done.stdout)["format"] == "half-spaces"
 
 
 def test_that_settings_of_contact_and_cylinder_go_by_their_own_names() -> None:

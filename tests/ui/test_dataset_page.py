@@ -211,6 +211,31 @@ def test_that_themes_reach_every_part(chosen) -> None:
     assert chosen.gallery.shown
 
 
+def test_that_the_library_lists_datasets_with_what_came_from_them(chosen, tmp_path, wait) -> None:
+    chosen.build_in(tmp_path / "set")
+    wait(lambda: chosen.targets.export.isEnabled())
+    chosen.targets.setValue({"targets": ["hoomd"]})
+    chosen.export_to(tmp_path / "out")
+    wait(lambda: len(chosen.exports.exports) == 1)
+    library = chosen.library
+    library.show_folder(tmp_path)
+    wait(lambda: library.tree.topLevelItemCount() == 1)
+    top = library.tree.topLevelItem(0)
+    assert (top.text(0), top.child(0).text(0)) == ("regolith", "regolith for hoomd")
+    assert not top.icon(0).isNull()
+    library.tree.setCurrentItem(top.child(0))
+    assert "Does not carry" in library.facts.text()
+    assert not library.use.isEnabled()
+    library.tree.setCurrentItem(top)
+    assert "representatives of 8 particles" in library.facts.text()
+    chosen.session.adopt(grains(4, first=20))
+    wait(lambda: not chosen.gallery.shown)
+    QTest.mouseClick(library.use, Qt.MouseButton.LeftButton)
+    wait(lambda: len(chosen.gallery.shown) == 3)
+    QTest.keyClicks(library.words, "venus")
+    assert library.tree.topLevelItemCount() == 0
+
+
 @pytest.mark.usefixtures("app")
 def test_that_a_picture_shows_a_lit_solid_on_a_clear_ground() -> None:
     cube = grains(1)[0].mesh.hull

@@ -74,6 +74,6 @@ EXPORTER = Exporter(
         "elastic constants, friction",
     ),
     loses=("polygonal facets: they are cut into triangles", "surface energy (JKR)"),
-    load_command="read particles.json, then LoadMeshType('{folder}/meshes/shape_00.obj')",
+    load_command='solver.LoadMeshType("{folder}/meshes/shape_00.obj", material)',
     files=_files,
 )

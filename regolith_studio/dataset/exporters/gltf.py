@@ -125,12 +125,14 @@ def _glb(content: dict[str, object], binary: bytes) -> bytes:
     )
 
 
+_LOAD = "blender --python-expr \"import bpy; bpy.ops.import_scene.gltf(filepath=r'{folder}/particles.glb')\""
+
 EXPORTER = Exporter(
     key="gltf",
     label="glTF (Blender)",
     units="1 m in the file is 1 mm of the particles, coarse graining applied; y up",
     carries=("drawn particles: shape, size, orientation", "flat shading of facets"),
     loses=("exact half-spaces: float32 triangles", "weights and size distributions: only a sample is drawn"),
-    load_command="Blender: File > Import > glTF 2.0 > {folder}/particles.glb",
+    load_command=_LOAD,
     files=_files,
 )

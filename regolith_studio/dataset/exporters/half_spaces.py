@@ -43,6 +43,6 @@ EXPORTER = Exporter(
     units="shapes of volume 1 without a length unit; diameters in micrometres",
     carries=("shapes exactly", "class weights by number and mass", "sizes"),
     loses=("where the particles come from (dataset.json has it)",),
-    load_command="python -c \"import json; print(json.load(open('{folder}/half_spaces.json'))['shapes'])\"",
+    load_command="python -m json.tool {shell}/half_spaces.json",
     files=_files,
 )

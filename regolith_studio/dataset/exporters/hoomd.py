@@ -37,6 +37,6 @@ EXPORTER = Exporter(
     units="shapes of volume 1 without a length unit; diameters in micrometres",
     carries=("shapes by their vertices", "class weights by number and mass, sizes (sizes.csv)"),
     loses=("facets: they are those of the vertices' hull", "contact parameters"),
-    load_command="python -c \"import json; print(json.load(open('{folder}/type_shapes.json'))['types'])\"",
+    load_command="python -m json.tool {shell}/type_shapes.json",
     files=_files,
 )

@@ -147,7 +147,7 @@ EXPORTER = Exporter(
         "weights and size distributions: only a sample is drawn (sizes.csv has them)",
         "Hertz, Mindlin-Deresiewicz, JKR: the pair style is linear",
     ),
-    load_command="cd {folder} && lmp -in in.particles -var steps 100",
+    load_command="cd {shell} && lmp -in in.particles -var steps 100",
     files=_files,
     alters="LAMMPS rounds edges; facets stay in their planes, corners are lost.",
 )

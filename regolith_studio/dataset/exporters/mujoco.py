@@ -93,6 +93,6 @@ EXPORTER = Exporter(
         "weights and size distributions: only a sample is drawn (sizes.csv has them)",
         "Hertz, Mindlin-Deresiewicz, JKR: MuJoCo's contacts are soft constraints",
     ),
-    load_command="python -m mujoco.viewer --mjcf={folder}/particles.xml",
+    load_command="python -m mujoco.viewer --mjcf={shell}/particles.xml",
     files=_files,
 )

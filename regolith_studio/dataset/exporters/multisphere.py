@@ -40,7 +40,7 @@ EXPORTER = Exporter(
     units="spheres in the frame of a shape of volume 1; diameters in micrometres",
     carries=("shapes approximately", "weights and sizes (sizes.csv)", "true moments of inertia (fit.csv)"),
     loses=("flat facets and edges", "part of the volume", "contact parameters"),
-    load_command="fix clump multisphere ... file {folder}/spheres/shape_00.txt (as your program calls it)",
+    load_command="file {folder}/spheres/shape_00.txt",
     files=_files,
     alters="spheres inside each polyhedron stand for it; facets become bumpy and some volume is missing.",
 )

@@ -95,6 +95,6 @@ EXPORTER = Exporter(
         "coarse graining, lifting cylinder",
     ),
     loses=("continuous size distributions: at most 16 sizes a shape",),
-    load_command="python {folder}/rocky_case.py (or open it in Rocky's script editor)",
+    load_command="python {shell}/rocky_case.py",
     files=_files,
 )

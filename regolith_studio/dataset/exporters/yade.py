@@ -68,6 +68,6 @@ EXPORTER = Exporter(
         "weights and size distributions: only a sample is drawn (sizes.csv has them)",
         "Hertz, Mindlin-Deresiewicz, JKR, restitution: the law is volumetric",
     ),
-    load_command="yade {folder}/yade_case.py",
+    load_command="yade {shell}/yade_case.py",
     files=_files,
 )

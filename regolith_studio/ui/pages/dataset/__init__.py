@@ -25,5 +25,6 @@ PAGE = Page(
         ActionSpec(PAGE_MENU, "validate", "&Check the dataset"),
         ActionSpec(PAGE_MENU, BREAK, ""),
         ActionSpec(PAGE_MENU, "export", "&Export to DEM programs …"),
+        ActionSpec(PAGE_MENU, "library", "Show the &library"),
     ),
 )

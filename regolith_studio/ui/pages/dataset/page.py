@@ -22,6 +22,7 @@ from regolith_studio.ui.layout import padded, scrolled_column, side_by_side, sta
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.dataset.controls import FolderPanel, RepresentativesPanel, SizesPanel
 from regolith_studio.ui.pages.dataset.gallery import RepresentativesGallery, Shown
+from regolith_studio.ui.pages.dataset.library import LibraryPanel
 from regolith_studio.ui.pages.dataset.plots import QualityPlot, SizesPlot
 from regolith_studio.ui.pages.dataset.targets import ExportsList, LossesLabel, TargetsPanel
 from regolith_studio.ui.theme import Theme
@@ -47,6 +48,7 @@ class DatasetPage(PageWidget):
         self.folder, self.targets = FolderPanel(), TargetsPanel()
         self.quality, self.distribution = QualityPlot(), SizesPlot()
         self.gallery, self.losses, self.exports = RepresentativesGallery(), LossesLabel(), ExportsList()
+        self.library = LibraryPanel(context)
         self._place()
         self._connect()
         context.wiring.refresh("particles", self._show_particles)
@@ -56,7 +58,7 @@ class DatasetPage(PageWidget):
     # --- the page of the window ----------------------------------------------------------------
 
     def set_theme(self, theme: Theme) -> None:
-        for part in (self.quality, self.distribution, self.gallery):
+        for part in (self.quality, self.distribution, self.gallery, self.library):
             part.set_theme(theme)
 
     def commands(self) -> Mapping[str, Callable[..., object]]:
@@ -66,6 +68,7 @@ class DatasetPage(PageWidget):
             "open_dataset": self.open_dataset,
             "validate": self.validate,
             "export": self.export,
+            "library": self.show_library,
         }
 
     def state(self) -> dict[str, Any]:
@@ -82,6 +85,10 @@ class DatasetPage(PageWidget):
                 panel.setValue(state[name])
         self.sizes.set_text(str(state.get("sizes", "measured")))
         self.folder.name.setText(str(state.get("name", "regolith")))
+
+    def entered(self) -> None:
+        if not self.library.entries:
+            self.library.refresh()
 
     def release(self) -> None:
         self.gallery.release()
@@ -147,6 +154,16 @@ class DatasetPage(PageWidget):
         self._context.start(
             "Reading the dataset", Job(open_dataset_folder, (folder,)), self._take_read, lane=BUILD
         )
+
+    def show_library(self) -> None:
+        """Show the library; ask for its folder if there is none yet."""
+        self._shapes.setCurrentWidget(self.library)
+        if not self.library.entries:
+            self.library.ask()
+
+    def _use(self, folder: Path) -> None:
+        self.open_folder(folder)
+        self._shapes.setCurrentWidget(self.gallery)
 
     def validate(self) -> None:
         """Check every file of the dataset."""
@@ -271,6 +288,11 @@ class DatasetPage(PageWidget):
     def _take_built(self, built: Built) -> None:
         self._take_dataset(built.folder, built.dataset)
         self._context.toast.note(f"{len(built.dataset)} shapes in {built.folder}.")
+        self._look_again()
+
+    def _look_again(self) -> None:
+        if self.library.entries:
+            self.library.refresh()
 
     def _take_read(self, answer: tuple[Path, Dataset]) -> None:
         self._take_dataset(*answer)
@@ -310,6 +332,7 @@ class DatasetPage(PageWidget):
         self._exports = list(done)
         self.exports.show_exports(done)
         self._context.toast.note(f"{len(done)} formats written.")
+        self._look_again()
 
     # --- parts ---------------------------------------------------------------------------------
 
@@ -331,6 +354,7 @@ class DatasetPage(PageWidget):
         self.sizes.sizesChanged.connect(self._show_sizes)
         self.folder.buildRequested.connect(self.build)
         self.folder.openRequested.connect(self.open_dataset)
+        self.library.openRequested.connect(self._use)
         self.targets.exportRequested.connect(self.export)
         self.targets.chosenChanged.connect(self._show_losses)
 
@@ -339,7 +363,8 @@ class DatasetPage(PageWidget):
         upper = side_by_side((self.quality, self.distribution), (600, 460), stretch=0)
         upper.setObjectName("dataset_upper")
         self._lower = tabs("dataset_lower", [(self.losses, "What formats lose"), (self.exports, "Exported")])
-        middle = stacked((upper, self.gallery, self._lower), (330, 330, 150), stretch=1)
+        self._shapes = tabs("dataset_shapes", [(self.gallery, "Representatives"), (self.library, "Library")])
+        middle = stacked((upper, self._shapes, self._lower), (330, 330, 150), stretch=1)
         middle.setObjectName("dataset_middle")
         whole = side_by_side((left, padded(middle, 0, 4, 4, 4)), (320, 1200), stretch=1)
         whole.setObjectName("dataset_whole")

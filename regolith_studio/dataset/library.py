@@ -1,0 +1,194 @@
+"""A folder of datasets, of what was exported from them, and of what was simulated with them."""
+
+import os
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from regolith_studio.dataset.document import shape_of
+from regolith_studio.dataset.exporting import FORMAT as EXPORT_FORMAT
+from regolith_studio.dataset.exporting import RECORD
+from regolith_studio.dataset.reading import DOCUMENT, dataset_hash, read_document
+from regolith_studio.dataset.schema import DatasetDocument
+from regolith_studio.dataset.strict_json import strict_json
+from regolith_studio.errors import DatasetError, RegolithError
+from regolith_studio.geometry.mesh import Mesh
+
+RESULT = "repose.json"
+"""What a simulated angle of repose is kept in."""
+RESULT_FORMAT = "regolith-studio-repose"
+DEPTH = 4
+"""Levels of folders that are looked into."""
+LARGEST_RECORD = 20_000_000
+
+
+@dataclass(frozen=True, eq=False)
+class LibraryEntry:
+    """One folder of a library.
+
+    Parameters
+    ----------
+    folder, kind
+        Where it is, and whether it holds a ``dataset``, an ``export`` or a ``result``.
+    name
+        Of the dataset, or what was done with it.
+    sha256
+        Of the dataset that it is, or that it came from; empty where that was not noted.
+    detail
+        One line.
+    facts
+        What the provenance says, as label and text.
+    mesh
+        The shape with the largest weight, of volume 1.
+    problem
+        Why the folder cannot be used, in one sentence.
+    """
+
+    folder: Path
+    kind: str
+    name: str
+    sha256: str = ""
+    detail: str = ""
+    facts: Mapping[str, str] = field(default_factory=dict)
+    mesh: Mesh | None = None
+    problem: str = ""
+
+    def matches(self, text: str) -> bool:
+        """Whether every word of a filter is somewhere in the entry."""
+        whole = " ".join(
+            (self.name, self.kind, self.detail, str(self.folder), self.sha256, *self.facts.values())
+        )
+        return all(word in whole.casefold() for word in text.casefold().split())
+
+
+def scan_library(root: Path | str) -> Iterator[LibraryEntry]:
+    """Datasets, exports and results at and below `root`, by path; hidden folders are left out.
+
+    Raises
+    ------
+    DatasetError
+        If `root` is no folder that can be read.
+    """
+    top = Path(root).resolve()
+    if not top.is_dir():
+        raise DatasetError(f"{top} is no folder.")
+    for place, folders, files in os.walk(top):
+        here = Path(place)
+        folders[:] = sorted(name for name in folders if not name.startswith("."))
+        if len(here.relative_to(top).parts) >= DEPTH:
+            folders.clear()
+        for name, read in _READERS.items():
+            if name in files:
+                folders.clear()
+                yield _read(here, name, read)
+
+
+def provenance_tree(entries: Iterable[LibraryEntry]) -> list[tuple[LibraryEntry, list[LibraryEntry]]]:
+    """Each dataset with what came from it, found by its hash; what came from none that is here, alone."""
+    every = list(entries)
+    datasets = [entry for entry in every if entry.kind == "dataset"]
+    known: dict[str, list[LibraryEntry]] = {}
+    tree: list[tuple[LibraryEntry, list[LibraryEntry]]] = []
+    for entry in datasets:
+        first = entry.sha256 and entry.sha256 not in known
+        children = known.setdefault(entry.sha256, []) if first else []
+        tree.append((entry, children))
+    for entry in every:
+        if entry.kind != "dataset":
+            if entry.sha256 in known:
+                known[entry.sha256].append(entry)
+            else:
+                tree.append((entry, []))
+    return tree
+
+
+def _read(folder: Path, name: str, read: Any) -> LibraryEntry:
+    try:
+        entry: LibraryEntry = read(folder)
+    except (RegolithError, ValueError, KeyError, TypeError, AttributeError) as error:
+        sentence = str(error) if isinstance(error, RegolithError) else f"{name} is not what it should be."
+        return LibraryEntry(folder, _KINDS[name], folder.name, problem=sentence)
+    return entry
+
+
+def _dataset(folder: Path) -> LibraryEntry:
+    document = read_document(folder)
+    heaviest = max(document.representatives, key=lambda record: record.weight)
+    faces = sorted({record.mesh.n_faces for record in document.representatives})
+    span = f"{faces[0]}" if len(faces) == 1 else f"{faces[0]} to {faces[-1]}"
+    return LibraryEntry(
+        folder=folder,
+        kind="dataset",
+        name=document.name,
+        sha256=dataset_hash(folder),
+        detail=f"{len(document.representatives)} shapes of {span} faces, weighted by {document.weighting}",
+        facts=_facts(document),
+        mesh=shape_of(heaviest).mesh,
+    )
+
+
+def _facts(document: DatasetDocument) -> dict[str, str]:
+    """The provenance in words, what is empty left out."""
+    metadata = document.metadata
+    sources = sorted({record.source.path for record in document.representatives if record.source})
+    coarsening = metadata.coarsening
+    facts = {
+        "Description": metadata.description,
+        "Sources": _few(sources),
+        "Steps": " ".join(metadata.processing_steps),
+        "Model": metadata.model or "",
+        "Coarsening": f"{coarsening.method}, {coarsening.n_faces} faces, seed {coarsening.seed}"
+        if coarsening
+        else "",
+        "Software": ", ".join(f"{name} {version}" for name, version in sorted(metadata.software.items())),
+    }
+    return {label: text for label, text in facts.items() if text}
+
+
+def _export(folder: Path) -> LibraryEntry:
+    record = _record(folder / RECORD, EXPORT_FORMAT)
+    lost = "; ".join(str(one) for one in record["loses"])
+    return LibraryEntry(
+        folder=folder,
+        kind="export",
+        name=f"{record['dataset']} for {record['exporter']}",
+        sha256=str(record.get("dataset_sha256") or ""),
+        detail=f"{len(record['files'])} files, {record['software']}",
+        facts={"Units": str(record["units"]), "Does not carry": lost},
+    )
+
+
+def _result(folder: Path) -> LibraryEntry:
+    record = _record(folder / RESULT, RESULT_FORMAT)
+    angle = (record.get("measurement") or {}).get("angle_deg")
+    found = "no angle" if angle is None else f"{float(angle):.1f}° angle of repose"
+    engine = record["engine"]["label"]
+    return LibraryEntry(
+        folder=folder,
+        kind="result",
+        name=f"{found} of {record['dataset']['name']}",
+        sha256=str(record["dataset"].get("sha256") or ""),
+        detail=f"{engine}, {record['state']}",
+    )
+
+
+def _record(path: Path, format: str) -> dict[str, Any]:
+    try:
+        if path.stat().st_size > LARGEST_RECORD:
+            raise DatasetError(f"{path} is larger than {LARGEST_RECORD // 1_000_000} MB.")
+        content = strict_json(path.read_text(encoding="utf-8"), str(path))
+    except OSError as error:
+        raise DatasetError(f"{path} cannot be read: {error.strerror or error}.") from error
+    if not isinstance(content, dict) or content.get("format") != format:
+        raise DatasetError(f"{path} was not written by Regolith Studio.")
+    return content
+
+
+def _few(names: Sequence[str], most: int = 5) -> str:
+    more = f" and {len(names) - most} more" if len(names) > most else ""
+    return ", ".join(names[:most]) + more
+
+
+_READERS = {DOCUMENT: _dataset, RECORD: _export, RESULT: _result}
+_KINDS = {DOCUMENT: "dataset", RECORD: "export", RESULT: "result"}

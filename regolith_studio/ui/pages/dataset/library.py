@@ -1,0 +1,194 @@
+"""The library: datasets below a folder with their pictures, and what came from each."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from PySide6.QtCore import QSize, Qt, QUrl, Signal
+from PySide6.QtGui import QDesktopServices, QIcon
+from PySide6.QtWidgets import (
+    QFileDialog,
+    QHBoxLayout,
+    QLineEdit,
+    QPushButton,
+    QScrollArea,
+    QTreeWidget,
+    QTreeWidgetItem,
+    QVBoxLayout,
+    QWidget,
+)
+
+from regolith_studio.dataset.library import LibraryEntry, provenance_tree
+from regolith_studio.jobs.datasets import list_library
+from regolith_studio.jobs.events import Job
+from regolith_studio.ui.layout import side_by_side
+from regolith_studio.ui.page import PageContext
+from regolith_studio.ui.pages.dataset.thumbnails import picture_of
+from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.widgets.labels import ElidedLabel, remark
+
+PICTURE = 40
+LANE = "library"
+EMPTY = (
+    "Choose a folder: the datasets below it are listed here, with what was exported and simulated from each."
+)
+ROLE = Qt.ItemDataRole.UserRole
+
+
+class LibraryPanel(QWidget):
+    """Lists a folder that is remembered between sittings; a double click opens a dataset."""
+
+    openRequested = Signal(object)  # noqa: N815
+
+    def __init__(self, context: PageContext, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("dataset_library")
+        self._context, self._theme = context, current_theme()
+        self._entries: tuple[LibraryEntry, ...] = ()
+        self._pictures: dict[tuple[str, str], QIcon] = {}
+        self.choose, self.again = QPushButton("Folder …"), QPushButton("Look again")
+        self.place = ElidedLabel("", role="remark")
+        self.words = QLineEdit(placeholderText="Filter", clearButtonEnabled=True)
+        self.tree, self.facts = QTreeWidget(), remark(EMPTY)
+        self.use, self.look = QPushButton("Use this dataset"), QPushButton("Open folder")
+        self._dress()
+        self._place_parts()
+        self.choose.clicked.connect(self.ask)
+        self.again.clicked.connect(self.refresh)
+        self.words.textChanged.connect(lambda _: self._show())
+        self.tree.currentItemChanged.connect(lambda *_: self._show_facts())
+        self.tree.itemDoubleClicked.connect(lambda *_: self._open())
+        self.use.clicked.connect(self._open)
+        self.look.clicked.connect(self._look)
+        self._show_facts()
+
+    @property
+    def entries(self) -> tuple[LibraryEntry, ...]:
+        """What is listed, by path."""
+        return self._entries
+
+    def ask(self) -> None:
+        """Ask for the folder of the library."""
+        before = str(self._context.recall("library", str(Path.home())))
+        name = QFileDialog.getExistingDirectory(self, "The folder of your datasets", before)
+        if name:
+            self.show_folder(Path(name))
+
+    def show_folder(self, root: Path) -> None:
+        """List another folder."""
+        self._context.remember("library", str(root))
+        self.refresh()
+
+    def refresh(self) -> None:
+        """Look into the folder again."""
+        root = self._context.recall("library")
+        if root and Path(root).is_dir():
+            self.place.setText(str(root))
+            self._entries = ()
+            job = Job(list_library, (Path(root),))
+            self._context.start("Looking for datasets", job, self._take, lane=LANE)
+
+    def selected(self) -> LibraryEntry | None:
+        """The entry of the chosen row."""
+        item = self.tree.currentItem()
+        entry = item.data(0, ROLE) if item is not None else None
+        return entry if isinstance(entry, LibraryEntry) else None
+
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        self._theme = theme
+        self._pictures.clear()
+        self._show()
+
+    def _take(self, entries: Sequence[LibraryEntry]) -> None:
+        self._entries = tuple(entries)
+        self._show()
+        if not entries:
+            self.facts.setText("There is no dataset below this folder.")
+
+    def _show(self) -> None:
+        self.tree.clear()
+        for top, below in provenance_tree(self._entries):
+            kept = [entry for entry in below if entry.matches(self.words.text())]
+            if not kept and not top.matches(self.words.text()):
+                continue
+            parent = self._item(top)
+            for entry in kept:
+                parent.addChild(self._item(entry))
+            self.tree.addTopLevelItem(parent)
+        self.tree.expandAll()
+        self._show_facts()
+
+    def _item(self, entry: LibraryEntry) -> QTreeWidgetItem:
+        item = QTreeWidgetItem([entry.name, entry.problem or entry.detail])
+        item.setData(0, ROLE, entry)
+        item.setToolTip(0, str(entry.folder))
+        item.setToolTip(1, entry.problem or entry.detail)
+        if entry.mesh is not None:
+            key = (entry.sha256, self._theme.polyhedron)
+            if key not in self._pictures:
+                self._pictures[key] = QIcon(picture_of(entry.mesh, self._theme.polyhedron, PICTURE))
+            item.setIcon(0, self._pictures[key])
+        return item
+
+    def _show_facts(self) -> None:
+        entry = self.selected()
+        self.use.setEnabled(entry is not None and entry.kind == "dataset" and not entry.problem)
+        self.look.setEnabled(entry is not None)
+        if entry is None:
+            self.facts.setText("" if self._entries else EMPTY)
+            return
+        lines = [entry.name, entry.problem or entry.detail, str(entry.folder)]
+        lines += [f"{label}: {text}" for label, text in entry.facts.items()]
+        if entry.sha256:
+            lines.append(f"SHA-256 of the dataset: {entry.sha256[:16]} …")
+        self.facts.setText("\n\n".join(lines))
+
+    def _open(self) -> None:
+        entry = self.selected()
+        if entry is not None and entry.kind == "dataset" and not entry.problem:
+            self.openRequested.emit(entry.folder)
+
+    def _look(self) -> None:
+        entry = self.selected()
+        if entry is not None:
+            QDesktopServices.openUrl(QUrl.fromLocalFile(str(entry.folder)))
+
+    def _dress(self) -> None:
+        for name in ("choose", "again", "words", "tree", "use", "look"):
+            getattr(self, name).setObjectName(f"library_{name}")
+        self.words.setAccessibleName("Filter of the library")
+        self.tree.setAccessibleName("Library")
+        self.tree.setHeaderLabels(["Name", "What it holds"])
+        self.tree.setIconSize(QSize(PICTURE, PICTURE))
+        self.tree.setColumnWidth(0, 300)
+        self.tree.setFrameShape(self.tree.Shape.NoFrame)
+        self.facts.setTextFormat(Qt.TextFormat.PlainText)
+        self.facts.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+        self.facts.setAlignment(Qt.AlignmentFlag.AlignTop)
+        self.facts.setContentsMargins(8, 4, 8, 4)
+
+    def _place_parts(self) -> None:
+        top = QHBoxLayout()
+        top.addWidget(self.choose)
+        top.addWidget(self.again)
+        top.addWidget(self.place, 1)
+        top.addWidget(self.words)
+        area = QScrollArea()
+        area.setWidgetResizable(True)
+        area.setFrameShape(area.Shape.NoFrame)
+        area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        area.setWidget(self.facts)
+        buttons = QHBoxLayout()
+        buttons.addWidget(self.use)
+        buttons.addWidget(self.look)
+        right = QWidget()
+        column = QVBoxLayout(right)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.addWidget(area, 1)
+        column.addLayout(buttons)
+        parts = side_by_side((self.tree, right), (640, 320), stretch=0)
+        parts.setObjectName("library_parts")
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(8, 6, 8, 6)
+        layout.addLayout(top)
+        layout.addWidget(parts, 1)
