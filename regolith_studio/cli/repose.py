@@ -8,8 +8,10 @@ import typer
 from regolith_studio.cli import repose_runs
 from regolith_studio.cli.options import Json, Settings, as_bad_use
 from regolith_studio.cli.repose_options import evaluation_settings
+from regolith_studio.cli.whole_help import WholeHelp
 
 app = typer.Typer(
+    cls=WholeHelp,
     help="The angle of repose: simulate a lifting cylinder, measure a pile.",
     no_args_is_help=True,
     rich_markup_mode=None,

@@ -24,6 +24,7 @@ from regolith_studio.cli.options import (
     as_bad_use,
     whole_numbers,
 )
+from regolith_studio.cli.whole_help import WholeHelp
 
 if TYPE_CHECKING:
     from regolith_studio.jobs.events import Steps
@@ -64,7 +65,9 @@ DescriptorKeys = Annotated[
     ),
 ]
 
-app = typer.Typer(help="Tables and figures over a sample.", no_args_is_help=True, rich_markup_mode=None)
+app = typer.Typer(
+    cls=WholeHelp, help="Tables and figures over a sample.", no_args_is_help=True, rich_markup_mode=None
+)
 
 
 @app.command("lmax")

@@ -64,6 +64,13 @@ def test_that_the_package_itself_imports_nothing_heavy() -> None:
     assert not {"numpy", "PySide6", "pyvista", "typer"} & set(said.stdout.split())
 
 
+def test_that_lines_of_help_are_wrapped_and_not_cut() -> None:
+    for group in ((), ("study",), ("dataset",), ("repose",)):
+        said = start(*group, "--help").stdout
+        assert "..." not in said.partition("Commands:")[2].replace("diameters ...,", "")
+        assert all(len(line) <= 80 for line in said.splitlines())
+
+
 def test_that_the_doors_of_the_package_lead_to_their_folders() -> None:
     code = (
         "import regolith_studio as rs, sys; names = set(rs.__all__) - {'__version__'};"
