@@ -10,7 +10,7 @@ from regolith_studio.cli.options import Folder, Jobs, Json, Seed, as_bad_use
 if TYPE_CHECKING:
     from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
     from regolith_studio.imaging.volume import VolumeKind
-    from regolith_studio.jobs.extracting import GrainRecipe
+    from regolith_studio.jobs.grain_recipe import GrainRecipe
     from regolith_studio.readers.volume_header import RawLayout
 
 
@@ -90,6 +90,10 @@ def extract(
             "--border", help="Grains that the border cuts: exclude (and weight) or keep.", metavar="HOW"
         ),
     ] = "exclude",
+    recipe: Annotated[
+        Path | None,
+        typer.Option("--recipe", help="Take all settings from an extraction.json instead.", metavar="FILE"),
+    ] = None,
     json: Json = False,
     jobs: Jobs = 1,
     seed: Seed = 0,
@@ -100,6 +104,7 @@ def extract(
     """
     from regolith_studio.cli.terminal import follow, print_json
     from regolith_studio.jobs.extracting import VolumeInput, extract_measured
+    from regolith_studio.jobs.grain_recipe import read_grain_recipe
     from regolith_studio.readers.units import unit_factor
     from regolith_studio.session.outputs.extraction import ExtractionFolder
     from regolith_studio.session.outputs.staging import staged_folder
@@ -114,13 +119,17 @@ def extract(
             dataset or None,
             _raw_layout(shape, dtype, byte_order, offset),
         )
-        recipe = _recipe(denoise, threshold, dark, opening, closing, h_maxima, split, min_voxels, border)
+        settings = (
+            read_grain_recipe(recipe)
+            if recipe
+            else _recipe(denoise, threshold, dark, opening, closing, h_maxima, split, min_voxels, border)
+        )
         if unit:
             unit_factor(unit)
     with staged_folder(output) as stage:
         folder = ExtractionFolder(stage)
-        done = follow(extract_measured(given, recipe, output.parent, folder.add, jobs))
-        document = folder.finish(given, recipe, done)
+        done = follow(extract_measured(given, settings, output.parent, folder.add, jobs))
+        document = folder.finish(given, settings, done)
     if json:
         print_json(document)
     else:
@@ -176,7 +185,7 @@ def _recipe(
     from regolith_studio.imaging.segmentation.denoising import DenoiseSettings
     from regolith_studio.imaging.segmentation.segment import SegmentationSettings
     from regolith_studio.imaging.segmentation.splitting import SplittingSettings
-    from regolith_studio.jobs.extracting import GrainRecipe
+    from regolith_studio.jobs.grain_recipe import GrainRecipe
 
     if border not in ("exclude", "keep"):
         raise typer.BadParameter(f"Grains at the border are to exclude or to keep, not {border!r}.")

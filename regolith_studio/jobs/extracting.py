@@ -3,7 +3,7 @@
 import hashlib
 from collections import deque
 from collections.abc import Callable, Generator, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -28,6 +28,7 @@ from regolith_studio.jobs.batch import value_of
 from regolith_studio.jobs.crew import Crew, hired
 from regolith_studio.jobs.events import Job, Progress, Started, Step, Steps
 from regolith_studio.jobs.examining import Examined, examine_one
+from regolith_studio.jobs.grain_recipe import GrainRecipe
 from regolith_studio.readers.hashing import sha256_of
 from regolith_studio.readers.volume_files import slice_names
 from regolith_studio.readers.volume_header import RawLayout
@@ -85,14 +86,6 @@ class VolumeInput:
             kind=self.kind,
             raw=self.raw,
         )
-
-
-@dataclass(frozen=True)
-class GrainRecipe:
-    """All settings from voxels to particles; the segmentation is not used where there are labels."""
-
-    segmentation: SegmentationSettings = field(default_factory=SegmentationSettings)
-    extraction: ExtractionSettings = field(default_factory=ExtractionSettings)
 
 
 @dataclass(frozen=True)

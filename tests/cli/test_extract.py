@@ -55,6 +55,16 @@ def test_that_a_grey_scan_becomes_particles_with_a_recipe(command, tmp_path: Pat
         assert float(row["weight"]) > 1.0
 
 
+def test_that_the_recipe_of_one_scan_serves_the_next(command, tmp_path: Path) -> None:
+    np.save(tmp_path / "scan.npy", two_balls())
+    call = ("extract", tmp_path / "scan.npy", "--kind", "grey", "--voxel-size", 1)
+    first = command(*call, "-o", tmp_path / "a", "--denoise", "none", "--threshold", 111, "--min-voxels", 99)
+    second = command(*call, "-o", tmp_path / "b", "--recipe", tmp_path / "a" / "extraction.json")
+    assert (first.code, second.code) == (0, 0)
+    files = [{each.name: each.read_bytes() for each in (tmp_path / name).iterdir()} for name in "ab"]
+    assert files[0] == files[1]
+
+
 def test_that_keeping_the_border_of_labels_gives_all_grains(command, tmp_path: Path) -> None:
     scan, x = part_of_scan(tmp_path, "labels"), tmp_path / "x"
     said = command("extract", scan, "-o", x, "--border", "keep", "--voxel-size", 1, "--min-voxels", 600)
@@ -111,6 +121,7 @@ def test_that_a_probability_map_of_an_hdf5_file_is_taken(command, tmp_path: Path
         (("--shape", "3x4"), "NX,NY,NZ"),
         (("--h-maxima", "-1"), "h-maxima"),
         (("--min-voxels", "-1"), "number of voxels"),
+        (("--recipe", "nowhere.json"), "cannot be read"),
     ],
 )
 def test_that_bad_options_are_bad_use(command, tmp_path: Path, options, sentence: str) -> None:

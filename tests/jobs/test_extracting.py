@@ -1,5 +1,6 @@
 """The jobs from volumes to particles: their story, their result, and that large ones go by files."""
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -11,10 +12,10 @@ from regolith_studio.imaging.extraction import ExtractionSettings
 from regolith_studio.imaging.sample_volumes import sample_volume
 from regolith_studio.imaging.segmentation.denoising import DenoiseSettings
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings
+from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
 from regolith_studio.jobs import extracting
 from regolith_studio.jobs.events import Progress, Started, Step, Steps
 from regolith_studio.jobs.extracting import (
-    GrainRecipe,
     VolumeInput,
     extract_file,
     extract_labels,
@@ -22,6 +23,7 @@ from regolith_studio.jobs.extracting import (
     fingerprint,
     segment_volume,
 )
+from regolith_studio.jobs.grain_recipe import GrainRecipe, read_grain_recipe
 from regolith_studio.readers.hashing import sha256_of
 from regolith_studio.resources import resource
 
@@ -125,3 +127,39 @@ def test_that_the_fingerprint_of_a_folder_depends_on_every_slice(tmp_path: Path)
     before = fingerprint(tmp_path)
     tifffile.imwrite(tmp_path / "slice_2.tif", np.full((5, 5), 9, dtype=np.uint8))
     assert fingerprint(tmp_path) != before
+
+
+def test_that_a_recipe_survives_being_written_and_read(tmp_path: Path) -> None:
+    recipe = GrainRecipe(
+        SegmentationSettings(
+            DenoiseSettings("non-local-means", reach=4),
+            ThresholdSettings("multi-otsu", classes=4, boundary=3),
+        ),
+        ExtractionSettings(exclude_border=False, min_voxels=7),
+    )
+    (tmp_path / "r.json").write_text(json.dumps(recipe.as_document() | {"software": {}}))
+    assert read_grain_recipe(tmp_path / "r.json") == recipe
+    assert GrainRecipe.from_document({"extraction": {"unknown": 3}}) == GrainRecipe()
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("nothing", "no JSON"),
+        ("[1]", "names neither"),
+        ("{}", "names neither"),
+        ('{"extraction": 3}', "group of settings"),
+        ('{"extraction": {"min_voxels": "many"}}', "of the kind of 268"),
+        ('{"extraction": {"min_voxels": true}}', "of the kind of 268"),
+        ('{"segmentation": {"denoise": {"method": "wavelets"}}}', "Denoise by one of"),
+    ],
+)
+def test_that_a_bad_recipe_is_one_sentence(tmp_path: Path, text: str, sentence: str) -> None:
+    (tmp_path / "r.json").write_text(text)
+    with pytest.raises(InputError, match=sentence):
+        read_grain_recipe(tmp_path / "r.json")
+
+
+def test_that_a_missing_recipe_is_one_sentence(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="cannot be read"):
+        read_grain_recipe(tmp_path / "r.json")

@@ -4,12 +4,23 @@ import numpy as np
 import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QDialogButtonBox
+from PySide6.QtWidgets import QDialogButtonBox, QFileDialog, QVBoxLayout, QWidget
 
 from regolith_studio.imaging.sample_volumes import sample_volume
 from regolith_studio.imaging.segmentation.segment import segment
+from regolith_studio.jobs.extracting import VolumeInput
+from regolith_studio.jobs.grain_recipe import GrainRecipe, read_grain_recipe
+from regolith_studio.jobs.runners.thread import ThreadRunner
+from regolith_studio.session.session import Session
 from regolith_studio.ui.app import open_window
+from regolith_studio.ui.commands import Commands
+from regolith_studio.ui.page import PageContext
+from regolith_studio.ui.pages.scan import PAGE
 from regolith_studio.ui.pages.scan.volume_dialog import VolumeDialog
+from regolith_studio.ui.posting import Poster
+from regolith_studio.ui.theme import current_theme
+from regolith_studio.ui.widgets.toast import Toast
+from regolith_studio.ui.wiring import Wiring
 
 SECONDS = 120.0
 
@@ -24,8 +35,30 @@ def window(shown, preferences, wait):
 
 
 @pytest.fixture
-def page(window):
-    return window.go("scan")
+def page(shown, preferences, wait):
+    """The page alone, with a session of its own."""
+    poster = Poster()
+    session = Session(ThreadRunner(poster.post))
+    frame = shown(QWidget())
+    toast = Toast(frame)
+    wiring = Wiring(session, toast.problem, frame)
+    visited = []
+    context = PageContext(
+        "scan", session, wiring, preferences, toast, Commands(session, preferences, toast, frame), "image",
+        visited.append,
+    )  # fmt: skip
+    session.topics.failed.connect(lambda failure: toast.problem(failure.sentence))
+    made = PAGE.build(context)
+    made.context, made.visited = context, visited
+    QVBoxLayout(frame).addWidget(made)
+    frame.resize(1200, 750)
+    made.set_theme(current_theme())
+    yield made
+    wait(lambda: not session.tasks, SECONDS)
+    made.release()
+    wiring.cut()
+    session.close()
+    poster.deleteLater()
 
 
 @pytest.fixture
@@ -49,7 +82,8 @@ def grains_seen(view):
     return np.mean([colour.hsvSaturation() > 60 for colour in colours])
 
 
-def test_that_a_new_user_gets_from_the_sample_scan_to_particles(window, page, wait):
+def test_that_a_new_user_gets_from_the_sample_scan_to_particles(window, wait):
+    page = window.go("scan")
     assert not page.steps.search.isEnabled()
     assert not page.steps.convert.isEnabled()
     press(page.steps.sample)
@@ -68,13 +102,13 @@ def test_that_a_new_user_gets_from_the_sample_scan_to_particles(window, page, wa
     assert window.session.particles[0].particle.group == "synthetic-grey"
     wait(lambda: page.steps.show_them.isVisible(), SECONDS)
     press(page.steps.show_them)
-    assert window.go("explore").isVisible()
+    assert window.go("sample").isVisible()
     for task in window.session.tasks:
         window.session.cancel(task.id)
     wait(lambda: not window.session.tasks, SECONDS)
 
 
-def test_that_a_dragged_threshold_is_a_manual_one_and_changes_the_preview(window, page, part, wait):
+def test_that_a_dragged_threshold_is_a_manual_one_and_changes_the_preview(page, part, wait):
     page.open(part)
     wait(lambda: page.findChild(VolumeDialog) is not None, SECONDS)
     dialog = page.findChild(VolumeDialog)
@@ -93,11 +127,10 @@ def test_that_a_dragged_threshold_is_a_manual_one_and_changes_the_preview(window
     assert page.preview.level == 130.0
     page.controls.threshold.setCurrentIndex(0)
     wait(lambda: page.preview.level < 110.0, SECONDS)
-    wait(lambda: not window.session.tasks, SECONDS)
 
 
-def test_that_h_and_the_frame_change_the_preview_and_settings_undo_what_was_found(window, page, part, wait):
-    page.read(page_input(part))
+def test_that_h_and_the_frame_change_the_preview_and_settings_undo_what_was_found(page, part, wait):
+    page.read(VolumeInput(part, 2.3, kind="grey"))
     wait(lambda: page.preview is not None, SECONDS)
     page.find_grains()
     wait(lambda: page.grains is not None, SECONDS)
@@ -109,17 +142,10 @@ def test_that_h_and_the_frame_change_the_preview_and_settings_undo_what_was_foun
     assert page.grains is None
     assert not page.steps.convert.isEnabled()
     wait(lambda: page.preview is not None and page.preview.n_grains == page.preview.n_bodies, SECONDS)
-    wait(lambda: not window.session.tasks, SECONDS)
 
 
-def page_input(path):
-    from regolith_studio.jobs.extracting import VolumeInput
-
-    return VolumeInput(path, 2.3, kind="grey")
-
-
-def test_that_a_click_and_the_wheel_go_through_the_slices(window, page, part, wait):
-    page.read(page_input(part))
+def test_that_a_click_and_the_wheel_go_through_the_slices(page, part, wait):
+    page.read(VolumeInput(part, 2.3, kind="grey"))
     wait(lambda: page.preview is not None, SECONDS)
     assert page.overview.place == (45, 40, 35)
     top = page.overview.slices[0]
@@ -130,10 +156,9 @@ def test_that_a_click_and_the_wheel_go_through_the_slices(window, page, part, wa
     top.turn(3)
     assert page.overview.place[2] == 38
     assert "z = 39 of 70" in top.title.text()
-    wait(lambda: not window.session.tasks, SECONDS)
 
 
-def test_that_labels_go_straight_to_particles(window, page, tmp_path, wait):
+def test_that_labels_go_straight_to_particles(page, tmp_path, wait):
     np.save(tmp_path / "labels.npy", np.ascontiguousarray(sample_volume("labels").array[:80, :80, :80].T))
     page.open(tmp_path / "labels.npy")
     wait(lambda: page.findChild(VolumeDialog) is not None, SECONDS)
@@ -144,15 +169,57 @@ def test_that_labels_go_straight_to_particles(window, page, tmp_path, wait):
     assert not page.controls.denoise.isEnabled()
     press(page.steps.convert)
     wait(lambda: page.steps.show_them.isVisible(), SECONDS)
-    assert window.session.particles[0].particle.group == "labels"
-    for task in window.session.tasks:
-        window.session.cancel(task.id)
-    wait(lambda: not window.session.tasks, SECONDS)
+    assert page.context.session.particles[0].particle.group == "labels"
+    for task in page.context.session.tasks:
+        page.context.session.cancel(task.id)
 
 
-def test_that_a_file_that_is_no_volume_costs_one_sentence(window, page, tmp_path, wait):
+def test_that_a_file_that_is_no_volume_costs_one_sentence(page, tmp_path, wait):
     (tmp_path / "broken.tif").write_bytes(b"II*\0nothing")
     page.open(tmp_path / "broken.tif")
-    wait(lambda: window.toast.isVisible(), SECONDS)
+    wait(lambda: page.context.toast.isVisible(), SECONDS)
     assert page.scan is None
-    wait(lambda: not window.session.tasks, SECONDS)
+
+
+def test_that_settings_are_saved_and_come_back(page, tmp_path, monkeypatch):
+    page.controls.dark.click()
+    page.controls.h_maxima.field.setValue(2.5)
+    kept = page.controls.value()
+    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (str(tmp_path / "s.json"), ""))
+    page.save_settings()
+    assert read_grain_recipe(tmp_path / "s.json") == kept
+    page.restore({})
+    assert page.controls.value() == GrainRecipe()
+    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (str(tmp_path / "s.json"), ""))
+    page.ask_for_settings()
+    assert page.controls.value() == kept
+    page.restore({"extraction": "of another version"})
+    assert page.controls.value() == kept
+
+
+def test_that_a_raw_file_is_asked_for_its_layout(page, tmp_path, wait):
+    array = np.ascontiguousarray(sample_volume("grey").array[:60, :50, :40].T)
+    (tmp_path / "scan.raw").write_bytes(array.tobytes())
+    page.open(tmp_path / "scan.raw")
+    dialog = page.findChild(VolumeDialog)
+    for field, edge in zip(dialog.shape, (60, 50, 40), strict=True):
+        field.setValue(edge)
+    dialog.kind.setCurrentIndex(1)
+    dialog.accept()
+    wait(lambda: page.scan is not None, SECONDS)
+    assert np.array_equal(page.scan.volume.array, array.T)
+    wait(lambda: page.preview is not None, SECONDS)
+
+
+def test_that_a_probability_map_is_thresholded_by_its_share(page, tmp_path, wait):
+    truth = sample_volume("labels").array[:60, :60, :60] > 0
+    np.save(tmp_path / "likely.npy", np.where(truth, 230, 20).astype(np.uint8).T)
+    page.read(VolumeInput(tmp_path / "likely.npy", 1.0, kind="grey"))
+    wait(lambda: page.preview is not None, SECONDS)
+    page.controls.threshold.setCurrentIndex(page.controls.threshold.findData("probability"))
+    assert page.overview.histogram.line.value() == pytest.approx(127.5)
+    page._level_dragged(0.8 * 255)
+    assert page.controls.value().segmentation.threshold.value == pytest.approx(0.8)
+    wait(lambda: page.preview.level == pytest.approx(0.8 * 255), SECONDS)
+    sizes = np.bincount(page.preview.labels.array.ravel())[1:]
+    assert sizes.sum() == pytest.approx(np.count_nonzero(truth), rel=0.01)

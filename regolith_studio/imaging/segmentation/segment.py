@@ -5,7 +5,7 @@ whole: give a :class:`~regolith_studio.imaging.slabs.Scratch` in a folder for th
 """
 
 from collections.abc import Generator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -158,12 +158,12 @@ def preview(
     Parameters
     ----------
     level
-        Taken instead of the one that the settings would find in this part.
+        Taken instead of the one that an automatic threshold would find in this part.
     """
     settings = settings or SegmentationSettings()
-    if level is not None:
-        manual = ThresholdSettings("manual", level, dark=settings.threshold.dark)
-        settings = SegmentationSettings(settings.denoise, manual, settings.cleaning, settings.splitting)
+    if level is not None and settings.threshold.is_automatic:
+        manual = replace(settings.threshold, method="manual", value=level)
+        settings = replace(settings, threshold=manual)
     part = Volume(np.array(volume.array[box]), volume.voxel_size, volume.kind, volume.name)
     return segment(part, settings)
 

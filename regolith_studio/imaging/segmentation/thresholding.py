@@ -56,6 +56,11 @@ class ThresholdSettings:
                 f"{self.classes} and {self.boundary}."
             )
 
+    @property
+    def is_automatic(self) -> bool:
+        """Whether the level follows from the histogram."""
+        return self.method in ("otsu", "multi-otsu")
+
 
 @dataclass(frozen=True, eq=False)
 class Histogram:

@@ -10,7 +10,8 @@ from regolith_studio.dataset.build import software_versions
 from regolith_studio.imaging.extraction import Extracted
 from regolith_studio.imaging.stl import stl_bytes
 from regolith_studio.jobs.examining import Examined
-from regolith_studio.jobs.extracting import ExtractedFile, GrainRecipe, VolumeInput
+from regolith_studio.jobs.extracting import ExtractedFile, VolumeInput
+from regolith_studio.jobs.grain_recipe import GrainRecipe
 from regolith_studio.session.outputs.descriptors import described, descriptor_table
 from regolith_studio.session.outputs.particles import STL_HEADER
 from regolith_studio.session.outputs.staging import json_bytes, write_bytes
@@ -77,13 +78,13 @@ def recipe_document(given: VolumeInput, recipe: GrainRecipe, done: ExtractedFile
             "kind": done.kind,
             "voxel_size_um": list(done.voxel_size),
         },
-        "extraction": asdict(recipe.extraction),
+        "extraction": recipe.as_document()["extraction"],
         "n_particles": done.extraction.n_found,
         "border": list(done.extraction.border),
         "small": list(done.extraction.small),
         "software": software_versions() | {name: version(name) for name in _LIBRARIES},
     }
     if done.facts is not None:
-        document["segmentation"] = asdict(recipe.segmentation)
+        document["segmentation"] = recipe.as_document()["segmentation"]
         document["segmented"] = asdict(done.facts)
     return document

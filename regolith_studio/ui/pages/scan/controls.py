@@ -10,8 +10,7 @@ from PySide6.QtWidgets import QCheckBox, QComboBox, QDoubleSpinBox, QFormLayout,
 from regolith_studio.imaging.extraction import voxel_diameter
 from regolith_studio.imaging.segmentation.cleaning import CleaningSettings
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings
-from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
-from regolith_studio.jobs.extracting import GrainRecipe
+from regolith_studio.jobs.grain_recipe import GrainRecipe
 from regolith_studio.ui.widgets.labels import heading, remark
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
 
@@ -76,9 +75,10 @@ class SegmentationControls(QWidget):
         before = self._recipe.segmentation
         segmentation = SegmentationSettings(
             dataclasses.replace(before.denoise, method=self.denoise.currentData()),
-            ThresholdSettings(
-                self.threshold.currentData(),
-                self.level.value() if method in ("manual", "probability") else 0.5,
+            dataclasses.replace(
+                before.threshold,
+                method=self.threshold.currentData(),
+                value=self.level.value() if method in ("manual", "probability") else 0.5,
                 boundary=int(self.boundary.currentData()),
                 dark=self.dark.isChecked(),
             ),

@@ -1,5 +1,6 @@
 """Three slices with the grains over them, the histogram, and what leads from one to the other."""
 
+import contextlib
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -8,12 +9,15 @@ from PySide6.QtCore import QTimer
 from PySide6.QtGui import QDragEnterEvent, QDropEvent
 from PySide6.QtWidgets import QFileDialog, QHBoxLayout
 
+from regolith_studio.errors import RegolithError
 from regolith_studio.imaging.extraction import Extraction
 from regolith_studio.imaging.segmentation.segment import Segmentation
 from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.extracting import VolumeInput, extract_labels, segment_volume
+from regolith_studio.jobs.grain_recipe import GrainRecipe, read_grain_recipe
 from regolith_studio.jobs.scanning import Scan, look_at_file, preview_part, read_sample_scan, read_scan
 from regolith_studio.readers.volume_header import VolumeHeader
+from regolith_studio.session.outputs.staging import json_bytes, write_bytes
 from regolith_studio.ui.layout import CONTROLS_WIDTH, padded, scrolled_column, side_by_side
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.scan.controls import SegmentationControls
@@ -25,6 +29,7 @@ from regolith_studio.ui.theme import Theme
 VOLUMES = (
     "Volumes (*.tif *.tiff *.h5 *.hdf5 *.nrrd *.nhdr *.mha *.mhd *.nii *.nii.gz *.npy *.raw);;All files (*)"
 )
+RECIPES = "Settings (*.json);;All files (*)"
 PREVIEW_DELAY = 120
 """Milliseconds without a change before a preview is begun."""
 
@@ -54,9 +59,18 @@ class ScanPage(PageWidget):
             "open_volume": self.ask_for_file,
             "open_slices": self.ask_for_folder,
             "sample_volume": self.open_sample,
+            "open_settings": self.ask_for_settings,
+            "save_settings": self.save_settings,
             "find_grains": self.find_grains,
             "make_particles": self.make_particles,
         }
+
+    def state(self) -> dict[str, Any]:
+        return self.controls.value().as_document()
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        with contextlib.suppress(RegolithError):
+            self._use(GrainRecipe.from_document(state))
 
     def release(self) -> None:
         self._timer.stop()
@@ -117,6 +131,35 @@ class ScanPage(PageWidget):
         self._show_level()
         self._begin_preview()
         self._show_state()
+
+    # --- settings ------------------------------------------------------------------------------
+
+    def ask_for_settings(self) -> None:
+        """Ask for a recipe, as this page or ``extract`` has written it, and take its settings."""
+        name, _ = QFileDialog.getOpenFileName(self, "Open settings", self._folder(), RECIPES)
+        if not name:
+            return
+        try:
+            self._use(read_grain_recipe(Path(name)))
+        except RegolithError as error:
+            self._context.toast.problem(str(error))
+
+    def save_settings(self) -> None:
+        """Ask for a file and write the settings there."""
+        start = str(Path(self._folder()) / "grains.json")
+        name, _ = QFileDialog.getSaveFileName(self, "Save settings", start, RECIPES)
+        if not name:
+            return
+        try:
+            write_bytes(Path(name), json_bytes(self.state()))
+        except RegolithError as error:
+            self._context.toast.problem(str(error))
+            return
+        self._context.toast.note(f"Saved; use it with: regolith-studio extract --recipe {Path(name).name}")
+
+    def _use(self, recipe: GrainRecipe) -> None:
+        self.controls.setValue(recipe)
+        self._changed(recipe)
 
     # --- segmenting ----------------------------------------------------------------------------
 
@@ -232,7 +275,7 @@ class ScanPage(PageWidget):
         self.steps.sampleRequested.connect(self.open_sample)
         self.steps.findRequested.connect(self.find_grains)
         self.steps.particlesRequested.connect(self.make_particles)
-        self.steps.showRequested.connect(lambda: self._context.go("explore"))
+        self.steps.showRequested.connect(lambda: self._context.go("sample"))
 
     def _arrange(self) -> None:
         controls = scrolled_column([self.steps, self.controls])

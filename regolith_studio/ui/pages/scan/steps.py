@@ -24,7 +24,7 @@ class StepsPanel(QWidget):
         self.sample = _button("scan_sample", "Sample scan", "Open the scan that ships with the program")
         self.search = _button("scan_find", "Find all grains", "Segment the whole volume with these settings")
         self.convert = _button("scan_make", "Make particles", "Contour each grain and open it as a particle")
-        self.show_them = _button("scan_show", "Show particles", "Go to the page Explore")
+        self.show_them = _button("scan_show", "Show particles", "Go to the table of particles")
         self.volume, self.found, self.made = remark(), remark(), remark()
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)

@@ -1,0 +1,98 @@
+"""All settings from voxels to particles as one value, and as the JSON that ``extract`` leaves behind."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, fields
+from pathlib import Path
+from typing import Any, TypeVar
+
+from regolith_studio.errors import FileError, InputError
+from regolith_studio.imaging.extraction import ExtractionSettings
+from regolith_studio.imaging.segmentation.cleaning import CleaningSettings
+from regolith_studio.imaging.segmentation.denoising import DenoiseSettings
+from regolith_studio.imaging.segmentation.segment import SegmentationSettings
+from regolith_studio.imaging.segmentation.splitting import SplittingSettings
+from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
+from regolith_studio.imaging.segmentation.tiles import TileSettings
+
+S = TypeVar("S")
+_LARGEST = 64 * 2**20
+_PARTS: dict[str, type[Any]] = {
+    "denoise": DenoiseSettings,
+    "threshold": ThresholdSettings,
+    "cleaning": CleaningSettings,
+    "splitting": SplittingSettings,
+    "tiles": TileSettings,
+}
+
+
+@dataclass(frozen=True)
+class GrainRecipe:
+    """All settings from voxels to particles; the segmentation is not used where there are labels."""
+
+    segmentation: SegmentationSettings = field(default_factory=SegmentationSettings)
+    extraction: ExtractionSettings = field(default_factory=ExtractionSettings)
+
+    def as_document(self) -> dict[str, Any]:
+        """Plain JSON."""
+        return {"segmentation": asdict(self.segmentation), "extraction": asdict(self.extraction)}
+
+    @classmethod
+    def from_document(cls, document: Mapping[str, Any]) -> "GrainRecipe":
+        """The recipe in a JSON document; what is missing stays at its default, what is not known is left out.
+
+        Raises
+        ------
+        InputError
+            If a value is of the wrong type or out of its range.
+        """
+        segmentation = _section(document, "segmentation")
+        parts = {name: _settings(kind, _section(segmentation, name)) for name, kind in _PARTS.items()}
+        return cls(
+            SegmentationSettings(**parts), _settings(ExtractionSettings, _section(document, "extraction"))
+        )
+
+
+def read_grain_recipe(path: Path) -> GrainRecipe:
+    """The recipe in an ``extraction.json``, or in a file saved by the window.
+
+    Raises
+    ------
+    FileError
+        If it cannot be read or holds no such recipe.
+    InputError
+        As :meth:`GrainRecipe.from_document`.
+    """
+    try:
+        if path.stat().st_size > _LARGEST:
+            raise FileError(f"{path.name} is far too large for a recipe.")
+        document = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise FileError(f"The recipe {path} cannot be read ({error.strerror}).") from error
+    except (ValueError, RecursionError):
+        raise FileError(f"{path.name} is no recipe: it holds no JSON.") from None
+    if not isinstance(document, dict) or not {"segmentation", "extraction"} & set(document):
+        raise FileError(f"{path.name} is no recipe of a segmentation: it names neither of its settings.")
+    return GrainRecipe.from_document(document)
+
+
+def _section(document: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+    section = document.get(name, {})
+    if not isinstance(section, Mapping):
+        raise InputError(f"“{name}” in a recipe is a group of settings, got {section!r}.")
+    return section
+
+
+def _settings(kind: type[S], values: Mapping[str, Any]) -> S:
+    """Settings of a dataclass, each of the type of its default."""
+    known: dict[str, Any] = {}
+    for each in fields(kind):  # type: ignore[arg-type]
+        if each.name not in values:
+            continue
+        value, default = values[each.name], each.default
+        if isinstance(default, float) and isinstance(value, int) and not isinstance(value, bool):
+            value = float(value)
+        if type(value) is not type(default):
+            raise InputError(f"“{each.name}” in a recipe is of the kind of {default!r}, got {value!r}.")
+        known[each.name] = value
+    return kind(**known)
