@@ -10,6 +10,7 @@ from regolith_studio.coarsening.result import Coarsened
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.scene import annotations, cameras, palette, stage, surfaces
+from regolith_studio.scene.cameras import CameraPose
 
 Picture = NDArray[np.uint8]
 
@@ -25,6 +26,8 @@ def three_views(
     path: Path | None = None,
     direction: str = "isometric",
     scale: int = 1,
+    pose: CameraPose | None = None,
+    transparent: bool = False,
 ) -> Picture:
     """Particle, fit and polyhedron side by side under one camera pose.
 
@@ -40,25 +43,30 @@ def three_views(
         A key of :data:`regolith_studio.scene.cameras.DIRECTIONS`.
     scale
         Whole factor on the size in pixels.
+    pose
+        Where the cameras stand, instead of a standard direction.
+    transparent
+        Whether the background is left out; the picture then has four channels.
 
     Returns
     -------
-    The picture, shape (height, width, 3), uint8.
+    The picture, shape (height, width, 3 or 4), uint8.
     """
     stage.choose_off_screen_window()
     width, height = VIEW_SIZE
     plotter = pv.Plotter(off_screen=True, shape=(1, 3), window_size=[3 * width, height], border=False)
     try:
-        pose = cameras.framing_pose(particle.vertices, direction, width / height)
+        pose = pose or cameras.framing_pose(particle.vertices, direction, width / height)
         bars = []
         for column, title in enumerate(titles):
             plotter.subplot(0, column)
             stage.set_stage(plotter, palette.PAPER)
+            plotter.renderer.SetGradientBackground(not transparent)
             _fill(plotter, column, particle, fit, polyhedron)
             annotations.show_title(plotter, title)
             bars.append(annotations.ScaleBar(plotter, palette.PAPER))
             cameras.apply_pose(plotter, pose)
-        picture = plotter.screenshot(path, return_img=True, scale=scale)
+        picture = plotter.screenshot(path, return_img=True, scale=scale, transparent_background=transparent)
         for bar in bars:
             bar.remove()
     finally:

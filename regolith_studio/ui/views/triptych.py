@@ -1,14 +1,18 @@
 """CT particle, fit and polyhedron side by side: the three views that are always there."""
 
 import html
+from functools import partial
+from typing import Any
 
 import numpy as np
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QSplitter, QWidget
 
 from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.scene import surfaces
+from regolith_studio.geometry.oriented_box import minimum_volume_box
+from regolith_studio.scene import extras, surfaces
 from regolith_studio.scene.distance import signed_distances
 from regolith_studio.session.results import ParticleEntry, Results
 from regolith_studio.ui.theme import Theme, current_theme
@@ -41,9 +45,11 @@ class Triptych(QSplitter):
             frame.setMinimumWidth(150)
         self.setSizes([1000, 1000, 1000])
         self._shown: Mesh | None = None
-        self._polyhedron: object = None
         self._fit: Mesh | None = None
         self._heat = False
+        self._extras: dict[str, bool] = {}
+        self._star_point: FloatArray | None = None
+        self._solid: tuple[ConvexPolyhedron, FloatArray] | None = None
         self.set_theme(self._theme)
         self._empty_titles()
 
@@ -52,9 +58,10 @@ class Triptych(QSplitter):
         if entry is None or entry.particle.mesh is self._shown:
             return
         mesh = self._shown = entry.particle.mesh
-        self._fit = self._polyhedron = None
+        self._fit = self._solid = self._star_point = None
         for name in NAMES[1:]:
             self.views[name].draw(surfaces.clear)
+        self._draw_extras(*NAMES)
         self._empty_titles()
         self.views["particle"].draw(lambda plotter: surfaces.show_particle(plotter, mesh))
         self.frames["particle"].set_texts(
@@ -81,18 +88,29 @@ class Triptych(QSplitter):
         if found is None or found.polyhedron is None:
             return
         solid, centre = found.polyhedron, found.centre
-        self._polyhedron = solid
+        self._solid = (solid, np.asarray(centre, dtype=np.float64))
         ink = self._theme.surroundings
         self.views["polyhedron"].draw(lambda plotter: surfaces.show_polyhedron(plotter, solid, centre, ink))
         self.frames["polyhedron"].set_texts(
             f"Polyhedron, {solid.n_faces} facets",
             f"{solid.n_vertices} vertices, {solid.n_triangles} triangles{_shortfall(results)}",
         )
+        self._draw_extras("polyhedron")
 
     def set_heat(self, heat: bool) -> None:
         """Colour the fit by its distance from the particle, or in its own colour."""
         self._heat = heat
         self._draw_fit()
+
+    def set_extra(self, name: str, shown: bool) -> None:
+        """Show or hide ``box``, ``star_point`` or ``overlay`` (the particle over fit and polyhedron)."""
+        self._extras[name] = shown
+        self._draw_extras(*NAMES)
+
+    def show_star_point(self, point: FloatArray | None) -> None:
+        """Where the radius function begins."""
+        self._star_point = point
+        self._draw_extras("particle", "fit")
 
     def set_wireframe(self, wireframe: bool) -> None:
         """Draw particle and fit as triangle meshes."""
@@ -126,11 +144,36 @@ class Triptych(QSplitter):
         if distances is not None:
             reach = float(np.abs(distances).max(initial=0.0))
             self.frames["fit"].detail.setText(f"at most {reach:.3g} µm from the particle")
+        self._draw_extras("fit")
+
+    def _draw_extras(self, *names: str) -> None:
+        for name in names:
+            self.views[name].draw(partial(self._fill_extras, name))
+
+    def _fill_extras(self, name: str, plotter: Any) -> None:
+        """Box, star point and overlay of one view, or none of them."""
+        ink = self._theme.surroundings
+        solid = self._solid if name == "polyhedron" else None
+        mesh = {"particle": self._shown, "fit": self._fit}.get(name)
+        corners = _box_corners(mesh, solid) if self._extras.get("box") else None
+        extras.show_box(plotter, corners, ink)
+        seen = self._extras.get("star_point") and mesh is not None and name != "polyhedron"
+        size = float(np.ptp(self._shown.vertices, axis=0).max()) if self._shown is not None else 1.0
+        extras.show_star_point(plotter, self._star_point if seen else None, size, ink)
+        over = self._extras.get("overlay") and name != "particle" and (mesh is not None or solid is not None)
+        extras.show_ghost(plotter, self._shown if over else None)
 
     def _empty_titles(self) -> None:
         self.frames["particle"].set_texts("CT particle")
         self.frames["fit"].set_texts("Spherical-harmonics fit", "waiting for the coefficients …")
         self.frames["polyhedron"].set_texts("Polyhedron", "on its way; the very first one takes longer …")
+
+
+def _box_corners(mesh: Mesh | None, solid: tuple[ConvexPolyhedron, FloatArray] | None) -> FloatArray | None:
+    """Corners of the minimum-volume box of what one view shows."""
+    if solid is not None:
+        return minimum_volume_box(solid[0]).corners + solid[1]
+    return minimum_volume_box(mesh).corners if mesh is not None else None
 
 
 def _lengths(bounds: FloatArray) -> str:

@@ -1,7 +1,7 @@
 """Page "Explore": one particle in three linked views, with every choice at hand and every number below."""
 
 from regolith_studio.scene.cameras import DIRECTIONS
-from regolith_studio.ui.action_spec import BREAK, ActionSpec
+from regolith_studio.ui.action_spec import BREAK, PAGE_MENU, ActionSpec
 from regolith_studio.ui.page import Page, PageContext, PageWidget
 
 _DIRECTION_KEYS = {"isometric": "Ctrl+0", "front": "Ctrl+1", "right": "Ctrl+3", "top": "Ctrl+7"}
@@ -37,5 +37,10 @@ PAGE = Page(
             "&View", "wireframe", "&Wireframe", "wireframe", "Ctrl+M", "Show triangles", False, "icon"
         ),
         ActionSpec("&View", "heat", "&Distance map", "heat", "Ctrl+D", "Show fitting errors", False, "icon"),
+        ActionSpec("&View", "overlay", "&Overlay the particle", "overlay", "", "In all", False, "icon"),
+        ActionSpec("&View", "box", "&Bounding box", "box", "Ctrl+B", "Smallest in volume", False, "icon"),
+        ActionSpec("&View", "star_point", "Star &point", "star", "", "Of the fit", False, "icon"),
+        ActionSpec(PAGE_MENU, "save_picture", "Save &picture …", "camera", "Ctrl+P", "PNG", bar="icon"),
+        ActionSpec(PAGE_MENU, "save_animation", "Save &animation of l_max …", tip="GIF of l_max 0 to 30"),
     ),
 )

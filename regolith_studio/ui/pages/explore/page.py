@@ -8,6 +8,7 @@ from PySide6.QtWidgets import QHBoxLayout
 from regolith_studio.scene.cameras import DIRECTIONS
 from regolith_studio.ui.layout import CONTROLS_WIDTH, padded, scrolled_column, side_by_side, stacked
 from regolith_studio.ui.page import PageContext, PageWidget
+from regolith_studio.ui.pages.explore.pictures import Pictures
 from regolith_studio.ui.pages.explore.plot_area import PlotArea
 from regolith_studio.ui.panels.coarsening import CoarseningPanel
 from regolith_studio.ui.panels.fit import FitPanel
@@ -28,6 +29,7 @@ class ExplorePage(PageWidget):
         self.coarsening, self.loss = CoarseningPanel(), LossPanel()
         self.triptych = Triptych(context.views)
         self.plots = PlotArea()
+        self.pictures = Pictures(context, self.triptych, self)
         self._themed = (self.particles, self.coarsening, self.plots, self.triptych)
         self._place()
         self._wire(context)
@@ -44,6 +46,9 @@ class ExplorePage(PageWidget):
             "reset": views.reset_cameras,
             "wireframe": views.set_wireframe,
             "heat": views.set_heat,
+            **{name: partial(views.set_extra, name) for name in ("overlay", "box", "star_point")},
+            "save_picture": self.pictures.save_picture,
+            "save_animation": self.pictures.save_animation,
         }
 
     def release(self) -> None:
@@ -66,10 +71,15 @@ class ExplorePage(PageWidget):
             wiring.edit(panel)
         wiring.refresh("particles", lambda: self.particles.set_entries(session.particles))
         wiring.refresh("particles choices", lambda: self.triptych.show_particle(session.selected))
+        wiring.refresh("fit", self._show_star_point)
         wiring.refresh("fit", lambda: self.fit.set_findings(session.results.fit), slow=True)
         wiring.refresh("surface", self._show_fit)
         wiring.refresh("coarsening", self._show_coarsening)
         self.plots.wire(session, wiring, context.commands)
+
+    def _show_star_point(self) -> None:
+        fit = self._session.results.fit
+        self.triptych.show_star_point(fit.star_point if fit else None)
 
     def _show_fit(self) -> None:
         self.triptych.show_fit(self._session.results.surface, self._session.results.surface_l_max)

@@ -1,0 +1,97 @@
+"""What may be drawn about a surface: its bounding box, its star point, another surface shining through.
+
+Like the surfaces, each may be drawn again and again on one plotter; ``None`` takes it away.
+"""
+
+from typing import Any
+
+import numpy as np
+import pyvista as pv
+from numpy.typing import ArrayLike
+
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.scene import palette, surfaces
+from regolith_studio.scene.palette import Surroundings
+
+BOX = "bounding_box"
+STAR_POINT = "star_point"
+GHOST = "ghost"
+GHOST_OPACITY = 0.28
+SEEN_THROUGH = 0.45
+"""Opacity of a surface about its star point."""
+STAR_SHARE = 0.02
+"""Radius of the ball at the star point, as a share of the particle's size."""
+
+
+def show_box(plotter: Any, corners: FloatArray | None, surroundings: Surroundings = palette.LIGHT) -> None:
+    """The twelve edges of a box.
+
+    Parameters
+    ----------
+    corners
+        Shape (8, 3), in the order of :attr:`regolith_studio.geometry.oriented_box.OrientedBox.corners`:
+        the last axis runs fastest.
+    """
+    if corners is None:
+        _hide(plotter, BOX)
+        return
+    pairs = [(a, a | bit) for a in range(8) for bit in (1, 2, 4) if not a & bit]
+    lines = np.array([item for pair in pairs for item in (2, *pair)], dtype=np.int64)
+    _show(plotter, BOX, pv.PolyData(np.array(corners), lines=lines), surroundings.ink, 1.0, line_width=1.2)
+
+
+def show_star_point(
+    plotter: Any, point: ArrayLike | None, size: float = 1.0, surroundings: Surroundings = palette.LIGHT
+) -> None:
+    """A small ball where the radius function begins, and the surface about it translucent.
+
+    Parameters
+    ----------
+    size
+        Of the particle; the ball is a share of it.
+    """
+    surface = plotter.actors.get(surfaces.SURFACE)
+    if surface is not None:
+        surface.prop.opacity = 1.0 if point is None else SEEN_THROUGH
+    if point is None:
+        _hide(plotter, STAR_POINT)
+        return
+    ball = pv.Sphere(radius=STAR_SHARE * size, center=tuple(np.asarray(point, dtype=float)))
+    actor = _show(plotter, STAR_POINT, ball, surroundings.ink, 1.0)
+    actor.prop.lighting = False
+
+
+def show_ghost(plotter: Any, mesh: Mesh | None, colour: str = palette.PARTICLE_MATERIAL.colour) -> None:
+    """Another surface, translucent, over the one that is shown."""
+    if mesh is None:
+        _hide(plotter, GHOST)
+        return
+    cells = np.column_stack([np.full(len(mesh.faces), 3), mesh.faces]).ravel()
+    _show(plotter, GHOST, pv.PolyData(np.array(mesh.vertices), faces=cells), colour, GHOST_OPACITY)
+
+
+def _show(
+    plotter: Any, name: str, data: pv.PolyData, colour: str, opacity: float, line_width: float = 1.0
+) -> Any:
+    actor = plotter.actors.get(name)
+    if actor is None:
+        actor = plotter.add_mesh(
+            data,
+            name=name,
+            opacity=opacity,
+            line_width=line_width,
+            show_scalar_bar=False,
+            copy_mesh=False,
+            reset_camera=False,
+            render=False,
+        )
+    actor.mapper.dataset = data
+    actor.prop.color = colour
+    actor.SetVisibility(True)
+    return actor
+
+
+def _hide(plotter: Any, name: str) -> None:
+    if name in plotter.actors:
+        plotter.actors[name].SetVisibility(False)

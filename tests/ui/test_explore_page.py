@@ -1,0 +1,86 @@
+"""What the views can show besides the surfaces, and their way into files."""
+
+import numpy as np
+import pytest
+from PIL import Image
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication
+
+from regolith_studio.geometry.oriented_box import minimum_volume_box
+from regolith_studio.scene import extras
+from regolith_studio.ui.app import open_window
+from regolith_studio.ui.pages.explore.pictures import PictureDialog
+
+SECONDS = 120.0
+ASKED = "regolith_studio.ui.pages.explore.pictures.QFileDialog.getSaveFileName"
+
+
+@pytest.fixture
+def window(shown, preferences, wait):
+    made = open_window(views="image", preferences=preferences)
+    made.resize(1100, 720)
+    shown(made)
+    wait(lambda: made.session.results.coarsened is not None and not made.session.tasks, SECONDS)
+    QTest.qWait(80)
+    return made
+
+
+def seen(window, view, name):
+    actor = window.page.triptych.views[view]._plotter.actors.get(name)
+    return actor if actor is not None and actor.GetVisibility() else None
+
+
+def test_that_box_star_point_and_overlay_come_and_go(window):
+    for name in ("box", "star_point", "overlay"):
+        window.menus.by_name[f"explore.{name}"].trigger()
+    corners = minimum_volume_box(window.session.selected.particle.mesh).corners
+    drawn = seen(window, "particle", extras.BOX).mapper.dataset.points
+    assert np.allclose(drawn, corners, rtol=1e-4)
+    results = window.session.results
+    solid = results.coarsened
+    inside = minimum_volume_box(solid.polyhedron).corners + solid.centre
+    assert np.allclose(seen(window, "polyhedron", extras.BOX).mapper.dataset.points, inside, rtol=1e-3)
+    star = seen(window, "fit", extras.STAR_POINT).mapper.dataset.center
+    assert np.allclose(star, results.fit.star_point, rtol=1e-3, atol=1e-2)
+    assert seen(window, "polyhedron", extras.STAR_POINT) is None
+    assert seen(window, "particle", extras.GHOST) is None
+    assert seen(window, "polyhedron", extras.GHOST) is not None
+    for name in ("box", "star_point", "overlay"):
+        window.menus.by_name[f"explore.{name}"].trigger()
+    for view in ("particle", "fit", "polyhedron"):
+        assert not any(seen(window, view, each) for each in (extras.BOX, extras.STAR_POINT, extras.GHOST))
+
+
+def test_that_the_picture_is_written_at_its_scale_and_without_background(window, tmp_path, monkeypatch, wait):
+    target = tmp_path / "views"
+    monkeypatch.setattr(ASKED, lambda *_: (str(target), ""))
+    monkeypatch.setattr(PictureDialog, "exec", lambda _self: 1)
+    monkeypatch.setattr(PictureDialog, "value", lambda _self: (1, True))
+    window.menus.by_name["explore.save_picture"].trigger()
+    wait(target.with_suffix(".png").exists)
+    with Image.open(target.with_suffix(".png")) as file:
+        picture = np.array(file)
+    assert picture.shape == (560, 1860, 4)
+    assert 0.02 < (picture[..., 3] > 0).mean() < 0.8
+    assert window.page.pictures._context.recall("pictures") == str(tmp_path)
+
+
+def test_that_the_picture_dialog_keeps_what_is_written_into_it(shown):
+    dialog = shown(PictureDialog())
+    dialog.scale.setValue(4)
+    dialog.transparent.setChecked(True)
+    assert dialog.value() == (4, True)
+
+
+@pytest.mark.slow
+def test_that_the_animation_runs_through_all_degrees(window, tmp_path, monkeypatch, wait):
+    target = tmp_path / "grain.gif"
+    monkeypatch.setattr(ASKED, lambda *_: (str(target), ""))
+    window.session.select("angular-1")
+    wait(lambda: window.session.results.coarsened is not None and not window.session.tasks, SECONDS)
+    window.menus.by_name["explore.save_animation"].trigger()
+    wait(lambda: target.exists() and not window.session.tasks, 170.0)
+    with Image.open(target) as file:
+        assert file.n_frames > 20
+    assert "animation" in window.toast.sentence.text()
+    QApplication.processEvents()
