@@ -43,10 +43,11 @@ def sample_spectrum(
     powers = np.stack([particle.truncated(l_max).power_spectrum().values for particle in particles])
     firsts = np.array([particle.values[0] for particle in particles])
     generator = np.random.default_rng(np.random.SeedSequence(0)) if rng is None else rng
-    picks = generator.integers(len(particles), size=(N_RESAMPLES, len(particles)))
-    weights = np.stack([np.bincount(pick, minlength=len(particles)) for pick in picks]) / len(particles)
-    resampled = weights @ powers
-    resampled[:, 0] = [firsts[pick].var(ddof=1) for pick in picks]
+    resampled = np.empty((N_RESAMPLES, l_max + 1))
+    for row in resampled:  # one resample at a time: a sample may have a hundred thousand particles
+        pick = generator.integers(len(particles), size=len(particles))
+        row[:] = np.bincount(pick, minlength=len(particles)) / len(particles) @ powers
+        row[0] = firsts[pick].var(ddof=1)
     tail = 50 * (1 - confidence)
     low, high = np.percentile(resampled, [tail, 100 - tail], axis=0)
     return PowerSpectrum(_estimate(powers, firsts), float(firsts.mean() / np.sqrt(4 * np.pi)), low, high)
