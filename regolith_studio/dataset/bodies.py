@@ -6,10 +6,13 @@ import numpy as np
 
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.exporting import ExportOptions
-from regolith_studio.dataset.sample import rotation_matrices, sample_dataset
-from regolith_studio.dataset.simulation_case import MICROMETRE
+from regolith_studio.dataset.sample import DrawnParticles, rotation_matrices, sample_dataset
+from regolith_studio.dataset.simulation_case import MICROMETRE, LiftingCylinder, tube_for
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
+
+NARROWEST = 3.0
+"""Least diameter of a tube in units of the lattice's spacing."""
 
 APART = 1.02
 """Spacing of the lattice in units of the largest circumscribed diameter."""
@@ -63,10 +66,8 @@ def lay_out(dataset: Dataset, options: ExportOptions, within: float | None = Non
     InputError
         If a particle is too large for the cylinder.
     """
-    drawn = sample_dataset(dataset, options.n_particles, options.seed)
-    reach = np.array([np.linalg.norm(one.shape.vertices, axis=1).max() for one in dataset.representatives])
+    drawn, spacing = _drawn(dataset, options)
     metres = options.coarse_graining_factor * MICROMETRE
-    spacing = APART * 2 * float((reach[drawn.class_index] * drawn.scale).max()) * metres
     layer = _layer(spacing, within, len(drawn.diameter))
     place = np.arange(len(drawn.diameter))
     height = spacing * (0.5 + place // len(layer))
@@ -76,6 +77,21 @@ def lay_out(dataset: Dataset, options: ExportOptions, within: float | None = Non
         position=np.column_stack([layer[place % len(layer)], height]),
         orientation=drawn.orientation,
     )
+
+
+def fitting_tube(dataset: Dataset, options: ExportOptions) -> LiftingCylinder:
+    """The cylinder of the options, smaller if ``options.n_particles`` would only cover its ground."""
+    drawn, spacing = _drawn(dataset, options)
+    volume = float(((drawn.scale * options.coarse_graining_factor * MICROMETRE) ** 3).sum())
+    return tube_for(options.cylinder, volume, NARROWEST * spacing)
+
+
+def _drawn(dataset: Dataset, options: ExportOptions) -> tuple[DrawnParticles, float]:
+    """The particles, and the spacing in metres at which none can touch another however it turns."""
+    drawn = sample_dataset(dataset, options.n_particles, options.seed)
+    reach = np.array([np.linalg.norm(one.shape.vertices, axis=1).max() for one in dataset.representatives])
+    largest = float((reach[drawn.class_index] * drawn.scale).max())
+    return drawn, APART * 2 * largest * options.coarse_graining_factor * MICROMETRE
 
 
 def _layer(spacing: float, within: float | None, count: int) -> FloatArray:

@@ -16,6 +16,9 @@ FOLDER = None
 """The folder of case.json; found by itself where the script knows its own place."""
 START = False
 """Whether the simulation is started at once."""
+NARROW = False
+"""Set True if your Rocky draws sizes between the rows of its table: every row is then followed by one a
+ten-thousandth below, so that only the diameters of the dataset come out."""
 
 
 def main(application):
@@ -87,11 +90,20 @@ def make_particle(study, folder, case, record):
     if case["coarse_graining_factor"] != 1.0:
         sizes.SetCgmScaleFactor(case["coarse_graining_factor"])
     sizes.Clear()
-    for diameter, percent in record["sizes"]:
+    for diameter, percent in size_rows(record["sizes"]):
         entry = sizes.New()
         entry.SetSize(diameter, "m")
         entry.SetCumulativePercentage(percent)
     return particle
+
+
+def size_rows(sizes):
+    """Diameters in metres, descending, each with the cumulative percentage by mass up to it."""
+    below = [percent for _, percent in sizes[1:]] + [0.0]
+    for (diameter, percent), lower in zip(sizes, below):  # noqa: B905  Rocky's Python may be older
+        yield diameter, percent
+        if NARROW:
+            yield diameter * (1 - 1e-4), lower
 
 
 def make_walls(study, folder, case):

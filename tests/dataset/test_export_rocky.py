@@ -161,6 +161,20 @@ def test_that_without_coarse_graining_none_is_switched_on(tmp_path: Path) -> Non
     assert all(name != "SetCgmScaleFactor" for sizes in study.of("sizes") for name, _ in sizes.calls)
 
 
+def test_that_narrow_rows_leave_only_the_diameters_of_the_dataset(tmp_path: Path) -> None:
+    """Sizes drawn evenly between neighbouring rows, as an interpolating reader would, are the dataset's."""
+    folder = write_export(paper_dataset(1), EXPORTERS["rocky"], tmp_path / "x").folder
+    space: dict = {"__file__": str(folder / "rocky_case.py"), "__name__": "script"}
+    exec((folder / "rocky_case.py").read_text(), space)
+    space["NARROW"], application = True, Recorder("app")
+    space["main"](application)
+    table = rows(application.of("particle")[0])[::-1]
+    assert len(table) == 10
+    drawn = np.interp(np.random.default_rng(0).uniform(0, 100, 5000), table[:, 1], table[:, 0])
+    nearest = np.abs(drawn[:, None] / (np.array(PAPER_CLASSES_UM) * 1e-6) - 1).min(axis=1)
+    assert nearest.max() < 2e-4
+
+
 def test_that_a_shape_that_rocky_cannot_import_stops_the_script(tmp_path: Path, monkeypatch) -> None:
     monkeypatch.setattr(Recorder, "_answer", _refusing(Recorder._answer))
     with pytest.raises(RuntimeError, match="could not import"):

@@ -13,7 +13,7 @@ import pytest
 from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
-from regolith_studio.dataset.bodies import lay_out
+from regolith_studio.dataset.bodies import fitting_tube, lay_out
 from regolith_studio.dataset.build import build_dataset
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.exporters import EXPORTERS
@@ -75,6 +75,16 @@ def test_that_a_particle_larger_than_the_cylinder_is_refused(dataset: Dataset, t
         exported(dataset, "yade", tmp_path / "x", OPTIONS.replaced(diameter=1e-4))
 
 
+def test_that_a_tube_for_few_particles_is_as_full_as_the_papers(dataset: Dataset) -> None:
+    options = OPTIONS.replaced(n_particles=20_000)
+    tube = fitting_tube(dataset, options)
+    volume = (np.pi / 6 * lay_out(dataset, options).diameter ** 3).sum()
+    assert tube.height / tube.diameter == pytest.approx(4)
+    fill = volume / 0.55 / (np.pi / 4 * tube.diameter**2)
+    assert fill / tube.diameter == pytest.approx(2.75 / 2)
+    assert fitting_tube(dataset, OPTIONS.replaced(n_particles=1_000_000, diameter=0.003)).diameter == 0.003
+
+
 # --- YADE
 
 needs_yade = pytest.mark.skipif(shutil.which("yade") is None, reason="YADE is not installed")
@@ -95,7 +105,7 @@ def test_that_yade_finds_the_volumes_masses_and_inertia_of_the_dataset(
     folder = exported(dataset, "yade", tmp_path / "yade")
     run_yade(folder, "--check")
     found = json.loads((folder / "check.json").read_text())["particles"]
-    bodies = lay_out(dataset, OPTIONS, within=0.02)
+    bodies = lay_out(dataset, OPTIONS, within=fitting_tube(dataset, OPTIONS).diameter)
     assert len(found) == len(bodies)
     for which, scale, diameter, body in zip(
         bodies.class_index, bodies.scale, bodies.diameter, found, strict=True
@@ -115,7 +125,7 @@ def test_that_yade_lets_the_particles_fall_and_lifts_the_tube(dataset: Dataset, 
     run_yade(folder, "--run", "12000")
     with (folder / "positions.csv").open() as file:
         end = np.array([[float(row[key]) for key in ("x_m", "y_m", "z_m")] for row in csv.DictReader(file)])
-    start = lay_out(dataset, options, within=0.004).position
+    start = lay_out(dataset, options, within=fitting_tube(dataset, options).diameter).position
     assert len(end) == 12
     assert np.isfinite(end).all()
     assert end[:, 2].max() < start[:, 2].max()

@@ -1,8 +1,10 @@
 """YADE: a script that drops drawn polyhedra into a cylinder and lifts it."""
 
+from dataclasses import replace
+
 import numpy as np
 
-from regolith_studio.dataset.bodies import Bodies, lay_out
+from regolith_studio.dataset.bodies import Bodies, fitting_tube, lay_out
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export_tables import csv_bytes, shape_names, sizes_csv
 from regolith_studio.dataset.exporting import NOTES, Exporter, ExportOptions, case_settings
@@ -13,7 +15,9 @@ DEPTH = 1e-3
 """Share of its size by which the largest particle sinks into another under the weight of a full tube."""
 
 _NOTE = """yade_case.py builds the case from case.json and particles.csv: {n} drawn particles above each
-other in the tube (which is stretched while it holds them), a plate, gravity, and the lift of the tube.
+other in the tube, a plate, gravity, and the lift of the tube. The tube is {wide:.3g} mm wide: smaller than
+asked for where so few particles would only cover its ground, so that they fill it as high for its width as in
+the paper; it is longer while it holds them above each other.
 YADE takes the convex hull of each shape's vertices, and finds centroid, volume and inertia by itself.
 Measured with YADE 2023.02a of Debian: volumes and masses agree with the dataset to 1e-12, principal
 moments to 0.2 %. Its law for polyhedra is volumetric (force by overlapping volume, no JKR): an angle of
@@ -24,13 +28,14 @@ COLUMNS = ("class", "scale", "diameter_m", "x", "y", "z", "qw", "qx", "qy", "qz"
 
 
 def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
+    options = replace(options, cylinder=fitting_tube(dataset, options))
     bodies = lay_out(dataset, options, within=options.cylinder.diameter)
     return {
         "yade_case.py": resource("exports", "yade_case.py").read_bytes(),
         "case.json": tidy_json(_case(dataset, options, bodies)).encode("utf-8"),
         "particles.csv": csv_bytes(COLUMNS, _rows(bodies)),
         "sizes.csv": sizes_csv(dataset),
-        NOTES: _NOTE.format(n=len(bodies)).encode("utf-8"),
+        NOTES: _NOTE.format(n=len(bodies), wide=options.cylinder.diameter * 1e3).encode("utf-8"),
     }
 
 
