@@ -75,34 +75,49 @@ class Mesh:
         return np.stack([self.vertices.min(axis=0), self.vertices.max(axis=0)])
 
     @cached_property
-    def _moments(self) -> tuple[float, FloatArray, FloatArray]:
-        """Volume, centroid (3,), central second moments (3, 3): signed tetrahedra about the middle."""
+    def _first_moments(self) -> tuple[float, FloatArray]:
+        """Volume and centroid (3,): signed tetrahedra about the middle."""
         middle = self.bounds.mean(axis=0)
-        corners = self.triangles - middle
-        six_volumes = np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))
+        corners, six_volumes = self._tetrahedra(middle)
         volume = float(six_volumes.sum() / 6)
         if volume == 0.0:
-            return 0.0, middle, np.zeros((3, 3))
+            return 0.0, middle
+        return volume, middle + six_volumes @ corners.sum(axis=1) / 24 / volume
+
+    @cached_property
+    def _second_moments(self) -> FloatArray:
+        """Central second moments of the enclosed volume, shape (3, 3)."""
+        volume, centroid = self._first_moments
+        if volume == 0.0:
+            return np.zeros((3, 3))
+        corners, six_volumes = self._tetrahedra(self.bounds.mean(axis=0))
         sums = corners.sum(axis=1)
-        first = np.einsum("i,ij->j", six_volumes, sums) / 24 / volume
-        second = np.einsum("i,ij,ik->jk", six_volumes, sums, sums)
-        second += np.einsum("i,icj,ick->jk", six_volumes, corners, corners)
-        return volume, middle + first, second / 120 - volume * np.outer(first, first)
+        second = (six_volumes[:, None] * sums).T @ sums
+        flat = corners.reshape(-1, 3)
+        second += (np.repeat(six_volumes, 3)[:, None] * flat).T @ flat
+        first = centroid - self.bounds.mean(axis=0)
+        return np.asarray(second / 120 - volume * np.outer(first, first))
+
+    def _tetrahedra(self, middle: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Corners (m, 3, 3) seen from the middle, and six times the signed volumes of the tetrahedra (m,)."""
+        corners = self.triangles - middle
+        six_volumes = (corners[:, 0] * np.cross(corners[:, 1], corners[:, 2])).sum(axis=1)
+        return corners, six_volumes
 
     @property
     def volume(self) -> float:
         """Signed volume by the divergence theorem; negative where the mesh is inside out."""
-        return self._moments[0]
+        return self._first_moments[0]
 
     @property
     def centroid(self) -> FloatArray:
         """Centre of mass of the enclosed volume, shape (3,)."""
-        return self._moments[1]
+        return self._first_moments[1]
 
     @cached_property
     def inertia(self) -> FloatArray:
         """Inertia tensor about the centroid at density 1, shape (3, 3)."""
-        second = self._moments[2]
+        second = self._second_moments
         return np.asarray(np.trace(second) * np.eye(3) - second)
 
     @cached_property
