@@ -26,7 +26,11 @@ def in_words(document: dict[str, Any]) -> str:
 
 def run_remarks(document: dict[str, Any]) -> list[str]:
     """Sentences about a run that its user should read."""
-    return [*document["particles"]["sentences"], *document["checks"]["problems"]]
+    return [
+        *document["particles"]["sentences"],
+        *document["run"]["notes"],
+        *document["checks"]["problems"],
+    ]
 
 
 def run_in_words(document: dict[str, Any]) -> str:

@@ -91,12 +91,25 @@ class Checks:
 
 @dataclass(frozen=True, eq=False)
 class Ending:
-    """A finished run."""
+    """A finished run.
+
+    Parameters
+    ----------
+    pile
+        Where the particles came to rest.
+    checks
+        Of the run.
+    steps, simulated_time
+        How long it was; in seconds.
+    notes
+        Sentences on what the engine made of the particles.
+    """
 
     pile: Pile
     checks: Checks
     steps: int
     simulated_time: float
+    notes: tuple[str, ...] = ()
 
 
 class Engine(Protocol):

@@ -69,6 +69,7 @@ def run_document(
             "steps": ending.steps if ending else None,
             "simulated_time": ending.simulated_time if ending else None,
             "n_snapshots": n_snapshots,
+            "notes": list(ending.notes) if ending else [],
         },
         "checks": _checks(ending.checks) if ending else None,
         "measurement": _measurement(measured),

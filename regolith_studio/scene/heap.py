@@ -115,7 +115,7 @@ def show_apparatus(
 
 def framing_corners(diameter: float, height: float) -> FloatArray:
     """Corners of what a view should show of a test, in micrometres, shape (8, 3)."""
-    reach = 1.3 * diameter * MICROMETRES
+    reach = 1.7 * diameter * MICROMETRES
     top = height * MICROMETRES
     return np.array([(x, y, z) for x in (-reach, reach) for y in (-reach, reach) for z in (0.0, top)])
 

@@ -20,7 +20,7 @@ LEFT, RIGHT, BOTH = "#0072b2", "#e69f00", "#009e73"
 
 def section_figure(points: FloatArray, diameters: FloatArray, measurement: ReposeMeasurement) -> Figure:
     """The x-z and y-z sections; positions and diameters in metres."""
-    figure = Figure(figsize=(10.5, 3.8), layout="constrained")
+    figure = Figure(figsize=(10.5, 3.2), layout="constrained")
     axes = figure.subplots(1, 2, sharey=True)
     for axis, section in zip(axes, measurement.sections[:2], strict=True):
         _draw_particles(axis, points, diameters, measurement, section)
@@ -30,6 +30,9 @@ def section_figure(points: FloatArray, diameters: FloatArray, measurement: Repos
             f"{plane}: {section.asymmetric.left.angle:.1f}° | {section.asymmetric.right.angle:.1f}°"
         )
         axis.set_xlabel("x (mm)" if section.azimuth == 0.0 else "y (mm)")
+        reach, top = framed(section)
+        axis.set_xlim(-MILLIMETRE * reach, MILLIMETRE * reach)
+        axis.set_ylim(0.0, MILLIMETRE * top)
     axes[0].set_ylabel("z (mm)")
     handles, labels = axes[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=4, frameon=False)
@@ -39,6 +42,13 @@ def section_figure(points: FloatArray, diameters: FloatArray, measurement: Repos
         f"{measurement.n_particles:,} particles"
     )
     return figure
+
+
+def framed(section: Section) -> tuple[float, float]:
+    """Half width and height of what a picture of a section should show, in metres: no far strays."""
+    two, one = section.asymmetric, section.symmetric
+    toes = [abs(line.intercept / line.slope) for line in (two.left, two.right)]
+    return 1.15 * max(*toes, abs(one.apex[0]) + one.apex[1] / one.slope), 1.1 * max(two.apex[1], one.apex[1])
 
 
 def write_section_figure(
@@ -67,8 +77,6 @@ def _draw_particles(
     )
     axis.add_collection(grains)
     axis.set_aspect("equal")
-    axis.autoscale_view()
-    axis.set_ylim(bottom=0.0)
 
 
 def _draw_fits(axis: Axes, section: Section) -> None:

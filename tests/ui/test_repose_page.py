@@ -94,7 +94,7 @@ def test_that_a_test_is_run_listed_and_replayed(page, dataset, wait):
     run = page.runs.current()
     assert run.document["state"] == "finished"
     assert run.document["case"]["n_particles"] == 40
-    assert "too few" in page.verdict.text()
+    assert "no angle" in page.verdict.text()
     assert page.player.slider.maximum() >= 4
     last = page.player.pile.points.copy()
     page.player.slider.setValue(0)
@@ -149,7 +149,7 @@ def test_that_what_is_no_pile_says_so(page, tmp_path, monkeypatch, wait):
     path.write_bytes(pile_bytes(replace(flat, points=flat.points * [3.0, 3.0, 0.0] + [0, 0, 1e-3])))
     monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (str(path), ""))
     page.open_positions()
-    wait(lambda: "layer" in page.verdict.text())
+    wait(lambda: "no angle" in page.verdict.text())
     assert page.x_z.is_empty()
     page.export_run()
     assert "no measured pile" in page._context.toast.sentence.text()

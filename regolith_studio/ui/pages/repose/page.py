@@ -296,7 +296,7 @@ class ReposePage(PageWidget):
     def _show_measurement(self, measured: ReposeMeasurement | NoPile) -> None:
         if isinstance(measured, NoPile) or self._pile is None:
             self._measured = None
-            self.verdict.setText(str(measured))
+            self.verdict.setText("There is no angle of repose.")
             for plot in (self.x_z, self.y_z):
                 plot.show_nothing(str(measured))
             return

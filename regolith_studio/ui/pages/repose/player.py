@@ -142,7 +142,8 @@ class Player(QWidget):
         pile = self.pile
         if pile is None or not self._shapes:
             return
-        reach = 1.3 * max(self._test.diameter, float(np.abs(pile.points[:, :2]).max()) / 1.25)
+        spread = float(np.abs(pile.points[:, :2]).max())
+        reach = float(np.clip(1.05 * spread, 1.3 * self._test.diameter, 2.2 * self._test.diameter))
 
         def fill(plotter: object) -> None:
             heap.show_heap(plotter, self._shapes, pile, self._spheres)

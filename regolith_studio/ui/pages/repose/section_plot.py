@@ -8,6 +8,7 @@ from PySide6.QtWidgets import QWidget
 from regolith_studio.dem.evaluation.profile import project
 from regolith_studio.dem.evaluation.section import Section
 from regolith_studio.dem.pile import Pile
+from regolith_studio.studies.repose_figures import framed
 from regolith_studio.ui.widgets.plot import Plot
 
 MILLIMETRE = 1e3
@@ -69,6 +70,11 @@ class SectionPlot(Plot):
         self._draw_grains(self._pile, self._section)
         self._draw_models(self._section)
         self._draw_cuts(self._section)
+        reach, top = framed(self._section)
+        box = self.canvas.plotItem.vb
+        box.setRange(
+            xRange=(-MILLIMETRE * reach, MILLIMETRE * reach), yRange=(0.0, MILLIMETRE * top), padding=0.02
+        )
 
     def _draw_grains(self, pile: Pile, section: Section) -> None:
         discs = project(pile.points, pile.diameters, 0.0, np.radians(section.azimuth))

@@ -1,0 +1,55 @@
+"""LAMMPS (GPL-2, a program of its own): the paper's contact laws on rigid clumps of spheres."""
+
+from collections.abc import Generator
+from dataclasses import dataclass
+
+from regolith_studio.dem.case import Prepared
+from regolith_studio.dem.engine import Ending, Found, Moment, Representation
+from regolith_studio.dem.engines.lammps.settings import LammpsSettings
+
+SECONDS_PER_SPHERE_AND_STEP = 0.7e-6
+"""Measured on one core."""
+REPRESENTS = Representation(
+    shape="rigid clumps of inscribed spheres (8 by default) with the polyhedra's mass and inertia: rounder",
+    normal="Hertz from Young's modulus (softened, recorded) with restitution",
+    tangential="Mindlin with history and Coulomb friction, one coefficient (the static one)",
+    cohesion="Johnson, Kendall and Roberts between spheres",
+    rolling="spring, dashpot and slider (where resistance is above 0)",
+    coarse_graining="by size; scaling the surface energy keeps cohesion over weight",
+    missing="edges, corners and flat faces; friction of rest apart from friction of motion",
+)
+
+
+@dataclass(frozen=True)
+class LammpsEngine:
+    """Runs the program ``lmp``; nothing of it is loaded here."""
+
+    key: str = "lammps"
+    label: str = "LAMMPS"
+    order: int = 1
+    licence: str = "GPL-2.0, run as a separate program"
+    Settings: type[LammpsSettings] = LammpsSettings
+    represents: Representation = REPRESENTS
+
+    def find(self) -> Found:
+        """Whether the program and its MPI library are there."""
+        from regolith_studio.dem.engines.lammps.program import find_lammps
+
+        return find_lammps()
+
+    def seconds(self, prepared: Prepared, settings: LammpsSettings) -> float:
+        """From the cost of a step and the length of the phases."""
+        from regolith_studio.dem.engines.lammps.script import schedule
+
+        top = 3.0 * prepared.fill_height / prepared.mean_diameter
+        count = 1 if prepared.case.shapes == "spheres" else settings.spheres
+        return SECONDS_PER_SPHERE_AND_STEP * count * len(prepared) * schedule(prepared, settings, top).steps
+
+    def simulate(self, prepared: Prepared, settings: LammpsSettings) -> Generator[Moment, None, Ending]:
+        """Fill, settle, lift, rest."""
+        from regolith_studio.dem.engines.lammps.simulation import simulate
+
+        return simulate(prepared, settings)
+
+
+ENGINE = LammpsEngine()

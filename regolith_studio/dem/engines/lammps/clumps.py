@@ -1,0 +1,102 @@
+"""Rigid clumps of inscribed spheres with the mass and inertia of the polyhedra."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import ConvexHull
+from scipy.spatial.transform import Rotation
+
+from regolith_studio.dataset.sphere_fit import fit_spheres, union_volume
+from regolith_studio.dem.case import Prepared
+from regolith_studio.dem.filling import loose_column
+from regolith_studio.geometry.arrays import FloatArray, IntArray
+from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.geometry.half_spaces import HalfSpaces
+
+BALL = (3 / (4 * np.pi)) ** (1 / 3)
+"""Radius of a ball of unit volume."""
+
+
+@dataclass(frozen=True, eq=False)
+class ClumpShape:
+    """One unit-volume shape as spheres.
+
+    Parameters
+    ----------
+    spheres
+        Rows x, y, z, r about the centroid, shape (k, 4).
+    inertia
+        Of the polyhedron at density 1 about its centroid, shape (3, 3).
+    volume_share
+        Of the polyhedron's volume that the spheres fill.
+    """
+
+    spheres: FloatArray
+    inertia: FloatArray
+    volume_share: float
+
+
+@dataclass(frozen=True, eq=False)
+class Clumps:
+    """All particles where a simulation begins; lengths in mean diameters, density 1.
+
+    Parameters
+    ----------
+    shapes
+        One a class.
+    centres, turns
+        Of the particles: shape (n, 3), and rotations.
+    scales
+        Factor from the unit-volume shape to each particle, shape (n,).
+    class_index
+        Shape (n,).
+    """
+
+    shapes: tuple[ClumpShape, ...]
+    centres: FloatArray
+    turns: Rotation
+    scales: FloatArray
+    class_index: IntArray
+
+    def atoms(self, centres: FloatArray, turns: Rotation) -> tuple[IntArray, FloatArray, FloatArray]:
+        """Body (m,), centre (m, 3) and radius (m,) of every sphere of particles placed like this."""
+        counts = np.array([len(shape.spheres) for shape in self.shapes])[self.class_index]
+        body = np.repeat(np.arange(len(counts)), counts)
+        local = np.concatenate([self.shapes[kind].spheres for kind in self.class_index])
+        scale = self.scales[body]
+        places = centres[body] + turns[body].apply(local[:, :3] * scale[:, None])
+        return body, places, local[:, 3] * scale
+
+    def inertias(self) -> FloatArray:
+        """Of every particle about its centre, along the axes of space, shape (n, 3, 3)."""
+        own = np.array([shape.inertia for shape in self.shapes])[self.class_index]
+        matrix = self.turns.as_matrix()
+        return np.asarray(matrix @ own @ matrix.transpose(0, 2, 1) * (self.scales**5)[:, None, None])
+
+
+def clumps_of(prepared: Prepared, count: int) -> Clumps:
+    """The particles of a case as clumps of at most `count` spheres."""
+    length = prepared.mean_diameter
+    column = loose_column(prepared)
+    ball = prepared.case.shapes == "spheres"
+    shapes = tuple(_ball() if ball else clump_shape(vertices, count) for vertices in prepared.shapes)
+    return Clumps(
+        shapes,
+        column.points / length,
+        Rotation.from_quat(column.orientations, scalar_first=True),
+        prepared.scales / length,
+        prepared.class_index,
+    )
+
+
+def clump_shape(vertices: FloatArray, count: int) -> ClumpShape:
+    """A convex unit-volume shape as spheres."""
+    hull = ConvexHull(vertices)
+    planes = np.unique(np.round(hull.equations, 10), axis=0)
+    solid = ConvexPolyhedron.from_half_spaces(HalfSpaces(planes[:, :3], -planes[:, 3]))
+    spheres = fit_spheres(solid, count)
+    return ClumpShape(spheres, np.asarray(solid.mesh.inertia), union_volume(solid, spheres))
+
+
+def _ball() -> ClumpShape:
+    return ClumpShape(np.array([[0.0, 0.0, 0.0, BALL]]), np.eye(3) * 0.4 * BALL**2, 1.0)

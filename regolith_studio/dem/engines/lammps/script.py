@@ -1,0 +1,189 @@
+"""The files that LAMMPS reads: atoms, bodies, and the script of the test.
+
+Units: mean diameter, density and gravity are 1. The contact laws are those of the paper: Hertz with material
+parameters and restitution (or Johnson-Kendall-Roberts), Mindlin with Coulomb's limit, rolling resistance.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from regolith_studio.dem.case import Prepared
+from regolith_studio.dem.consequences import rayleigh_time
+from regolith_studio.dem.engines.lammps.clumps import Clumps
+from regolith_studio.dem.engines.lammps.settings import LammpsSettings
+
+TANGENTIAL_DAMPING = 1.0
+SETTLE = 8.0
+
+
+@dataclass(frozen=True)
+class Schedule:
+    """Times of the phases in sqrt(d/g), and the step.
+
+    Parameters
+    ----------
+    step
+        Of the integration.
+    fill, settle, lift, rest
+        Durations.
+    speed
+        Of the cylinder, in sqrt(g d).
+    picture
+        Steps between two snapshots.
+    """
+
+    step: float
+    fill: float
+    settle: float
+    lift: float
+    rest: float
+    speed: float
+    picture: int
+
+    @property
+    def total(self) -> float:
+        """Duration of the test."""
+        return self.fill + self.settle + self.lift + self.rest
+
+    @property
+    def steps(self) -> int:
+        """Number of steps of the test."""
+        return sum(self.steps_of(each) for each in (self.fill, self.settle, self.lift, self.rest))
+
+    def steps_of(self, duration: float) -> int:
+        """Number of steps of a phase."""
+        return int(np.ceil(duration / self.step))
+
+    def phase(self, step: int) -> str:
+        """What is going on at a step."""
+        for name, duration in (("fill", self.fill), ("settle", self.settle), ("lift", self.lift)):
+            step -= self.steps_of(duration)
+            if step <= 0:
+                return name
+        return "rest"
+
+    def rim(self, step: int) -> float:
+        """Height of the cylinder's lower rim at a step; infinite once it is gone."""
+        late = (step - self.steps_of(self.fill) - self.steps_of(self.settle)) * self.step
+        return float("inf") if self.phase(step) == "rest" else max(0.0, late * self.speed)
+
+
+def stiffness(prepared: Prepared, settings: LammpsSettings) -> float:
+    """Young's modulus as simulated, over rho g d."""
+    contact, test = prepared.case.contact, prepared.case.test
+    real = contact.youngs_modulus / (contact.density * test.gravity * prepared.mean_diameter)
+    return min(real, settings.softest) if settings.softest > 0.0 else real
+
+
+def schedule(prepared: Prepared, settings: LammpsSettings, top: float) -> Schedule:
+    """When what happens; `top` is the height of the column at the start in mean diameters."""
+    contact, test = prepared.case.contact, prepared.case.test
+    smallest = float(prepared.diameters.min()) / prepared.mean_diameter
+    young = stiffness(prepared, settings)
+    step = settings.step_share * rayleigh_time(smallest, 1.0, young, contact.poissons_ratio)
+    speed = test.lift_speed / np.sqrt(test.gravity * prepared.mean_diameter)
+    height = prepared.fill_height / prepared.mean_diameter
+    fill, lift = np.sqrt(2.0 * top) + 6.0, (0.9 * height + 2.0) / speed
+    total = fill + SETTLE + lift + settings.rest
+    picture = max(1, int(total / step / settings.snapshots))
+    return Schedule(step, float(fill), SETTLE, float(lift), settings.rest, float(speed), picture)
+
+
+def data_file(clumps: Clumps, reach: float, top: float) -> str:
+    """Atoms of all clumps; each atom carries the number of its body."""
+    body, places, radius = clumps.atoms(clumps.centres, clumps.turns)
+    lines = [
+        "clumps",
+        "",
+        f"{len(body)} atoms",
+        "1 atom types",
+        "",
+        f"{-reach!r} {reach!r} xlo xhi",
+        f"{-reach!r} {reach!r} ylo yhi",
+        f"-2.0 {top + 20.0!r} zlo zhi",
+        "",
+        "Atoms # hybrid sphere bond",
+        "",
+    ]
+    for k in range(len(body)):
+        x, y, z = (float(value) for value in places[k])
+        lines.append(f"{k + 1} 1 {x!r} {y!r} {z!r} {2 * float(radius[k])!r} 1.0 {body[k] + 1}")
+    return "\n".join(lines) + "\n"
+
+
+def bodies_file(clumps: Clumps) -> str:
+    """Mass, centre and inertia of the polyhedra, in place of those of overlapping spheres."""
+    inertias, lines = clumps.inertias(), [str(len(clumps.scales))]
+    for k in range(len(clumps.scales)):
+        i = inertias[k]
+        numbers = (*clumps.centres[k], i[0, 0], i[1, 1], i[2, 2], i[0, 1], i[0, 2], i[1, 2])
+        text = " ".join(repr(float(number)) for number in (clumps.scales[k] ** 3, *numbers))
+        lines.append(f"{k + 1} {text} 0 0 0 0 0 0 0 0 0")
+    return "\n".join(lines) + "\n"
+
+
+def script(prepared: Prepared, settings: LammpsSettings, plan: Schedule, radius: float, top: float) -> str:
+    """The input of LAMMPS; the snapshots are ``body.*.dump``."""
+    case = prepared.case
+    friction = case.contact.static_friction
+    plate, wall = (
+        _contact(prepared, settings, mu) for mu in (case.test.plate_friction, case.test.wall_friction)
+    )
+    return f"""units lj
+atom_style hybrid sphere bond
+boundary f f f
+newton off
+comm_modify vel yes cutoff 4.0
+read_data clumps.data
+neighbor 0.12 bin
+neigh_modify delay 0 every 1 check yes exclude molecule/intra all
+pair_style granular
+pair_coeff * * {_contact(prepared, settings, friction)}
+timestep {plan.step!r}
+fix down all gravity 1.0 vector 0 0 -1
+fix bodies all rigid/small molecule infile bodies.txt gravity down
+variable lifted equal 0.0
+region tube cylinder z 0 0 {radius!r} 0 {top!r} side in open 1 open 2
+fix plate all wall/gran granular {plate} zplane 0 NULL
+fix tube all wall/gran/region granular {wall} region tube
+compute place all rigid/local bodies mol x y z quatw quati quatj quatk
+compute motion all ke/rigid bodies
+compute spin all erotate/rigid bodies
+dump place all local {plan.picture} body.*.dump c_place[1] c_place[2] c_place[3] c_place[4] &
+ c_place[5] c_place[6] c_place[7] c_place[8]
+dump_modify place format float %.10g
+thermo {plan.picture}
+thermo_style custom step c_motion c_spin
+thermo_modify lost warn flush yes norm no
+run {plan.steps_of(plan.fill)}
+run {plan.steps_of(plan.settle)}
+unfix tube
+region tube delete
+variable begin equal $(step)
+variable up equal (step-v_begin)*{plan.step!r}*{plan.speed!r}
+region tube cylinder z 0 0 {radius!r} 0 {top!r} side in open 1 open 2 move NULL NULL v_up
+fix tube all wall/gran/region granular {wall} region tube
+run {plan.steps_of(plan.lift)}
+unfix tube
+run {plan.steps_of(plan.rest)}
+"""
+
+
+def _contact(prepared: Prepared, settings: LammpsSettings, friction: float) -> str:
+    """Normal, tangential and rolling law with their numbers."""
+    contact = prepared.case.contact
+    young, poisson = stiffness(prepared, settings), contact.poissons_ratio
+    bounce = min(max(contact.restitution, 0.05), 0.98)
+    weight = contact.density * prepared.case.test.gravity * prepared.mean_diameter**2
+    energy = prepared.surface_energy / weight / 2  # two surfaces of LAMMPS make the w of 3/2 pi w R*
+    normal = f"hertz/material {young!r} {bounce!r} {poisson!r}"
+    if energy > 0.0:
+        normal = f"jkr {young!r} {bounce!r} {poisson!r} {energy!r}"
+    rolling = "none"
+    if contact.rolling_friction > 0.0:
+        rolling = f"sds {0.1 * young!r} {0.02 * young!r} {contact.rolling_friction!r}"
+    return (
+        f"{normal} tangential mindlin_rescale NULL {TANGENTIAL_DAMPING!r} {friction!r} "
+        f"rolling {rolling} damping tsuji"
+    )

@@ -1,0 +1,49 @@
+"""Settings of the LAMMPS engine; where the mean diameter, the density and gravity are 1."""
+
+from dataclasses import dataclass, field, fields
+
+from regolith_studio.errors import InputError
+
+
+@dataclass(frozen=True)
+class LammpsSettings:
+    """Numerics; times in sqrt(d/g).
+
+    Parameters
+    ----------
+    spheres
+        Inscribed spheres that stand for a polyhedron.
+    softest
+        Young's modulus over rho g d is lowered to this: the real one would need millions of steps. 0 keeps
+        the real one.
+    step_share
+        Time step as a share of Rayleigh's time of the smallest particle.
+    rest
+        Time after the lift.
+    snapshots
+        Pictures of a run.
+
+    Raises
+    ------
+    InputError
+        If a value is out of its range.
+    """
+
+    spheres: int = field(default=8, metadata={"label": "Spheres a particle", "minimum": 1, "maximum": 64})
+    softest: float = field(
+        default=2e4, metadata={"label": "Young's modulus / ρgd", "minimum": 0.0, "maximum": 1e12}
+    )
+    step_share: float = field(
+        default=0.15, metadata={"label": "Step, in Rayleigh's time", "minimum": 0.01, "maximum": 0.5}
+    )
+    rest: float = field(default=25.0, metadata={"label": "Rest: time", "minimum": 1.0, "maximum": 1e5})
+    snapshots: int = field(default=80, metadata={"label": "Snapshots", "minimum": 2, "maximum": 10_000})
+
+    def __post_init__(self) -> None:
+        for each in fields(self):
+            value, limits = getattr(self, each.name), each.metadata
+            if not limits["minimum"] <= value <= limits["maximum"]:
+                raise InputError(
+                    f"The LAMMPS setting {each.name} must lie between {limits['minimum']:g} and "
+                    f"{limits['maximum']:g}, got {value:g}."
+                )

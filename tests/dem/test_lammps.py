@@ -1,0 +1,125 @@
+"""LAMMPS: clumps against exact volume and inertia, its input, and a whole run where the program is."""
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from regolith_studio.dataset.dataset import Dataset
+from regolith_studio.dem.case import ReposeCase, prepare
+from regolith_studio.dem.engine import Ending
+from regolith_studio.dem.engines.lammps import ENGINE
+from regolith_studio.dem.engines.lammps.clumps import clump_shape, clumps_of
+from regolith_studio.dem.engines.lammps.script import schedule, script, stiffness
+from regolith_studio.dem.engines.lammps.settings import LammpsSettings
+from regolith_studio.dem.engines.lammps.simulation import kinetic_energies, read_bodies
+from regolith_studio.dem.parameters import ContactParameters, LiftingCylinderTest
+from regolith_studio.errors import InputError, RegolithError
+
+SMALL = ReposeCase(LiftingCylinderTest(mass=0.003, lift_speed=0.3), n_particles=40, seed=2)
+
+
+def test_that_the_spheres_of_a_clump_lie_inside_and_carry_the_polyhedron_s_inertia(boxes: Dataset) -> None:
+    brick = clump_shape(boxes.representatives[1].shape.vertices, 8)
+    half = np.array([3, 2, 1.5]) / 9 ** (1 / 3) / 2
+    assert ((np.abs(brick.spheres[:, :3]) + brick.spheres[:, 3:]) <= half + 1e-9).all()
+    squares = (2 * half) ** 2
+    assert brick.inertia == pytest.approx(np.diag((squares.sum() - squares) / 12), abs=1e-9)
+    assert 0.6 < brick.volume_share < 0.9
+    cube = clump_shape(boxes.representatives[0].shape.vertices, 1)
+    assert cube.spheres[0, 3] == pytest.approx(0.5, abs=1e-6)
+    assert cube.volume_share == pytest.approx(np.pi / 6, abs=0.01)
+
+
+def test_that_clumps_turn_with_their_particles(boxes: Dataset) -> None:
+    clumps = clumps_of(prepare(boxes, SMALL), 6)
+    body, places, radius = clumps.atoms(clumps.centres, clumps.turns)
+    assert np.array_equal(np.unique(body), np.arange(40))
+    turned = clumps.inertias()
+    for k in range(5):
+        own = clumps.shapes[clumps.class_index[k]].inertia * clumps.scales[k] ** 5
+        assert np.linalg.eigvalsh(turned[k]) == pytest.approx(np.linalg.eigvalsh(own))
+    identity = Rotation.identity(40)
+    _, still, _ = clumps.atoms(np.zeros((40, 3)), identity)
+    assert np.linalg.norm(places - clumps.centres[body], axis=1) == pytest.approx(
+        np.linalg.norm(still, axis=1)
+    )
+    assert (radius > 0.0).all()
+
+
+def test_that_balls_are_single_spheres_of_the_same_volume(boxes: Dataset) -> None:
+    prepared = prepare(boxes, ReposeCase(SMALL.test, n_particles=40, shapes="spheres"))
+    body, _, radius = (clumps := clumps_of(prepared, 8)).atoms(clumps.centres, clumps.turns)
+    assert len(body) == 40
+    assert 2 * radius * prepared.mean_diameter == pytest.approx(prepared.diameters)
+
+
+def test_that_the_material_is_softened_only_as_far_as_asked(boxes: Dataset) -> None:
+    prepared = prepare(boxes, SMALL)
+    real = 30e9 / (3075 * 9.81 * prepared.mean_diameter)
+    assert stiffness(prepared, LammpsSettings(softest=0.0)) == pytest.approx(real)
+    assert stiffness(prepared, LammpsSettings()) == 2e4
+    slow, fast = (schedule(prepared, LammpsSettings(softest=soft), 30.0) for soft in (4e4, 1e4))
+    assert fast.step == pytest.approx(2 * slow.step)
+
+
+def test_that_the_phases_follow_each_other(boxes: Dataset) -> None:
+    plan = schedule(prepare(boxes, SMALL), LammpsSettings(), 30.0)
+    phases = [plan.phase(step) for step in range(0, plan.steps, plan.picture)]
+    assert list(dict.fromkeys(phases)) == ["fill", "settle", "lift", "rest"]
+    lift = plan.steps_of(plan.fill) + plan.steps_of(plan.settle)
+    assert plan.rim(lift) == 0.0
+    assert plan.rim(lift + 100) == pytest.approx(100 * plan.step * plan.speed)
+    assert plan.rim(plan.steps) == float("inf")
+
+
+def test_that_the_script_says_the_paper_s_contact_laws(boxes: Dataset) -> None:
+    contact = ContactParameters(rolling_friction=0.1)
+    case = ReposeCase(SMALL.test, contact, n_particles=40, cohesion="given")
+    prepared, settings = prepare(boxes, case), LammpsSettings()
+    text = script(prepared, settings, schedule(prepared, settings, 30.0), 4.0, 30.0)
+    energy = 0.010 / (3075 * 9.81 * prepared.mean_diameter**2) / 2
+    assert f"jkr 20000.0 0.3 0.2 {energy!r}" in text
+    assert "mindlin_rescale NULL 1.0 0.8" in text
+    assert "sds" in text
+    dry = prepare(boxes, SMALL)
+    text = script(dry, settings, schedule(dry, settings, 30.0), 4.0, 30.0)
+    assert "hertz/material 20000.0 0.3 0.2" in text
+    assert "rolling none" in text
+
+
+def test_that_what_lammps_writes_is_read_and_losses_are_noticed(tmp_path) -> None:
+    rows = ["2 1 2 3 1 0 0 0", "1 4 5 6 0 1 0 0"]
+    head = ["ITEM: TIMESTEP", "0", "ITEM: NUMBER OF ENTRIES", "2", "ITEM: ENTRIES"]
+    path = tmp_path / "body.0.dump"
+    path.write_text("\n".join([*head, *rows]) + "\n")
+    assert read_bodies(path)[:, :4].tolist() == [[1, 4, 5, 6], [2, 1, 2, 3]]
+    head[3] = "1"
+    path.write_text("\n".join([*head, rows[0]]) + "\n")
+    with pytest.raises(RegolithError, match="lost particles"):
+        read_bodies(path)
+    assert kinetic_energies("   Step  a b\n 0 1.5 0.5 \n 40 atoms left\n 10 2 1\n") == {0: 2.0, 10: 3.0}
+
+
+def test_that_bad_settings_are_one_sentence() -> None:
+    with pytest.raises(InputError, match="spheres"):
+        LammpsSettings(spheres=0)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not ENGINE.find().there, reason="LAMMPS or its MPI library is not here")
+def test_that_lammps_fills_lifts_and_comes_to_rest(boxes: Dataset) -> None:
+    prepared = prepare(boxes, SMALL)
+    steps = ENGINE.simulate(prepared, LammpsSettings(spheres=4, rest=15.0, snapshots=30))
+    moments = []
+    while True:
+        try:
+            moments.append(next(steps))
+        except StopIteration as end:
+            ending = end.value
+            break
+    assert isinstance(ending, Ending)
+    assert ending.checks.particles_out == 40
+    assert ending.checks.largest_overlap < 0.05
+    assert ending.checks.energy_gain < 0.05
+    assert ending.pile.points[:, 2].max() < moments[0].pile.points[:, 2].max() / 2
+    assert list(dict.fromkeys(moment.pile.phase for moment in moments)) == ["fill", "settle", "lift", "rest"]
