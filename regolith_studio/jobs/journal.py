@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Self
 
+from regolith_studio.dataset.disk import sync_folder
 from regolith_studio.errors import FileError
 
 FORMAT = "regolith-studio journal"
@@ -92,17 +93,6 @@ class Journal:
         self._stream.write(line.encode("utf-8") + b"\n")
         self._stream.flush()
         os.fsync(self._stream.fileno())
-
-
-def sync_folder(folder: Path) -> None:
-    """Bring a folder's list of names to the disk, where the system can."""
-    if os.name == "nt":
-        return
-    handle = os.open(folder, os.O_RDONLY)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)
 
 
 def _lines(content: bytes, path: Path) -> list[dict[str, Any]]:

@@ -23,8 +23,8 @@ from regolith_studio.session.batch.working import COEFFICIENTS, CUT, MESH, SHAPE
 from regolith_studio.session.outputs.coarsening import document_head
 from regolith_studio.session.outputs.descriptors import table_columns, table_row
 from regolith_studio.session.outputs.fits import FittedSample, write_fits
-from regolith_studio.session.outputs.staging import staged_folder, write_bytes
-from regolith_studio.session.outputs.streams import JsonList, staged_file
+from regolith_studio.session.outputs.staging import staged_file, staged_folder, write_bytes
+from regolith_studio.session.outputs.streams import JsonList
 
 
 class Sink(Protocol):

@@ -7,7 +7,7 @@ import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 from regolith_studio.errors import FileError
 
@@ -37,21 +37,22 @@ def staged_folder(folder: Path) -> Iterator[Path]:
         shutil.rmtree(stage, ignore_errors=True)
 
 
-def write_bytes(path: Path, content: bytes) -> None:
-    """Write a file under another name and give it its own when it is whole.
+@contextmanager
+def staged_file(path: Path) -> Iterator[IO[bytes]]:
+    """A stream to a hidden file beside `path`, which gets its name if all went well.
 
     Raises
     ------
     FileError
-        If it cannot be written.
+        If the place cannot be written.
     """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}-")
         try:
-            with os.fdopen(handle, "wb") as file:
-                file.write(content)
-            give_usual_rights(Path(name))
+            with os.fdopen(handle, "wb") as stream:
+                yield stream
+            Path(name).chmod(0o666 & ~_umask())
             Path(name).replace(path)
         except BaseException:
             Path(name).unlink(missing_ok=True)
@@ -60,15 +61,22 @@ def write_bytes(path: Path, content: bytes) -> None:
         raise FileError(f"The file {path} cannot be written ({error.strerror}).") from error
 
 
+def write_bytes(path: Path, content: bytes) -> None:
+    """Write a file under another name and give it its own when it is whole.
+
+    Raises
+    ------
+    FileError
+        If it cannot be written.
+    """
+    with staged_file(path) as stream:
+        stream.write(content)
+
+
 def json_bytes(document: Any) -> bytes:
     """Indented JSON, ending in a newline; refuses what is not finite."""
     text = json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
     return text.encode("utf-8") + b"\n"
-
-
-def give_usual_rights(path: Path) -> None:
-    """Let the file have the rights that new files have here; temporary ones are private."""
-    path.chmod(0o666 & ~_umask())
 
 
 def _move_into(stage: Path, folder: Path) -> None:

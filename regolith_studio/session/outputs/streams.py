@@ -1,39 +1,8 @@
-"""Files that are written piece by piece and still appear whole or not at all."""
+"""JSON that is written item by item."""
 
 import json
-import os
-import tempfile
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
-from pathlib import Path
+from collections.abc import Mapping
 from typing import IO, Any
-
-from regolith_studio.errors import FileError
-from regolith_studio.session.outputs.staging import give_usual_rights
-
-
-@contextmanager
-def staged_file(path: Path) -> Iterator[IO[bytes]]:
-    """A stream to a hidden file beside `path`, which gets its name if all went well.
-
-    Raises
-    ------
-    FileError
-        If the place cannot be written.
-    """
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}-")
-        try:
-            with os.fdopen(handle, "wb") as stream:
-                yield stream
-            give_usual_rights(Path(name))
-            Path(name).replace(path)
-        except BaseException:
-            Path(name).unlink(missing_ok=True)
-            raise
-    except OSError as error:
-        raise FileError(f"The file {path} cannot be written ({error.strerror}).") from error
 
 
 class JsonList:
