@@ -7,9 +7,9 @@ from PySide6.QtCore import QSize, Qt, QTimer
 from PySide6.QtWidgets import QLabel, QListView, QListWidget, QListWidgetItem, QVBoxLayout, QWidget
 
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.ui.pages.dataset.thumbnails import picture_of
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.widgets.labels import heading
+from regolith_studio.ui.widgets.thumbnails import picture_of
 
 SIZE, CELL = 92, QSize(128, 136)
 """Of a picture, and of a picture with its words, in pixels."""

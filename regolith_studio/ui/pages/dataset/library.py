@@ -22,9 +22,9 @@ from regolith_studio.jobs.datasets import list_library
 from regolith_studio.jobs.events import Job
 from regolith_studio.ui.layout import side_by_side
 from regolith_studio.ui.page import PageContext
-from regolith_studio.ui.pages.dataset.thumbnails import picture_of
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.widgets.labels import ElidedLabel, remark
+from regolith_studio.ui.widgets.thumbnails import picture_of
 
 PICTURE = 40
 LANE = "library"

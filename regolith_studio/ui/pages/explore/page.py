@@ -75,7 +75,7 @@ class ExplorePage(PageWidget):
         wiring.refresh("fit", lambda: self.fit.set_findings(session.results.fit), slow=True)
         wiring.refresh("surface", self._show_fit)
         wiring.refresh("coarsening", self._show_coarsening)
-        self.plots.wire(session, wiring, context.commands)
+        self.plots.wire(session, wiring)
 
     def _show_star_point(self) -> None:
         fit = self._session.results.fit

@@ -1,0 +1,93 @@
+"""Fig. 7: a row a loss function, a column a particle, the polyhedron in each cell."""
+
+from collections.abc import Sequence
+
+from PySide6.QtCore import QSize, Qt
+from PySide6.QtGui import QIcon
+from PySide6.QtWidgets import (
+    QAbstractItemView,
+    QHeaderView,
+    QTableWidget,
+    QTableWidgetItem,
+    QVBoxLayout,
+    QWidget,
+)
+
+from regolith_studio.session.solids import Solid, row_labels
+from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.widgets.labels import remark
+from regolith_studio.ui.widgets.study_frame import StudyFrame
+from regolith_studio.ui.widgets.thumbnails import picture_of
+
+SIZE = 104
+COLUMNS = 6
+"""Particles that are shown at most."""
+
+
+class SolidGallery(QWidget):
+    """Cells fill while the polyhedra are found."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("solid_gallery")
+        self._solids: tuple[Solid, ...] = ()
+        self._colour = current_theme().polyhedron
+        self.table = QTableWidget()
+        self.table.setAccessibleName("Polyhedra by loss function and particle")
+        self.table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
+        self.table.setSelectionMode(QAbstractItemView.SelectionMode.NoSelection)
+        self.table.setShowGrid(False)
+        self.table.setIconSize(self.table.iconSize().expandedTo(picture_size()))
+        self.table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
+        self.table.verticalHeader().setDefaultSectionSize(SIZE + 24)
+        self.table.verticalHeader().setMaximumWidth(190)
+        self.hint = remark("The polyhedra of Fig. 7 for the particle on screen and those after it.")
+        self.frame = StudyFrame("solids", self.table)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(self.frame, 1)
+
+    def begin(self, names: Sequence[str]) -> None:
+        """Empty cells for these particles."""
+        self._solids = ()
+        labels = row_labels()
+        self.table.clear()
+        self.table.setRowCount(len(labels))
+        self.table.setColumnCount(len(names))
+        self.table.setVerticalHeaderLabels(list(labels))
+        self.table.setHorizontalHeaderLabels(list(names))
+
+    def show_solids(self, solids: Sequence[Solid]) -> None:
+        """Fill the cells that are known and still empty."""
+        for solid in solids[len(self._solids) :]:
+            self.table.setItem(solid.row, solid.column, self._cell(solid))
+        self._solids = tuple(solids)
+
+    def value(self) -> tuple[Solid, ...]:
+        """What is shown."""
+        return self._solids
+
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        self._colour = theme.polyhedron
+        shown, self._solids = self._solids, ()
+        self.show_solids(shown)
+
+    def _cell(self, solid: Solid) -> QTableWidgetItem:
+        found = solid.outcome.coarsened
+        item = QTableWidgetItem()
+        item.setTextAlignment(Qt.AlignmentFlag.AlignCenter)
+        if found is None:
+            item.setText("–")
+            item.setToolTip(solid.outcome.problem or "")
+            return item
+        item.setIcon(QIcon(picture_of(found.mesh, self._colour, SIZE)))
+        item.setText(f"loss {found.loss:.3g}")
+        worst = "\n".join(f"{key}: {error:.2%}" for key, error in found.errors.items())
+        item.setToolTip(f"{found.n_faces} facets, Jaccard distance {found.jaccard_distance:.3f}\n{worst}")
+        return item
+
+
+def picture_size() -> QSize:
+    """Of one picture."""
+    return QSize(SIZE, SIZE)

@@ -1,0 +1,51 @@
+"""The polyhedra of Fig. 7: every row for every particle, failures included."""
+
+import numpy as np
+import pytest
+
+from regolith_studio.geometry.directions import icosphere
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.jobs.coarsening import CoarseningOrder
+from regolith_studio.jobs.events import Partial, Progress
+from regolith_studio.session.choices import Choices
+from regolith_studio.session.solids import draw_solids, row_labels
+
+
+@pytest.fixture(scope="module")
+def order() -> CoarseningOrder:
+    return Choices(method="quadric", n_faces=12, l_max=4, level=2, target="particle").order
+
+
+def test_that_each_particle_is_coarsened_once_for_each_row(order: CoarseningOrder) -> None:
+    sphere = icosphere(3)
+    eggs = [Particle(f"egg-{n}", Mesh(sphere.vertices * [n, 2, 3], sphere.faces)) for n in (1, 2)]
+    told, story = [], draw_solids(eggs, order)
+    try:
+        while True:
+            told.append(next(story))
+    except StopIteration as end:
+        solids = end.value
+    rows = len(row_labels())
+    assert {(each.row, each.column) for each in solids} == set(np.ndindex(rows, 2))
+    assert all(each.outcome.coarsened.n_faces == 12 for each in solids)
+    assert [len(each.value) for each in told if isinstance(each, Partial)] == list(range(1, 2 * rows + 1))
+    counts = [(each.done, each.total) for each in told if isinstance(each, Progress)]
+    assert counts == sorted(counts)
+    assert counts[-1] == (2 * rows, 2 * rows)
+
+
+def test_that_a_particle_that_cannot_be_coarsened_does_not_stop_the_rest(
+    order: CoarseningOrder,
+) -> None:
+    sphere = icosphere(2)
+    flat = Particle("flat", Mesh(sphere.vertices * [1, 1, 0], sphere.faces))
+    story = draw_solids([flat, Particle("ball", sphere)], order)
+    try:
+        while True:
+            next(story)
+    except StopIteration as end:
+        solids = end.value
+    by_name = {name: [s for s in solids if s.outcome.name == name] for name in ("flat", "ball")}
+    assert all(each.outcome.coarsened is None and each.outcome.problem for each in by_name["flat"])
+    assert all(each.outcome.coarsened is not None for each in by_name["ball"])
