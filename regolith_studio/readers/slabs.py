@@ -1,7 +1,7 @@
 """A volume slab by slab, each read by the guarded child (or straight from a file of plain voxels)."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +13,7 @@ from regolith_studio.readers.guard import START_SECONDS, WORKING_SECONDS, Guard,
 from regolith_studio.readers.plain_voxels import PlainVoxels, plain_voxels
 from regolith_studio.readers.sentences import sentence_about
 from regolith_studio.readers.volume_files import slice_names, slices_stamp
-from regolith_studio.readers.volume_format import DatasetEntry, Kind, Shape, Sizes
+from regolith_studio.readers.volume_format import DatasetEntry, VoxelHeader
 from regolith_studio.readers.volume_header import RawLayout
 
 SLAB = 64 * 1024**2
@@ -37,69 +37,32 @@ class OpenedFile:
     ----------
     path, request
         The file and what the child is asked with.
-    answer
-        What the child said about it.
+    header
+        What the child said about the voxels.
+    format
+        Key of the format.
+    in_order, layer
+        Whether the file is best read from its beginning on, and how many slices at a time.
+    guard
+        Whose child it is.
+    straight
+        The voxels themselves, where they lie in the file as they are and need no child.
     """
 
     path: Path
     request: dict[str, Any]
-    answer: dict[str, Any]
+    header: VoxelHeader
+    format: str
+    in_order: bool
+    layer: int
     guard: Guard
-    size_on_disk: int
-    straight: PlainVoxels | None = field(default=None)
-
-    @property
-    def shape(self) -> Shape:
-        """Slices, rows, columns."""
-        nz, ny, nx = self.answer["shape"]
-        return int(nz), int(ny), int(nx)
-
-    @property
-    def dtype(self) -> np.dtype[Any]:
-        """Type of a voxel, in the machine's byte order."""
-        return np.dtype(str(self.answer["dtype"])).newbyteorder("=")
-
-    @property
-    def slice_bytes(self) -> int:
-        """Bytes of a slice."""
-        return self.shape[1] * self.shape[2] * self.dtype.itemsize
-
-    @property
-    def nbytes(self) -> int:
-        """Bytes of all voxels in memory."""
-        return self.shape[0] * self.slice_bytes
-
-    @property
-    def stated_size(self) -> tuple[Sizes | None, str | None]:
-        """Voxel edges along x, y, z and their unit, as far as the file says."""
-        size = self.answer["voxel_size"]
-        return (None if size is None else (float(size[0]), float(size[1]), float(size[2]))), self.answer[
-            "unit"
-        ]
-
-    @property
-    def stated_kind(self) -> Kind | None:
-        """What the file itself says it holds."""
-        kind: Kind | None = self.answer["kind"]
-        return kind
-
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """What a user should know."""
-        return tuple(self.answer["notes"])
-
-    @property
-    def datasets(self) -> tuple[DatasetEntry, ...]:
-        """The volumes in the file, where it can hold several."""
-        return tuple(
-            DatasetEntry(name, tuple(shape), dtype) for name, shape, dtype in self.answer["datasets"]
-        )
+    straight: PlainVoxels | None = None
 
     def pieces(self, z0: int, z1: int) -> Iterator[tuple[int, int]]:
         """Ranges of slices that make at most `SLAB` bytes each, ending where layers of chunks do."""
-        layer = int(self.answer["layer"])
-        step = max(1, SLAB // self.slice_bytes)
-        if 1 < layer <= LARGEST_LAYER // self.slice_bytes:
+        layer, slice_bytes = self.layer, self.header.slice_bytes
+        step = max(1, SLAB // slice_bytes)
+        if 1 < layer <= LARGEST_LAYER // slice_bytes:
             step = max(layer, step - step % layer)
         start = z0
         while start < z1:
@@ -115,7 +78,7 @@ class OpenedFile:
         FileError
             If the file is damaged there.
         """
-        out = np.empty((z1 - z0, *self.shape[1:]), self.dtype) if into is None else into
+        out = np.empty((z1 - z0, *self.header.shape[1:]), self.header.dtype) if into is None else into
         for start, end in self.pieces(z0, z1):
             out[start - z0 : end - z0] = self._piece(start, end)
         return out
@@ -127,14 +90,14 @@ class OpenedFile:
             except (OSError, FileError) as error:
                 reason = str(error) if isinstance(error, FileError) else f"cannot be read: {error.strerror}."
                 raise FileError(sentence_about(self.path, reason)) from None
-        size = (z1 - z0) * self.slice_bytes
+        size = (z1 - z0) * self.header.slice_bytes
         work = WORKING_SECONDS + size / BYTES_READ_A_SECOND
-        if self.answer["in_order"]:
-            work += z0 * self.slice_bytes / BYTES_SKIPPED_A_SECOND
+        if self.in_order:
+            work += z0 * self.header.slice_bytes / BYTES_SKIPPED_A_SECOND
         request = {**self.request, "memory": LEAST_MEMORY + 6 * size}
         message = self.guard.ask("volume-slices", self.path, PATIENCE * work, work, z0=z0, z1=z1, **request)
         voxels = message.arrays[0]
-        if voxels.shape != (z1 - z0, *self.shape[1:]) or voxels.dtype != self.dtype:
+        if voxels.shape != (z1 - z0, *self.header.shape[1:]) or voxels.dtype != self.header.dtype:
             raise FileError(sentence_about(self.path, "changed while it was read."))
         return voxels
 
@@ -165,8 +128,25 @@ def opened_file(
     guard.ask("volume-prepare", path, START_SECONDS)
     work = WORKING_SECONDS + size / BYTES_OPENED_A_SECOND
     answer = guard.ask("volume-open", path, PATIENCE * work, work, memory=LEAST_MEMORY, **request).header
-    opened = OpenedFile(path, request, answer, guard, size)
-    if answer["plain"] is None:
-        return opened
-    straight = plain_voxels(answer["plain"], opened.shape, opened.dtype)
-    return OpenedFile(path, request, answer, guard, size, straight)
+    header = _header_from(answer)
+    straight = answer["plain"] and plain_voxels(answer["plain"], header.shape, header.dtype)
+    return OpenedFile(
+        path, request, header, str(answer["format"]), bool(answer["in_order"]), int(answer["layer"]), guard,
+        straight or None,
+    )  # fmt: skip
+
+
+def _header_from(answer: dict[str, Any]) -> VoxelHeader:
+    """The header that the child has sent as plain values."""
+    nz, ny, nx = answer["shape"]
+    size = answer["voxel_size"]
+    return VoxelHeader(
+        shape=(int(nz), int(ny), int(nx)),
+        dtype=np.dtype(str(answer["dtype"])).newbyteorder("="),
+        voxel_size=None if size is None else (float(size[0]), float(size[1]), float(size[2])),
+        unit=answer["unit"],
+        kind=answer["kind"],
+        notes=tuple(answer["notes"]),
+        datasets=tuple(DatasetEntry(name, tuple(shape), dtype) for name, shape, dtype in answer["datasets"]),
+        dataset=answer["dataset"],
+    )

@@ -26,7 +26,7 @@ LARGEST_SLICE = 1 << 30
 
 @dataclass(frozen=True)
 class DatasetEntry:
-    """One array of a file that can hold several."""
+    """One volume of a file that can hold several: its name, its voxels along x, y and z, their type."""
 
     name: str
     shape: tuple[int, ...]

@@ -120,20 +120,20 @@ def describe_volume(
         With one sentence if the file cannot be read.
     """
     file = opened_file(Path(path), dataset, raw, guard)
-    size, unit = file.stated_size
-    nz, ny, nx = file.shape
+    said = file.header
+    nz, ny, nx = said.shape
     return VolumeHeader(
         path=file.path,
-        format=str(file.answer["format"]),
+        format=file.format,
         shape=(nx, ny, nz),
-        dtype=file.dtype,
-        voxel_size=size,
-        unit=unit,
-        kind=file.stated_kind or _guessed(file),
-        datasets=file.datasets,
-        dataset=file.answer["dataset"],
-        bytes=file.nbytes,
-        notes=file.notes,
+        dtype=said.dtype,
+        voxel_size=said.voxel_size,
+        unit=said.unit,
+        kind=said.kind or _guessed(file),
+        datasets=said.datasets,
+        dataset=said.dataset,
+        bytes=said.nbytes,
+        notes=said.notes,
     )
 
 
@@ -175,10 +175,10 @@ def read_volume(
         If nobody says how large a voxel is, or the box lies outside the volume.
     """
     file = opened_file(Path(path), dataset, raw, guard)
-    edges = voxel_size_in_micrometres(file.path, file.stated_size, voxel_size, unit)
+    edges = voxel_size_in_micrometres(file.path, (file.header.voxel_size, file.header.unit), voxel_size, unit)
     box = _checked_bounds(file, bounds)
     _check_memory(file, box)
-    kind = kind or file.stated_kind or _guessed(file)
+    kind = kind or file.header.kind or _guessed(file)
     array = _read_box(file, box, on_progress)
     if kind == "labels" and array.dtype.kind == "f":
         array = _whole_numbers(file.path, array)
@@ -200,11 +200,11 @@ def open_slabs(
     Parameters and errors are those of `read_volume`.
     """
     file = opened_file(Path(path), dataset, raw, guard)
-    edges = voxel_size_in_micrometres(file.path, file.stated_size, voxel_size, unit)
-    nz, ny, nx = file.shape
-    kind = kind or file.stated_kind or _guessed(file)
-    dtype = np.dtype(np.int64) if kind == "labels" and file.dtype.kind == "f" else file.dtype
-    return SlabSource((nx, ny, nz), dtype, edges, kind, _name_of(file), file.notes, file)
+    edges = voxel_size_in_micrometres(file.path, (file.header.voxel_size, file.header.unit), voxel_size, unit)
+    nz, ny, nx = file.header.shape
+    kind = kind or file.header.kind or _guessed(file)
+    dtype = np.dtype(np.int64) if kind == "labels" and file.header.dtype.kind == "f" else file.header.dtype
+    return SlabSource((nx, ny, nz), dtype, edges, kind, _name_of(file), file.header.notes, file)
 
 
 def datasets_in(path: str | Path, *, guard: Guard | None = None) -> tuple[DatasetEntry, ...]:
@@ -215,7 +215,7 @@ def datasets_in(path: str | Path, *, guard: Guard | None = None) -> tuple[Datase
     FileError
         With one sentence if the file cannot be read.
     """
-    return opened_file(Path(path), guard=guard).datasets
+    return opened_file(Path(path), guard=guard).header.datasets
 
 
 def guess_kind(volume: Volume | NDArray[Any]) -> VolumeKind:
@@ -227,10 +227,10 @@ def guess_kind(volume: Volume | NDArray[Any]) -> VolumeKind:
 
 def _guessed(file: OpenedFile) -> VolumeKind:
     """The kind, judged by slices from the middle, or from what comes first where that is quicker."""
-    depth = file.shape[0]
-    if file.answer["in_order"]:
-        depth = min(depth, max(1, 4 * _SAMPLE_BYTES // file.slice_bytes))
-    n_samples = max(1, min(len(_SAMPLES), _SAMPLE_BYTES // file.slice_bytes))
+    depth, slice_bytes = file.header.shape[0], file.header.slice_bytes
+    if file.in_order:
+        depth = min(depth, max(1, 4 * _SAMPLE_BYTES // slice_bytes))
+    n_samples = max(1, min(len(_SAMPLES), _SAMPLE_BYTES // slice_bytes))
     places = sorted({int(share * depth) for share in _SAMPLES[:n_samples]})
     return kind_of(np.concatenate([file.read(place, place + 1) for place in places]))
 
@@ -238,9 +238,9 @@ def _guessed(file: OpenedFile) -> VolumeKind:
 def _checked_bounds(file: OpenedFile, bounds: Bounds | None) -> Bounds:
     """The box in the order of the file: slices, rows, columns."""
     if bounds is None:
-        nz, ny, nx = file.shape
+        nz, ny, nx = file.header.shape
         return (0, nz), (0, ny), (0, nx)
-    edges = file.shape[::-1]
+    edges = file.header.shape[::-1]
     if len(bounds) != 3 or any(not 0 <= a < b <= n for (a, b), n in zip(bounds, edges, strict=False)):
         raise InputError(f"The box {bounds} does not lie within the {edges} voxels of {file.path.name}.")
     return bounds[2], bounds[1], bounds[0]
@@ -250,7 +250,7 @@ def _check_memory(file: OpenedFile, box: Bounds) -> None:
     voxels = 1
     for first, last in box:
         voxels *= last - first
-    size = voxels * file.dtype.itemsize
+    size = voxels * file.header.dtype.itemsize
     limit = _memory() * SHARE_OF_MEMORY
     if size > limit:
         raise FileError(
@@ -271,7 +271,7 @@ def _memory() -> float:
 
 def _read_box(file: OpenedFile, box: Bounds, on_progress: Progress | None) -> NDArray[Any]:
     (z0, z1), (y0, y1), (x0, x1) = box
-    out = np.empty((z1 - z0, y1 - y0, x1 - x0), file.dtype)
+    out = np.empty((z1 - z0, y1 - y0, x1 - x0), file.header.dtype)
     for start, end in file.pieces(z0, z1):
         out[start - z0 : end - z0] = file.read(start, end)[:, y0:y1, x0:x1]
         if on_progress is not None:
@@ -287,5 +287,5 @@ def _whole_numbers(path: Path, array: NDArray[Any]) -> NDArray[Any]:
 
 
 def _name_of(file: OpenedFile) -> str:
-    dataset = file.answer["dataset"]
+    dataset = file.header.dataset
     return printable(f"{file.path.name}/{dataset}" if dataset else file.path.name)

@@ -82,6 +82,7 @@ def test_that_several_volumes_are_offered_and_the_likeliest_read(path) -> None:
         file["text"] = "no volume"
     names = [entry.name for entry in datasets_in(path)]
     assert names == ["exported_data", "large", "deep/er/labels"]
+    assert [entry.shape for entry in datasets_in(path)] == [(13, 11, 9), (20, 20, 20), (13, 11, 9)]
     header = describe_volume(path)
     assert header.dataset == "exported_data"
     assert header.notes == ("The file holds 3 volumes; exported_data was read.",)
@@ -177,8 +178,8 @@ def test_that_slabs_end_where_chunks_do(path, monkeypatch) -> None:
     with h5py.File(path, "w") as file:
         file.create_dataset("data", data=SLICES, chunks=(4, 11, 13), compression="gzip")
     opened = slabs.opened_file(path)
-    monkeypatch.setattr(slabs, "SLAB", 5 * opened.slice_bytes)
+    monkeypatch.setattr(slabs, "SLAB", 5 * opened.header.slice_bytes)
     assert list(opened.pieces(0, 9)) == [(0, 4), (4, 8), (8, 9)]
     assert list(opened.pieces(2, 9)) == [(2, 4), (4, 8), (8, 9)]
-    monkeypatch.setattr(slabs, "SLAB", opened.slice_bytes)
+    monkeypatch.setattr(slabs, "SLAB", opened.header.slice_bytes)
     assert list(opened.pieces(0, 9)) == [(0, 4), (4, 8), (8, 9)]

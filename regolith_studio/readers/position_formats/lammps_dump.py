@@ -5,6 +5,7 @@ import re
 import numpy as np
 
 from regolith_studio.errors import FileError
+from regolith_studio.readers.header_words import float_or_nan
 from regolith_studio.readers.position_format import ParsedPositions, PositionFormat, named_columns, sized
 from regolith_studio.readers.sentences import printable
 
@@ -77,7 +78,7 @@ def _numbers(rows: list[bytes], names: tuple[str, ...]) -> np.ndarray:
             raise FileError(
                 f"is a broken LAMMPS dump: particle {place + 1:,} has {len(words)} columns, not {len(names)}."
             )
-        out[place] = [_float(word) for word in words]
+        out[place] = [float_or_nan(word) for word in words]
     return out
 
 
@@ -99,17 +100,10 @@ def _unscaled(
 
 def _box(sections: dict[str, tuple[str, list[bytes]]]) -> tuple[np.ndarray, np.ndarray]:
     kind, rows = sections.get("BOX BOUNDS", ("", []))
-    bounds = [[_float(word) for word in row.split()] for row in rows]
+    bounds = [[float_or_nan(word) for word in row.split()] for row in rows]
     if "xy" in kind or len(bounds) != 3 or any(len(row) != 2 for row in bounds):
         raise FileError("holds positions as shares of a box that is tilted or not stated; dump x y z.")
     return np.array(bounds)[:, 0], np.array(bounds)[:, 1]
-
-
-def _float(word: bytes) -> float:
-    try:
-        return float(word)
-    except ValueError:
-        return float("nan")
 
 
 FORMAT = PositionFormat(

@@ -106,7 +106,7 @@ def _chosen(file: Any, wanted: Any) -> Hdf5Voxels:
         "um" if size else None,
         None,
         notes,
-        tuple(DatasetEntry(each.name, each.spatial, each.dtype) for each in candidates),
+        tuple(DatasetEntry(each.name, each.spatial[::-1], each.dtype) for each in candidates),
         candidate.name,
     )
     return Hdf5Voxels(file, dataset, candidate, header)

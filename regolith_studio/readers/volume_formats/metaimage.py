@@ -1,6 +1,5 @@
 """MetaImage (MHA with its voxels, MHD with them in another file), as ITK writes it."""
 
-import math
 import re
 from collections.abc import Mapping
 from pathlib import Path
@@ -11,6 +10,7 @@ import numpy as np
 from regolith_studio.errors import FileError
 from regolith_studio.readers.deflated_voxels import DeflatedVoxels
 from regolith_studio.readers.detached import beside
+from regolith_studio.readers.header_words import float_or_nan, start_before_end
 from regolith_studio.readers.plain_voxels import PlainVoxels
 from regolith_studio.readers.sentences import printable
 from regolith_studio.readers.units import unit_named
@@ -73,10 +73,7 @@ def _start(
         raise FileError(f"is a broken MetaImage: its header cannot have the size “{printable(text)[:20]}”.")
     if text != "-1":
         return start + int(text)
-    place = source.stat().st_size - math.prod(header.shape) * stored.itemsize
-    if place < 0:
-        raise FileError("is cut short: it holds fewer voxels than its header says.")
-    return place
+    return start_before_end(source, header, stored)
 
 
 def _fields(head: bytes) -> tuple[dict[str, str], int]:
@@ -125,7 +122,9 @@ def _sizes(fields: dict[str, str]) -> list[int]:
 
 def _voxel_size(fields: dict[str, str], sizes: list[int]) -> tuple[Sizes | None, str | None]:
     """ElementSpacing; MetaImage has no field for the unit that ITK would write."""
-    edges = [_float(word) for word in fields.get("elementspacing", fields.get("elementsize", "")).split()]
+    edges = [
+        float_or_nan(word) for word in fields.get("elementspacing", fields.get("elementsize", "")).split()
+    ]
     kept = [axis for axis, edge in enumerate(sizes) if edge > 1 or len(sizes) == 3]
     if len(edges) != len(sizes) or len(kept) != 3:
         return None, None
@@ -138,7 +137,7 @@ def _is_mirrored(fields: dict[str, str]) -> bool:
     text = next(
         (fields[name] for name in ("transformmatrix", "rotation", "orientation") if name in fields), ""
     )
-    numbers = np.array([_float(word) for word in text.split()])
+    numbers = np.array([float_or_nan(word) for word in text.split()])
     return bool(numbers.size == 9 and np.isfinite(numbers).all() and np.linalg.det(numbers.reshape(3, 3)) < 0)
 
 
@@ -149,13 +148,6 @@ def _data_file(path: Path, fields: dict[str, str], body: int) -> tuple[Path, int
     if name.upper().startswith("LIST") or "%" in name:
         raise FileError("spreads its voxels over several files, which is not read here.")
     return beside(path, name.removeprefix("./")), 0
-
-
-def _float(word: str) -> float:
-    try:
-        return float(word)
-    except ValueError:
-        return math.nan
 
 
 def _recognises(head: bytes) -> bool:

@@ -11,6 +11,7 @@ import numpy as np
 from regolith_studio.errors import FileError
 from regolith_studio.readers.deflated_voxels import DeflatedVoxels
 from regolith_studio.readers.detached import beside
+from regolith_studio.readers.header_words import float_or_nan, start_before_end
 from regolith_studio.readers.plain_voxels import PlainVoxels
 from regolith_studio.readers.sentences import printable
 from regolith_studio.readers.units import unit_named
@@ -83,9 +84,7 @@ def _opened(
         raise FileError("skips lines or bytes before its voxels in a way that is not read here.")
     if encoding == "raw":
         if skip == -1:
-            start, skip = source.stat().st_size - math.prod(header.shape) * stored.itemsize, 0
-            if start < 0:
-                raise FileError("is cut short: it holds fewer voxels than its header says.")
+            start, skip = start_before_end(source, header, stored), 0
         return PlainVoxels(source, start + skip, header, stored)
     if encoding in ("gz", "gzip"):
         if skip == -1:
@@ -153,7 +152,7 @@ def _voxel_size(fields: dict[str, str], sizes: list[int]) -> tuple[Sizes | None,
         edges = [math.hypot(*vector) if vector else math.nan for vector in vectors]
         notes = _about(np.array([v for v in vectors if len(v) == 3]))
     else:
-        edges = [_float(word) for word in fields.get("spacings", "").split()]
+        edges = [float_or_nan(word) for word in fields.get("spacings", "").split()]
     if len(edges) != len(sizes) or len(kept) != 3:
         return None, None, ()
     size = sizes_or_none([edges[axis] for axis in kept])
@@ -182,14 +181,7 @@ def _unit(fields: dict[str, str], kept: list[int]) -> str | None:
 
 
 def _vector(match: re.Match[str]) -> list[float]:
-    return [_float(word) for word in match[1].split(",")] if match[1] is not None else []
-
-
-def _float(word: str) -> float:
-    try:
-        return float(word)
-    except ValueError:
-        return math.nan
+    return [float_or_nan(word) for word in match[1].split(",")] if match[1] is not None else []
 
 
 def _whole_numbers(fields: dict[str, str], name: str, count: int | None = None) -> list[int]:
