@@ -48,7 +48,7 @@ class ExtractionSettings:
     warn_diameter: float = 12.0
     fill_pores: bool = True
     iterations: int = 20
-    pass_band: float = 0.1
+    pass_band: float = 0.13
 
     def __post_init__(self) -> None:
         if self.min_voxels < 0:

@@ -9,7 +9,7 @@ from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.mesh import Mesh
 
 
-def windowed_sinc(mesh: Mesh, iterations: int = 20, pass_band: float = 0.1) -> Mesh:
+def windowed_sinc(mesh: Mesh, iterations: int = 20, pass_band: float = 0.13) -> Mesh:
     """Smooth by the polynomial low-pass filter of Taubin, Zhang and Golub (1996), as VTK has it.
 
     The filter acts on each coordinate alone, so that it commutes with stretching along the axes:
