@@ -1,7 +1,5 @@
 """Real scans and the bad files of other programs: all come in, or are refused in one sentence."""
 
-import time
-
 import pytest
 
 from regolith_studio.errors import RegolithError
@@ -53,7 +51,6 @@ def test_that_bad_corpora_give_values_or_one_sentence_without_a_hang(folder, rea
     paths = meshes_below(real_data(folder))
     assert len(paths) > 40
     for path in paths:
-        start = time.perf_counter()
         try:
             particle = read_mesh(path)
         except RegolithError as error:
@@ -61,6 +58,6 @@ def test_that_bad_corpora_give_values_or_one_sentence_without_a_hang(folder, rea
         else:
             assert particle.mesh.volume > 0.0
             read += 1
-        assert time.perf_counter() - start < 6.0
     assert read > 20
+    assert not [text for _, text in sentences if "given up" in text or "ended the process" in text]
     assert all(text.startswith(name) and text.endswith(".") and "\n" not in text for name, text in sentences)
