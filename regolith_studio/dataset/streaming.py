@@ -28,12 +28,14 @@ from regolith_studio.dataset.readme_text import README as README_TEXT
 from regolith_studio.dataset.schema import RepresentativeRecord
 from regolith_studio.dataset.size_distribution import normalised_shares
 from regolith_studio.dataset.strict_json import tidy_json
-from regolith_studio.errors import DatasetError
+from regolith_studio.errors import DatasetError, InputError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.imaging.stl import stl_bytes
 
 _HEADER = 80
 _PLACE = "representatives"
+_RECORD_BYTES, _FACE_BYTES = 1_150, 95
+"""What a particle and each of its faces take in ``dataset.json``, measured."""
 
 
 @dataclass(frozen=True)
@@ -59,6 +61,22 @@ def stored_shape(particle: Particle, coarsened: CoarsenedShape) -> StoredShape:
     )
     mesh = stl_bytes(representative.shape.mesh, mesh_header(0, 1))
     return StoredShape(record_of(representative, mesh_path(0, 1), mesh), mesh)
+
+
+def check_count(count: int, n_faces: int) -> None:
+    """Refuse what would be too large to be read again, before hours of work and not after them.
+
+    Raises
+    ------
+    InputError
+        Saying how many particles a dataset may have.
+    """
+    most = LARGEST_DOCUMENT // (_RECORD_BYTES + _FACE_BYTES * n_faces)
+    if count > most:
+        raise InputError(
+            f"A dataset of {count:,} particles of {n_faces} faces is larger than can be read again; make "
+            f"several of at most {most:,}, or leave the dataset out."
+        )
 
 
 def write_stored(

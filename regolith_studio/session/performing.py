@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from regolith_studio.dataset.build import software_versions
-from regolith_studio.dataset.streaming import write_stored
+from regolith_studio.dataset.streaming import check_count, write_stored
 from regolith_studio.errors import FileError, RegolithError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.building import story
@@ -119,6 +119,8 @@ def perform(
     if not done.items.members:
         sentences = [problem.sentence for problem in done.items.problems]
         raise FileError(sentences[0] if sentences else "There is no file to read.")
+    if recipe.outputs.dataset:
+        check_count(len(done.items.members), recipe.n_faces)
     with _opened(done, resume, chunk) as batch, hired(workers) as crew:
         if (ended := _ending(batch)) is not None:
             done.problems = ended

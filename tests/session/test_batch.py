@@ -219,3 +219,10 @@ def test_that_a_worker_killed_in_mid_run_changes_no_byte(
             killed_one = True
     assert killed_one
     assert digests(tmp_path / "out") == alone[1]
+
+
+def test_that_a_dataset_too_large_to_be_read_again_is_refused_before_the_work(tmp_path: Path) -> None:
+    wish = recipe_of(inputs=[], population={"card": "ma165", "n": 100_000}, n_faces=20)
+    with pytest.raises(InputError, match="make several of at most 65,"):
+        done(wish, tmp_path, tmp_path / "out")
+    assert not (tmp_path / "out").exists()
