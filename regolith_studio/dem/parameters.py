@@ -1,9 +1,9 @@
 """Tables 1 and 2 of the paper as settings; what the paper does not give is marked, chosen and editable."""
 
-from dataclasses import Field, dataclass, field, fields
+from dataclasses import dataclass, field, fields
 from typing import Any
 
-from regolith_studio.errors import InputError
+from regolith_studio.dem.limits import check_limits
 
 NOT_GIVEN = "not given in the paper"
 
@@ -67,7 +67,7 @@ class ContactParameters:
     surface_energy: float = _number(0.010, "Surface energy", "mJ/m²", 0.0, 10.0, "Table 1", 1e3)
 
     def __post_init__(self) -> None:
-        _check(self, "contact parameter")
+        check_limits(self, "contact parameter")
 
 
 @dataclass(frozen=True)
@@ -102,7 +102,7 @@ class LiftingCylinderTest:
     gravity: float = _number(9.81, "Gravity", "m/s²", 1e-4, 1e4)
 
     def __post_init__(self) -> None:
-        _check(self, "test parameter")
+        check_limits(self, "test parameter")
 
     @property
     def area(self) -> float:
@@ -119,15 +119,3 @@ PAPER_COARSE_GRAINING = 10.0
 def missing_in_paper(kind: type[Any]) -> tuple[str, ...]:
     """Names of the fields whose value the paper does not give."""
     return tuple(each.name for each in fields(kind) if each.metadata["source"] == NOT_GIVEN)
-
-
-def _check(value: Any, what: str) -> None:
-    each: Field[Any]
-    for each in fields(value):
-        number, limits = getattr(value, each.name), each.metadata
-        if not limits["minimum"] <= number <= limits["maximum"]:
-            factor, unit = limits["factor"], f" {limits['unit']}" if limits["unit"] else ""
-            raise InputError(
-                f"The {what} {each.name} must lie between {factor * limits['minimum']:g} and "
-                f"{factor * limits['maximum']:g}{unit}, got {factor * number:g}."
-            )

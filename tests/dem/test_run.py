@@ -2,6 +2,8 @@
 
 import json
 import shutil
+import sys
+import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -207,3 +209,22 @@ def _until_moment(steps: object) -> Moment:
         if isinstance(step, Partial):
             return step.value
     raise AssertionError("the run told no moment")
+
+
+@pytest.mark.slow
+def test_that_an_engine_does_not_outlive_a_program_that_was_killed(
+    boxes_folder: Path, tmp_path: Path
+) -> None:
+    """Nobody is left to end it, so it must notice by itself."""
+    command = [sys.executable, "-m", "regolith_studio", "repose", "run", str(boxes_folder), "-o"]
+    parent = psutil.Popen([*command, str(tmp_path / "run"), *COMMAND, "--set", "time_step=0.001"])
+    while not list((tmp_path / "run" / "snapshots").glob("*.npz")):
+        assert parent.is_running()
+        time.sleep(0.05)
+    workers = [each for each in parent.children() if "regolith_studio.dem.worker" in each.cmdline()]
+    assert workers
+    parent.kill()
+    parent.wait()
+    gone, alive = psutil.wait_procs(workers, timeout=30)
+    assert gone
+    assert not alive

@@ -1,7 +1,8 @@
 """Every choice that the evaluation of section 3.3 leaves open, with the paper's where it gives one."""
 
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 
+from regolith_studio.dem.limits import check_limits
 from regolith_studio.errors import InputError
 
 
@@ -78,13 +79,7 @@ class EvaluationSettings:
     seed: int = field(default=0, metadata={"label": "Bootstrap seed", "minimum": 0, "maximum": 2**31 - 1})
 
     def __post_init__(self) -> None:
-        for each in fields(self):
-            value, limits = getattr(self, each.name), each.metadata
-            if not limits["minimum"] <= value <= limits["maximum"]:
-                raise InputError(
-                    f"The evaluation setting {each.name} must lie between {limits['minimum']:g} and "
-                    f"{limits['maximum']:g}, got {value}."
-                )
+        check_limits(self, "evaluation setting")
         if self.median_window % 2 == 0:
             raise InputError(f"The rolling median needs an odd number of points, got {self.median_window}.")
         if self.azimuths % 2:

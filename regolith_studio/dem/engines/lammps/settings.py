@@ -1,8 +1,8 @@
 """Settings of the LAMMPS engine; where the mean diameter, the density and gravity are 1."""
 
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 
-from regolith_studio.errors import InputError
+from regolith_studio.dem.limits import check_limits
 
 
 @dataclass(frozen=True)
@@ -40,10 +40,4 @@ class LammpsSettings:
     snapshots: int = field(default=80, metadata={"label": "Snapshots", "minimum": 2, "maximum": 10_000})
 
     def __post_init__(self) -> None:
-        for each in fields(self):
-            value, limits = getattr(self, each.name), each.metadata
-            if not limits["minimum"] <= value <= limits["maximum"]:
-                raise InputError(
-                    f"The LAMMPS setting {each.name} must lie between {limits['minimum']:g} and "
-                    f"{limits['maximum']:g}, got {value:g}."
-                )
+        check_limits(self, "LAMMPS setting")

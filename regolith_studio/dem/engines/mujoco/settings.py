@@ -1,8 +1,8 @@
 """Settings of the MuJoCo engine; in its own units, where the mean diameter and gravity are 1."""
 
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 
-from regolith_studio.errors import InputError
+from regolith_studio.dem.limits import check_limits
 
 
 @dataclass(frozen=True)
@@ -55,10 +55,4 @@ class MujocoSettings:
     snapshots: int = field(default=120, metadata={"label": "Snapshots", "minimum": 2, "maximum": 10_000})
 
     def __post_init__(self) -> None:
-        for each in fields(self):
-            value, limits = getattr(self, each.name), each.metadata
-            if not limits["minimum"] <= value <= limits["maximum"]:
-                raise InputError(
-                    f"The MuJoCo setting {each.name} must lie between {limits['minimum']:g} and "
-                    f"{limits['maximum']:g}, got {value:g}."
-                )
+        check_limits(self, "MuJoCo setting")
