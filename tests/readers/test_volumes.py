@@ -7,6 +7,7 @@ import pytest
 import tifffile
 
 from regolith_studio.errors import FileError, InputError
+from regolith_studio.readers.raw_names import layout_from_name
 from regolith_studio.readers.volumes import (
     RawLayout,
     datasets_in,
@@ -294,3 +295,27 @@ def test_that_imagej_slices_that_are_called_channels_come_in_with_a_note(tmp_pat
     assert np.array_equal(read_volume(tmp_path / "times.tif", voxel_size=1.0).array.T, few)
     with pytest.raises(FileError, match="holds 3 colours or channels"):
         read_volume(tmp_path / "few.tif", voxel_size=1.0)
+
+
+@pytest.mark.parametrize(
+    ("name", "nbytes", "expected"),
+    [
+        ("scan_13x11x7_uint16.raw", 2002, RawLayout((13, 11, 7), "uint16")),
+        ("scan_13x11x7.raw", 1001, RawLayout((13, 11, 7), "uint8")),
+        ("scan_13x11x7.raw", 2002, RawLayout((13, 11, 7), "uint16")),
+        ("uint8-13x11x7.vol", 1001, RawLayout((13, 11, 7), "uint8")),
+        ("a 16bit be 13×11×7.raw", 2002, RawLayout((13, 11, 7), "uint16", "big")),
+        ("13_11_7_f32.raw", 4004, RawLayout((13, 11, 7), "float32")),
+        ("int16_13x11x7_head.raw", 2002 + 512, RawLayout((13, 11, 7), "int16", offset=512)),
+        ("scan_13x11x7_uint16.raw", 1001, None),
+        ("scan_13x11x7.raw", 1001 + 100000, None),
+        ("scan_13x0x7.raw", 1001, None),
+        ("scan.raw", 1001, None),
+        ("2026_11_21.raw", 5, None),
+    ],
+)
+def test_that_the_name_of_a_raw_file_tells_its_layout_if_its_size_agrees(
+    name, nbytes, expected, tmp_path
+) -> None:
+    (tmp_path / name).write_bytes(bytes(nbytes))
+    assert layout_from_name(tmp_path / name) == expected
