@@ -2,80 +2,54 @@
 
 O'Rourke (1985): two adjacent sides of a minimum-volume box are each flush with an edge of the hull. A
 side that is flush with an edge has its normal on the edge's Gauss arc, the arc between the normals of
-the two faces that meet there. For a fixed normal the best box is its height times the smallest
-rectangle around the shadow, which is flush with an edge of the shadow (rotating calipers).
+the two faces that meet there.
 
-So all arcs are searched, by branch and bound: turning a box of edges w and h by an angle t can change
-the logarithm of its volume by t (w/h + h/w) at most, so an arc is halved only while that, times
-`STEEPNESS`, could bring it below the best box so far; the last `FINEST` of arc is left to golden section.
+So all arcs are searched, by branch and bound with the bounds of :mod:`regolith_studio.geometry.box_view`:
+a piece of an arc that could hold a smaller box is halved, or cut where a face turns its back. Once no face
+does so within the piece, and only one edge or two could be flush with a second side there, the least volume
+along it is found by descent. Of solids with many faces, whole neighbourhoods of normals are ruled out first.
 """
-
-from typing import NamedTuple
 
 import numpy as np
 
-from regolith_studio.geometry.arrays import FloatArray, IntArray
+from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
+from regolith_studio.geometry.box_arc import Arc, Search, box_on, box_on_arc, descend
+from regolith_studio.geometry.box_view import (
+    View,
+    bound_after_turn,
+    bound_within_cap,
+    empty_view,
+    flush_after_turn,
+)
 from regolith_studio.geometry.compiled import kernel
-from regolith_studio.geometry.hull_graph import HullGraph, climb, hull_graph, walk_rim
-from regolith_studio.geometry.inlined import inlined
-from regolith_studio.geometry.rectangle import TIE, outline, polygon_area, smallest_rectangle
-from regolith_studio.geometry.vectors import Vector, along, dot, frame, length, mixed, row
+from regolith_studio.geometry.hull_graph import HullGraph, hull_graph
+from regolith_studio.geometry.vectors import along, cross, dot, length, mixed, row
 
-STEEPNESS = 0.6
-"""Slope of ln(volume) against the angle in radians, as a share of h/w + w/h, the most it could be.
+MANY_FACES = 100
+FIRST_FACES = 16
+"""Solids with more faces than MANY_FACES are first seen along so many normals, to know a good box soon."""
 
-Of 1,600 polyhedra of 12 to 50 facets none is missed from 0.5 on, at 0.4 two, at 0.3 seventeen."""
+STRIDES = 8
+CAPS = np.radians(np.array([24.0, 16.0, 11.0, 7.5, 5.0, 3.3, 2.2, 1.5, 1.0]))
+"""Neighbourhoods of a normal that are tried, in radians."""
 
-STEEPNESS_FINE = 0.35
-FINE = 150
-"""Solids of more triangles than this are rounder and their slopes flatter: none is missed from 0.2 on."""
+NARROW = np.radians(8.0)
+"""Pieces of an arc wider than this are halved."""
+WIDEST = np.radians(20.0)
+"""Arcs are searched in pieces that are no wider."""
+UNIMODAL = np.radians(3.0)
+"""Widest piece along which is descended."""
+FINEST = 1e-10
+"""Angle down to which pieces are halved, in radians."""
+MANY_PIECES = 500
+"""After so many pieces of one arc, needed only where the volume hardly changes along it, FINEST grows."""
 
-SAFETY = 3.0
-MANY_ARCS = 200
-SHORT_ARC = np.radians(15.0)
-"""With so many arcs so short, no slope is steeper than SAFETY times the steepest between facets."""
-
-PASSES = 8
-"""Faces are searched in so many passes, each spread over the solid, so that the best is known soon."""
-
-FINEST = np.radians(2.0)
-"""Piece of an arc that golden section searches."""
-
-EXACT_BELOW = np.log(1.3)
-"""A rectangle is worked out only where ln(height times shadow) is at most this above the best volume."""
-
-GOLDEN = (5.0**0.5 - 1.0) / 2.0
-DEPTH = 64
-SHARPEST = 1e-9
 SAME_NORMAL = 1e-8
-ROUNDING = 1e-12
+EDGE_ON = 1e-10
+EQUAL = 1e-11
+"""Boxes whose volumes differ by a smaller share are not told apart."""
 
-
-class Search(NamedTuple):
-    """Scratch space and the best box so far.
-
-    Parameters
-    ----------
-    near
-        Vertices at which the next hill climbs start: up, down, right and left, shape (4,).
-    rim, x, y
-        Outline of the last shadow.
-    record
-        Logarithm of the least volume so far and the longest edge of its box, shape (2,).
-    axes
-        Of the best box, one a row, shape (3, 3).
-    todo
-        Pieces of an arc still to be searched: its ends, and volume and slope at each end,
-        shape (DEPTH, 6).
-    """
-
-    near: IntArray
-    rim: IntArray
-    x: FloatArray
-    y: FloatArray
-    record: FloatArray
-    axes: FloatArray
-    todo: FloatArray
+DEPTH = 256
 
 
 @kernel
@@ -89,199 +63,167 @@ def minimum_box(points: FloatArray, faces: IntArray) -> FloatArray:
     faces
         Its outward triangles, shape (m, 3).
     """
-    graph = hull_graph(points, faces)
-    n = len(points)
-    near = np.zeros(4, np.int64)
-    rim, x, y = np.empty(n, np.int64), np.empty(n), np.empty(n)
-    search = Search(near, rim, x, y, np.full(2, np.inf), np.zeros((3, 3)), np.empty((DEPTH, 6)))
+    return least_box(hull_graph(points, faces))
+
+
+@kernel
+def least_box(graph: HullGraph) -> FloatArray:
+    """Axes of the minimum-volume box of a solid, one a row, shape (3, 3); zeros if it does not close."""
+    search = Search(empty_view(len(graph.points)), np.full(2, np.inf), np.zeros((3, 3)), np.empty((DEPTH, 2)))
     if not graph.closed:
         return search.axes
-    at_face = _search_faces(graph, search)
-    steepest = _steepest(graph, at_face)
+    done = np.zeros(len(graph.twin), np.bool_)
+    if len(graph.normals) > MANY_FACES:
+        _rule_out(graph, done, search)
+    else:
+        for f in range(len(graph.normals)):
+            if graph.facet[f] == f:
+                box_on(graph, row(graph.normals, f), search)
     for h in range(len(graph.twin)):
-        if h < graph.twin[h]:
-            search_arc(graph, h // 3, graph.twin[h] // 3, at_face, steepest, search)
+        if h < graph.twin[h] and not done[h]:
+            search_arc(graph, h, search)
     return search.axes
 
 
 @kernel
-def _search_faces(graph: HullGraph, search: Search) -> FloatArray:
-    """Volume and slope of :func:`best_volume` for each face normal, shape (m, 2).
-
-    A face beside one so bad that it cannot win gets the lower bound that follows from that.
-    """
-    at_face = np.empty((len(graph.normals), 2))
-    for f in range(len(at_face)):
-        at_face[f, 0] = -np.inf
-    for start in range(PASSES):
-        for f in range(start, len(at_face), PASSES):
-            if graph.facet[f] == f:
-                at_face[f, 0], at_face[f, 1] = _bound_from_neighbours(graph, f, at_face)
-                if at_face[f, 0] < search.record[0]:
-                    at_face[f, 0], at_face[f, 1] = best_volume(graph, row(graph.normals, f), search)
-    for f in range(len(at_face)):
-        at_face[f, 0], at_face[f, 1] = at_face[graph.facet[f], 0], at_face[graph.facet[f], 1]
-    return at_face
-
-
-@inlined
-def _bound_from_neighbours(graph: HullGraph, f: int, at_face: FloatArray) -> tuple[float, float]:
-    """The highest lower bound for face `f` from volumes and slopes of its neighbours, and that slope."""
-    bound, slope = -np.inf, 0.0
-    for h in range(3 * f, 3 * f + 3):
-        g = graph.facet[graph.twin[h] // 3]
-        angle = length(mixed(row(graph.normals, f), 1.0, row(graph.normals, g), -1.0))
-        if at_face[g, 0] - at_face[g, 1] * angle > bound:
-            bound, slope = at_face[g, 0] - at_face[g, 1] * angle, at_face[g, 1]
-    return bound, slope
-
-
-@kernel
-def _steepest(graph: HullGraph, at_face: FloatArray) -> float:
-    """For solids with many facets a bound on all slopes, from those seen between neighbouring facets."""
-    steepest, arcs, least = 0.0, 0, np.inf
-    for f in range(len(at_face)):
-        least = min(least, at_face[f, 0])
-    for h in range(len(graph.twin)):
-        f, g = h // 3, graph.twin[h] // 3
-        if f < g and max(at_face[f, 0], at_face[g, 0]) < least + EXACT_BELOW:
-            angle = length(mixed(row(graph.normals, f), 1.0, row(graph.normals, g), -1.0))
-            if SAME_NORMAL < angle < SHORT_ARC:
-                steepest = max(steepest, abs(at_face[f, 0] - at_face[g, 0]) / angle)
-                arcs += 1
-    return SAFETY * steepest if arcs > MANY_ARCS else np.inf
+def _rule_out(graph: HullGraph, done: BoolArray, search: Search) -> None:
+    """Mark the half-edges whose arcs hold no smaller box, by what is seen along some of the normals."""
+    m = len(graph.normals)
+    for k in range(FIRST_FACES):
+        box_on(graph, row(graph.normals, k * m // FIRST_FACES), search)
+    known, seen, stack = np.zeros(m, np.bool_), np.full(m, -1), np.empty(m, np.int64)
+    for start in range(STRIDES):
+        for f in range(start, m, STRIDES):
+            if known[f]:
+                continue
+            axis = row(graph.normals, f)
+            n = abs(box_on(graph, axis, search))
+            event, reach = 0, 0.0
+            for angle in CAPS:
+                event = bound_within_cap(search.sight, n, angle, search.record[0] * (1.0 - EQUAL), event)
+                if event < 0:
+                    reach = angle
+                    break
+            near = np.cos(reach)
+            seen[f], stack[0], count = f, f, 1
+            i = 0
+            while i < count:
+                for h in range(3 * stack[i], 3 * stack[i] + 3):
+                    g = graph.twin[h] // 3
+                    if seen[g] != f and along(graph.normals, g, axis) >= near:
+                        seen[g], stack[count] = f, g
+                        count += 1
+                i += 1
+            for i in range(count):
+                known[stack[i]] = True
+                for h in range(3 * stack[i], 3 * stack[i] + 3):
+                    if seen[graph.twin[h] // 3] == f:
+                        done[h] = done[graph.twin[h]] = True
 
 
 @kernel
-def search_arc(
-    graph: HullGraph, f: int, g: int, at_face: FloatArray, steepest: float, search: Search
-) -> None:
-    """Branch and bound along the Gauss arc between the normals of faces `f` and `g`."""
-    start, end = row(graph.normals, f), row(graph.normals, g)
-    cosine = dot(start, end)
-    across = mixed(end, 1.0, start, -cosine)
+def search_arc(graph: HullGraph, h: int, search: Search) -> None:
+    """Branch and bound along the Gauss arc of half-edge `h`."""
+    start, end = row(graph.normals, h // 3), row(graph.normals, graph.twin[h] // 3)
+    across = mixed(end, 1.0, start, -dot(start, end))
     sine = length(across)
     if sine < SAME_NORMAL:
         return
+    angle = np.arctan2(sine, dot(start, end))
     across = mixed(across, 1.0 / sine, start, 0.0)
+    across = mixed(across, 1.0, start, -dot(across, start))
+    across = mixed(across, 1.0 / length(across), start, 0.0)
+    arc = Arc(start, across, cross(across, start), angle)
     todo = search.todo
-    todo[0, 0], todo[0, 1] = 0.0, np.arctan2(sine, cosine)
-    todo[0, 2], todo[0, 3] = at_face[f, 0], at_face[f, 1]
-    todo[0, 4], todo[0, 5] = at_face[g, 0], at_face[g, 1]
-    n = 1
+    n = int(np.ceil(angle / WIDEST))
+    for i in range(n):
+        todo[i, 0], todo[i, 1] = angle * i / n, angle * (i + 1) / n
+    pieces, finest = 0, FINEST
     while n > 0:
         n -= 1
-        low, high, at_low, at_high, steep_high = todo[n, 0], todo[n, 1], todo[n, 2], todo[n, 4], todo[n, 5]
-        steepness = min(max(todo[n, 3], steep_high), steepest)
-        if (at_low + at_high - steepness * (high - low)) / 2.0 >= search.record[0]:
-            continue
-        if high - low <= FINEST:
-            golden_section(graph, start, across, low, high, steepness, search)
-            continue
-        middle = (low + high) / 2.0
-        at, steep = best_volume(graph, mixed(start, np.cos(middle), across, np.sin(middle)), search)
-        todo[n, 1], todo[n, 4], todo[n, 5] = middle, at, steep
-        n += 1
-        todo[n, 0], todo[n, 1], todo[n, 2], todo[n, 3] = middle, high, at, steep
-        todo[n, 4], todo[n, 5] = at_high, steep_high
-        n += 1
+        low, high = todo[n, 0], todo[n, 1]
+        cut = _look_into(graph, arc, low, high, search)
+        pieces += 1
+        if pieces % MANY_PIECES == 0:
+            finest *= 100.0
+        if cut >= 0.0 and n + 2 <= DEPTH and high - low > finest:
+            todo[n, 0], todo[n, 1] = low, cut
+            todo[n + 1, 0], todo[n + 1, 1] = cut, high
+            n += 2
 
 
 @kernel
-def golden_section(
-    graph: HullGraph,
-    start: Vector,
-    across: Vector,
-    low: float,
-    high: float,
-    steepness: float,
-    search: Search,
-) -> None:
-    """Least volume on a short piece of an arc, given up once it cannot win."""
-    a, b = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
-    at_a = best_volume(graph, mixed(start, np.cos(a), across, np.sin(a)), search)[0]
-    at_b = best_volume(graph, mixed(start, np.cos(b), across, np.sin(b)), search)[0]
-    while high - low > SHARPEST:
-        if min(at_a, at_b) - steepness * (1.0 - GOLDEN) * (high - low) >= search.record[0]:
-            return
-        if at_a < at_b:
-            high, b, at_b = b, a, at_a
-            a = high - GOLDEN * (high - low)
-            at_a = best_volume(graph, mixed(start, np.cos(a), across, np.sin(a)), search)[0]
-        else:
-            low, a, at_a = a, b, at_b
-            b = low + GOLDEN * (high - low)
-            at_b = best_volume(graph, mixed(start, np.cos(b), across, np.sin(b)), search)[0]
+def _look_into(graph: HullGraph, arc: Arc, low: float, high: float, search: Search) -> float:
+    """Search a piece of an arc; where to cut it if it may still hold a smaller box, else -1."""
+    middle, half = (low + high) / 2.0, (high - low) / 2.0
+    n, _ = box_on_arc(graph, arc, middle, search)
+    view, limit = search.sight, search.record[0] * (1.0 - EQUAL)
+    cosine, sine = np.cos(half), np.sin(half)
+    bound = bound_after_turn(view, abs(n), cosine, -sine)
+    if bound >= limit:
+        bound = bound_after_turn(view, abs(n), cosine, sine)
+    if bound >= limit:
+        return -1.0
+    if n < 0 or high - low > NARROW:
+        return middle
+    turn = _next_flip(graph, arc, middle, half, n, view)
+    if turn != 0.0:
+        return middle + turn
+    count, one, two = _flush_edges(view, n, half, limit)
+    if count == 0:
+        return -1.0
+    if count > 2 or high - low > UNIMODAL:
+        return middle
+    descend(graph, arc, low, high, one, search)
+    if count == 2:
+        descend(graph, arc, low, high, two, search)
+    return -1.0
 
 
 @kernel
-def best_volume(graph: HullGraph, axis: Vector, search: Search) -> tuple[float, float]:
-    """Logarithm of the least volume of a box with a side normal to `axis`, and a bound on its slope.
+def _next_flip(graph: HullGraph, arc: Arc, middle: float, half: float, n: int, view: View) -> float:
+    """Least turn from the middle at which a face beside the outline turns its back; 0 if none does."""
+    axis = mixed(arc.start, np.cos(middle), arc.across, np.sin(middle))
+    second = mixed(arc.across, np.cos(middle), arc.start, -np.sin(middle))
+    nearest = np.inf
+    for i in range(n):
+        for side in range(2):
+            f = (view.rim[i] if side == 0 else graph.twin[view.rim[i]]) // 3
+            up, rise = along(graph.normals, f, axis), along(graph.normals, f, second)
+            if abs(up) < abs(rise) * 1.1 * half:
+                turn = np.arctan(-up / rise)
+                if abs(turn) < half - EDGE_ON and abs(turn) < abs(nearest):
+                    nearest = turn
+    return nearest if nearest < np.inf else 0.0
 
-    Far above the best so far it is only a lower bound. A new best box is kept in `search`; of two that
-    tie, the one with the shorter longest edge.
+
+@kernel
+def _flush_edges(view: View, n: int, half: float, limit: float) -> tuple[int, int, int]:
+    """How many edges of the outline could be flush with a second side of a box below `limit`; the last two.
+
+    The outline must keep its edges. Over half a piece the volume with the touched vertices held fast lies
+    above its chord, less what its curvature allows. Three, where an edge is seen so nearly end-on that
+    nothing is known.
     """
-    first, second = frame(axis)
-    points, near = graph.points, search.near
-    steepness = STEEPNESS_FINE if len(graph.normals) > FINE else STEEPNESS
-    climb(graph, axis, first, near)
-    height = along(points, near[0], axis) - along(points, near[1], axis)
-    n = shadow(graph, axis, first, second, search)
-    area = polygon_area(search.x, search.y, n)
-    longer = along(points, near[2], first) - along(points, near[3], first)
-    bound = np.log(height * area)
-    if bound > search.record[0] + EXACT_BELOW:
-        return bound, steepness * _slope(height, longer, area / longer)
-    area, cosine, sine, longer = smallest_rectangle(search.x, search.y, n)
-    volume, longest = np.log(height * area), max(height, longer)
-    gain, shorter = search.record[0] - volume, search.record[1] - longest
-    if gain > TIE or (gain > -TIE and (shorter > TIE or (gain > 0.0 and shorter > -TIE))):
-        search.record[0], search.record[1] = volume, longest
-        for k in range(3):
-            search.axes[0, k] = axis[k]
-            search.axes[1, k] = cosine * first[k] + sine * second[k]
-            search.axes[2, k] = cosine * second[k] - sine * first[k]
-    return volume, steepness * _slope(height, longer, area / longer)
-
-
-@inlined
-def _slope(height: float, wide: float, high: float) -> float:
-    """How fast turning a box of these edges could at most change the logarithm of its volume."""
-    return max(height / wide + wide / height, height / high + high / height)
-
-
-@inlined
-def shadow(graph: HullGraph, axis: Vector, first: Vector, second: Vector, search: Search) -> int:
-    """Outline of the shadow along `axis` in `search`, in coordinates along `first` and `second`."""
-    points, near, x, y = graph.points, search.near, search.x, search.y
-    way = walk_rim(graph, axis, near[2], search.rim)
-    n = abs(way)
-    leftmost = np.inf
+    cosine, sine = np.cos(half), np.sin(half)
+    count, one, two = 0, -1, -1
     for i in range(n):
-        x[i] = along(points, search.rim[i], first)
-        y[i] = along(points, search.rim[i], second)
-        leftmost = min(leftmost, x[i])
-    lowest = along(points, near[3], first)
-    if n < 3 or leftmost > lowest + ROUNDING or (way < 0 and max(_reversals(x, n), _reversals(y, n)) > 2):
-        for i in range(len(points)):
-            x[i], y[i] = along(points, i, first), along(points, i, second)
-        corners = outline(x, y)
-        n = len(corners)
-        for i in range(n):
-            x[i], y[i] = along(points, corners[i], first), along(points, corners[i], second)
-    return n
+        j = i + 1 if i + 1 < n else 0
+        here, squared = flush_after_turn(view, n, i, 1.0, 0.0)
+        deep = view.z[j] - view.z[i]
+        before, squared_before = flush_after_turn(view, n, i, cosine, -sine)
+        after, squared_after = flush_after_turn(view, n, i, cosine, sine)
+        lever = min(squared, squared_before, squared_after)
+        if lever == 0.0 or lever < 16.0 * half * half * (squared + deep * deep):
+            return 3, one, two
+        dip = here * (4.0 * (squared + deep * deep) / lever + 12.0) * half * half
+        if min(_least_under(before, here, dip), _least_under(here, after, dip)) < limit:
+            count, one, two = count + 1, i, one
+    return count, one, two
 
 
-@inlined
-def _reversals(x: FloatArray, n: int) -> int:
-    """How often a closed sequence turns from rising to falling or back; 2 for a convex polygon."""
-    count, rising = 0, 0
-    first = 0
-    for i in range(n):
-        step = x[i] - x[i - 1 if i > 0 else n - 1]
-        way = 1 if step > ROUNDING else (-1 if step < -ROUNDING else rising)
-        if way != rising:
-            count += 1 if rising != 0 else 0
-            first = way if rising == 0 else first
-            rising = way
-    return count + (1 if rising != first else 0)
+@kernel
+def _least_under(one: float, two: float, dip: float) -> float:
+    """Least value of the parabola through both values that hangs ``dip / 4`` below their chord."""
+    rise = abs(two - one)
+    return min(one, two) if rise >= dip else min(one, two) - (dip - rise) ** 2 / (4.0 * dip)

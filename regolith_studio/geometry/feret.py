@@ -8,7 +8,11 @@ from regolith_studio.geometry.hull_graph import after, hull_graph
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.vectors import along, cross, dot, length, mixed, row
 
-PARALLEL = 1e-12
+PARALLEL = 1e-8
+"""Sine of the angle between edges below which the planes through both are those through a face."""
+
+ROUNDING = 1e-12
+"""By how much a plane may cut into the solid, as a share of an edge."""
 
 
 def feret_max(hull: Mesh) -> float:
@@ -73,9 +77,9 @@ def _least_width(points: FloatArray, faces: IntArray) -> float:
 def _width_between(edge: FloatArray, sides: FloatArray, other: FloatArray, other_sides: FloatArray) -> float:
     """Distance between the parallel planes through two edges, infinite unless both planes are tangent."""
     way, other_way = row(edge, 1), row(other, 1)
-    if along(other_sides, 0, way) * along(other_sides, 1, way) > 0.0:
+    if along(other_sides, 0, way) * along(other_sides, 1, way) > ROUNDING * dot(way, way):
         return np.inf
-    if along(sides, 0, other_way) * along(sides, 1, other_way) > 0.0:
+    if along(sides, 0, other_way) * along(sides, 1, other_way) > ROUNDING * dot(other_way, other_way):
         return np.inf
     normal = cross(way, other_way)
     size = length(normal)

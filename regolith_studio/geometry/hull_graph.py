@@ -14,8 +14,11 @@ from regolith_studio.geometry.compiled import kernel
 from regolith_studio.geometry.inlined import inlined
 from regolith_studio.geometry.vectors import Vector, along, cross, length, mixed, row
 
-SLIVER = 1e-14
-"""A triangle of less area, at solid size 1, has no normal of its own."""
+SLIVER = 1e-9
+"""A triangle of less height, at solid size 1, has no normal of its own."""
+
+EPSILON = 1e-15
+"""Rounding of coordinates, at solid size 1, with some reserve."""
 
 COPLANAR = 1e-9
 """Neighbouring faces whose normals differ by less, in radians, are one facet."""
@@ -79,23 +82,27 @@ def hull_graph(points: FloatArray, faces: IntArray) -> HullGraph:
         outgoing[origin[h]] = h
     for v in range(len(points)):
         closed = closed and outgoing[v] >= 0
-    normals = _face_normals(points, faces, twin)
-    facet = _facets(normals, twin)
+    normals, blur = _face_normals(points, faces, twin)
+    facet = _facets(normals, blur, twin)
     return HullGraph(points, normals, facet, origin, twin, outgoing, closed)
 
 
 @kernel
-def _face_normals(points: FloatArray, faces: IntArray, twin: IntArray) -> FloatArray:
-    """Unit normals; a sliver takes that of the neighbour across its longest edge."""
-    normals = np.zeros((len(faces), 3))
+def _face_normals(points: FloatArray, faces: IntArray, twin: IntArray) -> tuple[FloatArray, FloatArray]:
+    """Unit normals, and how far rounding may tilt them.
+
+    A sliver takes that of the neighbour across its longest edge.
+    """
+    normals, blur = np.zeros((len(faces), 3)), np.full(len(faces), EPSILON / SLIVER)
     slivers = 0
     for f in range(len(faces)):
         a = row(points, faces[f, 0])
-        normal = cross(
-            mixed(row(points, faces[f, 1]), 1.0, a, -1.0), mixed(row(points, faces[f, 2]), 1.0, a, -1.0)
-        )
+        b, c = mixed(row(points, faces[f, 1]), 1.0, a, -1.0), mixed(row(points, faces[f, 2]), 1.0, a, -1.0)
+        normal = cross(b, c)
         size = length(normal)
-        if size > 2.0 * SLIVER:
+        height = size / max(length(b), length(c), length(mixed(c, 1.0, b, -1.0)))
+        if height > SLIVER:
+            blur[f] = EPSILON / height
             for k in range(3):
                 normals[f, k] = normal[k] / size
         else:
@@ -104,7 +111,7 @@ def _face_normals(points: FloatArray, faces: IntArray, twin: IntArray) -> FloatA
         for f in range(len(faces)):
             if length(row(normals, f)) == 0.0:
                 _take_normal(points, faces, twin, f, normals)
-    return normals
+    return normals, blur
 
 
 @kernel
@@ -121,11 +128,11 @@ def _take_normal(points: FloatArray, faces: IntArray, twin: IntArray, f: int, no
 
 
 @kernel
-def _facets(normals: FloatArray, twin: IntArray) -> IntArray:
-    """First face of the facet of each face; all faces of a facet get its normal."""
+def _facets(normals: FloatArray, blur: FloatArray, twin: IntArray) -> IntArray:
+    """First face of the facet of each face; all its faces get the normal that rounding tilts least."""
     facet = np.full(len(normals), -1)
     stack = np.empty(len(normals), np.int64)
-    for seed in range(len(normals)):
+    for seed in np.argsort(blur):
         if facet[seed] >= 0:
             continue
         facet[seed], stack[0], n = seed, seed, 1
@@ -136,7 +143,7 @@ def _facets(normals: FloatArray, twin: IntArray) -> IntArray:
                 f = twin[h] // 3
                 if f < 0 or facet[f] >= 0:
                     continue
-                if length(mixed(row(normals, f), 1.0, row(normals, seed), -1.0)) < COPLANAR:
+                if length(mixed(row(normals, f), 1.0, row(normals, seed), -1.0)) < COPLANAR + blur[f]:
                     facet[f], stack[n] = seed, f
                     for k in range(3):
                         normals[f, k] = normals[seed, k]
@@ -150,7 +157,7 @@ def after(h: int) -> int:
     return h - 2 if h % 3 == 2 else h + 1
 
 
-@kernel
+@inlined
 def climb(graph: HullGraph, axis: Vector, first: Vector, near: IntArray) -> None:
     """Find the vertices farthest along `axis`, ``-axis``, `first` and ``-first``.
 
@@ -184,7 +191,7 @@ def _extreme_vertex(graph: HullGraph, direction: Vector, start: int) -> int:
     return here
 
 
-@kernel
+@inlined
 def walk_rim(graph: HullGraph, axis: Vector, start: int, rim: IntArray) -> int:
     """Outline of the shadow along `axis`, counter-clockwise seen from its tip.
 
@@ -193,12 +200,12 @@ def walk_rim(graph: HullGraph, axis: Vector, start: int, rim: IntArray) -> int:
     start
         A vertex of the outline.
     rim
-        Receives the vertices; as long as there are vertices.
+        Receives the half-edges, each with its face above and its twin's below; as long as there are vertices.
 
     Returns
     -------
     int
-        Number of vertices; negative if a face is edge-on, so that the outline may run back on itself;
+        Number of half-edges; negative if a face is edge-on, so that the outline may run back on itself;
         0 where rounding hides it.
     """
     h = graph.outgoing[start]
@@ -209,7 +216,7 @@ def walk_rim(graph: HullGraph, axis: Vector, start: int, rim: IntArray) -> int:
     first = h
     n, way = 0, 1
     while n < len(rim):
-        rim[n] = graph.origin[h]
+        rim[n] = h
         n += 1
         h = after(h)
         for _ in range(len(rim)):

@@ -5,15 +5,20 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
 
 from regolith_studio.errors import GeometryError
-from regolith_studio.geometry.arrays import FloatArray, locked_floats
+from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
 from regolith_studio.geometry.box_search import minimum_box
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.directions import fibonacci_directions
 from regolith_studio.geometry.mesh import Mesh
 
 SHAKE = 1e-10
+WELD = 1e-8
+"""Vertices of a hull of size 1 that are closer are one for the search."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +88,7 @@ def minimum_volume_box(solid: Mesh | ConvexPolyhedron) -> OrientedBox:
 
     Found by the branch and bound of :mod:`regolith_studio.geometry.box_search` (O'Rourke 1985: two adjacent
     sides are flush with edges of the hull), and independent of unit and orientation. Of boxes that
-    tie in volume, the one with the shortest longest edge is taken.
+    tie in volume, the one with the least sum of edges is taken.
 
     Raises
     ------
@@ -97,7 +102,7 @@ def minimum_volume_box(solid: Mesh | ConvexPolyhedron) -> OrientedBox:
         raise GeometryError("The mesh is a single point and has no bounding box.")
     middle = (low + high) / 2
     points = (hull.vertices - middle) / size
-    axes = minimum_box(points, hull.faces)
+    axes = minimum_box(*_welded(points, hull.faces))
     if not axes.any():
         axes = _axes_of_shaken(points)
     order = np.argsort(-np.ptp(points @ axes.T, axis=0), kind="stable")
@@ -107,10 +112,25 @@ def minimum_volume_box(solid: Mesh | ConvexPolyhedron) -> OrientedBox:
     return OrientedBox(middle + size * ((lows + highs) / 2) @ axes, axes, extents * size)
 
 
+def _welded(points: FloatArray, faces: IntArray) -> tuple[FloatArray, IntArray]:
+    """A hull without edges shorter than `WELD`, which are too short to have a direction."""
+    edges = points[faces] - points[np.roll(faces, -1, axis=1)]
+    if np.einsum("ijk,ijk->ij", edges, edges).min() >= WELD**2:
+        return points, faces
+    near = cKDTree(points).query_pairs(WELD, output_type="ndarray")
+    graph = coo_array((np.ones(len(near)), near.T), shape=(len(points), len(points)))
+    _, first = np.unique(connected_components(graph, directed=False)[1], return_index=True)
+    try:
+        hull = Mesh(points[first], np.empty((0, 3), dtype=np.int64)).hull
+    except GeometryError:
+        return points, faces
+    return np.array(hull.vertices), hull.faces
+
+
 def _axes_of_shaken(points: FloatArray) -> FloatArray:
     """For a hull whose triangles do not close (many points in one plane): move each point by 1e-10."""
     shaken = Mesh(points + SHAKE * fibonacci_directions(len(points)), np.empty((0, 3), dtype=np.int64)).hull
-    axes = minimum_box(shaken.vertices, shaken.faces)
+    axes = minimum_box(np.array(shaken.vertices), shaken.faces)
     if not axes.any():
         raise GeometryError("The convex hull of the mesh does not close, so it has no bounding box.")
     return axes

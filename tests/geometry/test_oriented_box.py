@@ -3,8 +3,10 @@
 import numpy as np
 import pytest
 from scipy.optimize import minimize
+from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
+from benchmarks.independent import least_box
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry import ConvexPolyhedron, HalfSpaces, Mesh
 from regolith_studio.geometry.arrays import FloatArray
@@ -82,6 +84,61 @@ def test_that_the_box_of_a_stone_holds_it_and_touches_it(seed: int) -> None:
     assert inside.max(axis=0) == pytest.approx(box.extents / 2, rel=1e-12)
     assert inside.min(axis=0) == pytest.approx(-box.extents / 2, rel=1e-12)
     assert np.linalg.det(box.axes) == pytest.approx(1.0, abs=1e-12)
+
+
+MISSED = HalfSpaces(
+    [
+        [0.23676309, 0.6913441, -0.68263209],
+        [0.75597182, -0.63361907, -0.16441861],
+        [-0.03285601, -0.61779659, -0.78565123],
+        [0.02320208, 0.50016525, -0.86561908],
+        [0.09416543, 0.4405724, 0.89276471],
+        [-0.38071053, 0.29481295, 0.87643872],
+        [-0.64739956, 0.59548527, 0.47567963],
+        [0.08151174, 0.99440947, 0.06712403],
+        [-0.16525405, -0.5612006, 0.81101478],
+        [-0.88494098, 0.43875457, -0.15612139],
+        [-0.51833195, -0.76518414, -0.38187069],
+        [0.45862187, -0.50257678, 0.73285916],
+    ],
+    [
+        *(0.40804985, 0.52079377, 0.43921724, 0.41062492, 0.48616902, 0.46030908),
+        *(0.52895443, 0.53079368, 0.46292313, 0.6290911, 0.5469868, 0.44598899),
+    ],
+)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_that_a_box_on_a_short_part_of_an_arc_is_found_in_every_orientation(seed: int) -> None:
+    solid = ConvexPolyhedron.from_half_spaces(MISSED).moved(rotation=rotation(seed))
+    assert minimum_volume_box(solid).volume == pytest.approx(1.7522615, rel=1e-7)
+
+
+@pytest.mark.parametrize("apart", [1e-13, 1e-11, 1e-9, 1e-7, 1e-5])
+@pytest.mark.parametrize("seed", range(3))
+def test_that_vertices_beside_each_other_do_not_disturb_the_box(seed: int, apart: float) -> None:
+    solid = random_polyhedron(seed, n_faces=12)
+    steps = apart * np.random.default_rng(seed).normal(size=solid.vertices.shape)
+    doubled = cloud(np.vstack([solid.vertices, solid.vertices + steps])).hull
+    wanted = minimum_volume_box(solid)
+    assert minimum_volume_box(doubled).volume == pytest.approx(wanted.volume, rel=1e-8 + 20 * apart)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_that_rectangles_that_tie_around_a_triangle_do_not_make_the_box_ambiguous(seed: int) -> None:
+    corners = np.random.default_rng(seed).normal(size=(3, 2))
+    prism = cloud(np.array([[*corner, z] for corner in corners for z in (0.0, 0.4)]))
+    turned = prism.moved(rotation=rotation(seed))
+    assert minimum_volume_box(turned).extents == pytest.approx(minimum_volume_box(prism).extents, rel=1e-7)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("block", range(8))
+def test_that_an_exhaustive_search_finds_no_smaller_box(block: int) -> None:
+    for seed in range(25 * block, 25 * block + 25):
+        solid = random_polyhedron(seed, n_faces=5 + seed % 16, stretch=seed % 4 / 4)
+        least = np.prod(least_box(ConvexHull(solid.vertices), step=2.0))
+        assert minimum_volume_box(solid).volume <= least * (1 + 1e-8)
 
 
 def test_that_a_grid_of_points_with_many_in_one_plane_has_its_box() -> None:
