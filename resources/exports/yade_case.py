@@ -17,7 +17,7 @@ import math
 import sys
 from pathlib import Path
 
-from yade import O, Vector3, geom, polyhedra_utils, utils, wrapper
+from yade import O, Vector3, geom, log, polyhedra_utils, utils, wrapper
 from yade.minieigenHP import Quaternion
 
 FOLDER = Path(sys.argv[0]).resolve().parent
@@ -130,6 +130,7 @@ def steps_wanted():
 
 
 CASE = json.loads((FOLDER / "case.json").read_text(encoding="utf-8"))
+log.setLevel("Polyhedra_support.cpp", log.ERROR)  # else it warns at the first touch of every pair
 TUBE = build(CASE)
 set_engines(CASE)
 if "--check" in sys.argv:

@@ -95,7 +95,7 @@ needs_yade = pytest.mark.skipif(shutil.which("yade") is None, reason="YADE is no
 def run_yade(folder: Path, *arguments: str) -> None:
     subprocess.run(
         ["yade", "-n", "-x", str(folder / "yade_case.py"), *arguments],
-        check=True, capture_output=True, timeout=200, cwd=folder,
+        check=True, capture_output=True, timeout=250, cwd=folder,
         env={key: value for key, value in os.environ.items() if key not in ("LD_LIBRARY_PATH", "PYTHONPATH")},
     )  # fmt: skip
 
@@ -124,7 +124,7 @@ def test_that_yade_lets_the_particles_fall_and_lifts_the_tube(dataset: Dataset, 
         n_particles=12, diameter=0.004, height=0.004, settling_time=0.002, lifting_speed=0.5
     )
     folder = exported(dataset, "yade", tmp_path / "yade", options)
-    run_yade(folder, "--run", "12000")
+    run_yade(folder, "--run", "3000")
     with (folder / "positions.csv").open() as file:
         end = np.array([[float(row[key]) for key in ("x", "y", "z")] for row in csv.DictReader(file)])
     start = lay_out(dataset, options, within=fitting_tube(dataset, options).diameter).position

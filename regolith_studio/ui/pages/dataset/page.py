@@ -28,6 +28,8 @@ from regolith_studio.ui.pages.dataset.targets import ExportsList, LossesLabel, T
 from regolith_studio.ui.theme import Theme
 
 FIND, BUILD, EXPORT = "find", "build", "export"
+MOST_MEASURED = 200
+"""Particles whose sizes are drawn before any are chosen: their volumes are measured in the window."""
 
 
 class DatasetPage(PageWidget):
@@ -283,6 +285,8 @@ class DatasetPage(PageWidget):
             return [ShapeClass(one.weight, one.sizes, one.n_members) for one in self._dataset.representatives]
         if self._chosen is not None:
             return self._chosen.representatives.classes
+        if len(self._particles) > MOST_MEASURED:
+            return []
         return [own_class(particle) for particle in self._particles if particle.mesh.volume > 0.0]
 
     def _take_built(self, built: Built) -> None:
