@@ -6,7 +6,7 @@ from scipy.stats import ks_2samp
 
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.errors import InputError
-from regolith_studio.harmonics.coefficients import orders
+from regolith_studio.harmonics.coefficients import ShCoefficients, orders
 from regolith_studio.harmonics.legendre import harmonics
 from regolith_studio.harmonics.surface import reconstruct
 from regolith_studio.model.draws import virtual_mesh
@@ -90,6 +90,30 @@ def test_that_turning_within_the_ellipsoid_keeps_the_share_of_the_hull(cement: S
     assert np.mean(own) == pytest.approx(np.mean(theirs), rel=0.003)
     assert ks_2samp(own, theirs).statistic < 0.1
     assert np.median(novelty(cement.truncated(10).coefficients, draws.coefficients)) > 0.6
+
+
+def test_that_a_sample_without_higher_degrees_keeps_its_power_and_its_share_of_the_hull(
+    cement: Sample,
+) -> None:
+    """Without the gain the share comes out 0.7 % too large, and the power of l = 9 and 10 a fifth too low."""
+    sample = cement.truncated(10)
+    fitted = MODEL.fit(sample, SampleMatchedSettings(l_max=10, size_jitter=0.0))
+    draws = fitted.draw(1000, 3).chosen(range(700, 1000))
+    parents = sample.coefficients[draws.parents]
+    for degree in range(3, 11):
+        orders_of = slice(degree**2, (degree + 1) ** 2)
+        own, theirs = (
+            (rows[:, orders_of] ** 2 / rows[:, :1] ** 2).mean() for rows in (draws.coefficients, parents)
+        )
+        assert own == pytest.approx(theirs, rel=0.12)
+    own_shares, their_shares = (
+        [
+            describe(reconstruct(ShCoefficients(row), level=3), ("convexity",))["convexity"]
+            for row in rows[:150]
+        ]
+        for rows in (draws.coefficients, parents)
+    )
+    assert np.mean(own_shares) == pytest.approx(np.mean(their_shares), rel=0.005)
 
 
 def test_that_sizes_where_nothing_was_measured_take_the_nearest_shapes(

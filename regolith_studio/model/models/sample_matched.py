@@ -5,14 +5,15 @@ and brought back by the map of an ellipsoid of its neighbourhood. Each step is l
 convex hull that a particle fills stays as it was measured, and with it edges, faces and roughness; elongation
 and flatness are the neighbour's; what is new is how the surface lies on the form. Particles are mapped with
 all degrees that the sample has, up to twice the degree of the draws, and cut afterwards, as the measured ones
-are: so both lose the same by the cut.
+are: so both lose the same by the cut. Where the sample has no more degrees than the draws, mapped particles
+are given the mean power that the measured ones have at each degree from the third on.
 
 It is a smoothed bootstrap: it makes no size and no form that was not measured in the neighbourhood. To go
 beyond the sample, take ``log_field``.
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, ClassVar
 
@@ -23,12 +24,14 @@ from scipy.spatial.transform import Rotation
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
+from regolith_studio.harmonics.coefficients import degrees
 from regolith_studio.model.chunks import CHUNK, chunks, joined
 from regolith_studio.model.draws import Draws
 from regolith_studio.model.linear_maps import Tables, mapped_radii, radius_tables
 from regolith_studio.model.positive import positive_rows
 from regolith_studio.model.principal_axes import PrincipalAxes, principal_axes
 from regolith_studio.model.protocol import SizeRange
+from regolith_studio.model.roughness import roughness_gain
 from regolith_studio.model.sample import Sample
 from regolith_studio.model.size_law import LogNormalSizes, checked_bounds
 from regolith_studio.model.sphere_grid import enclosed_volumes, sphere_grid
@@ -36,6 +39,8 @@ from regolith_studio.model.sphere_grid import enclosed_volumes, sphere_grid
 KEY = "sample_matched"
 OVERSAMPLING = 2
 """Measured particles are mapped with degrees up to so many times that of the draws."""
+N_COMPARED = 2 * CHUNK
+"""Particles by which the power of mapped ones is compared with that of measured ones."""
 HALVINGS = 4
 """A mapped particle whose cut has a negative radius is turned by half as much, so often, then not at all."""
 
@@ -87,11 +92,14 @@ class SampleMatched:
         Of the fit.
     unit
         Length unit of the sample.
+    gain
+        Factor of each degree of mapped particles, shape (l_max + 1,); ones if ``None``.
     """
 
     coefficients: FloatArray
     settings: SampleMatchedSettings
     unit: str = "um"
+    gain: FloatArray | None = None
     key: ClassVar[str] = KEY
 
     def __post_init__(self) -> None:
@@ -99,9 +107,11 @@ class SampleMatched:
         if rows.shape[1] < (self.settings.l_max + 1) ** 2:
             raise ValueError(f"{rows.shape[1]} coefficients do not reach l_max = {self.settings.l_max}")
         object.__setattr__(self, "coefficients", rows)
+        gain = np.ones(self.l_max + 1) if self.gain is None else self.gain
+        object.__setattr__(self, "gain", locked_floats(gain, (self.l_max + 1,), "gain"))
 
     def __reduce__(self) -> tuple[Callable[..., "SampleMatched"], tuple[Any, ...]]:
-        return SampleMatched, (self.coefficients, self.settings, self.unit)
+        return SampleMatched, (self.coefficients, self.settings, self.unit, self.gain)
 
     @property
     def l_max(self) -> int:
@@ -170,14 +180,20 @@ class SampleMatched:
         turn_back = Rotation.from_rotvec(-spins).as_matrix()
         inverses = (axes * lengths[parents][:, None, :]) @ turn_back @ back
         grid = sphere_grid(_mapping_degree(self.l_max), self.l_max)
-        return grid.expanded(
-            mapped_radii(self._tables, parents, np.ascontiguousarray(inverses), grid.directions)
-        )
+        radii = mapped_radii(self._tables, parents, np.ascontiguousarray(inverses), grid.directions)
+        return np.asarray(grid.expanded(radii) * np.asarray(self.gain)[degrees((self.l_max + 1) ** 2)])
+
+    def roughened(self) -> "SampleMatched":
+        """The same with the gain by which its particles have the power of the measured ones."""
+        draws = replace(self, gain=None).draw(N_COMPARED, 0)
+        measured = self.coefficients[draws.parents, : draws.coefficients.shape[1]]
+        return replace(self, gain=roughness_gain(draws.coefficients, measured))
 
     def stored(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
         """The settings for JSON; the measured coefficients."""
         settings = {name: getattr(self.settings, name) for name in self.settings.__dataclass_fields__}
-        return {"settings": settings, "unit": self.unit}, {"coefficients": self.coefficients}
+        values = {"settings": settings, "unit": self.unit, "gain": np.asarray(self.gain).tolist()}
+        return values, {"coefficients": self.coefficients}
 
 
 def _mapping_degree(l_max: int) -> int:
@@ -233,12 +249,16 @@ class SampleMatchedModel:
         keep = np.flatnonzero(positive_rows(cut.coefficients))
         if len(keep) < len(usable):
             usable = usable.chosen(keep)
-        return SampleMatched(usable.coefficients, chosen, sample.unit)
+        fitted = SampleMatched(usable.coefficients, chosen, sample.unit)
+        return fitted if usable.l_max >= OVERSAMPLING * chosen.l_max else fitted.roughened()
 
     def restored(self, values: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> SampleMatched:
         """The model from what it stored."""
         return SampleMatched(
-            arrays["coefficients"], SampleMatchedSettings(**values["settings"]), str(values["unit"])
+            arrays["coefficients"],
+            SampleMatchedSettings(**values["settings"]),
+            str(values["unit"]),
+            values["gain"],
         )
 
 
