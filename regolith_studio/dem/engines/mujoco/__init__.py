@@ -8,8 +8,8 @@ from regolith_studio.dem.case import Prepared
 from regolith_studio.dem.engine import Ending, Found, Moment, Representation
 from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
 
-SECONDS_PER_PARTICLE_AND_STEP = {"polyhedra": 27e-6, "spheres": 6e-6}
-"""Measured on one core at 1,000 and 5,000 particles of 20 facets."""
+SECONDS_PER_PARTICLE_AND_STEP = {"polyhedra": 18e-6, "spheres": 6e-6}
+"""Measured on one core at 1,000 particles of 20 facets."""
 
 REPRESENTS = Representation(
     shape="the convex polyhedra themselves",

@@ -89,4 +89,5 @@ def _editor(metadata: Mapping[str, Any]) -> QDoubleSpinBox:
     editor.setSuffix(f" {metadata['unit']}" if metadata["unit"] else "")
     editor.setStepType(QDoubleSpinBox.StepType.AdaptiveDecimalStepType)
     editor.setKeyboardTracking(False)
+    editor.setMinimumWidth(80)
     return editor

@@ -247,6 +247,8 @@ def _choice(entries: Mapping[str, str], name: str, spoken: str) -> QComboBox:
     box = QComboBox()
     box.setObjectName(name)
     box.setAccessibleName(spoken)
+    box.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
+    box.setMinimumContentsLength(10)
     for text, data in entries.items():
         box.addItem(text, data)
     return box
