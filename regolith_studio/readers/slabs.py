@@ -20,7 +20,8 @@ SLAB = 64 * 1024**2
 """Bytes that the child hands over at a time, or one slice where that has more."""
 LARGEST_LAYER = 256 * 1024**2
 """Bytes that may be handed over at once where a file is packed in chunks of so many slices."""
-BYTES_OPENED_A_SECOND, BYTES_READ_A_SECOND, BYTES_SKIPPED_A_SECOND = 2e7, 1e7, 3e7
+BYTES_OPENED_A_SECOND, BYTES_READ_A_SECOND, BYTES_SKIPPED_A_SECOND = 5e6, 1e7, 3e7
+SECONDS_A_SLICE = 2e-3
 PATIENCE = 6.0
 """How much longer than its work a task may take on a busy machine."""
 LEAST_MEMORY = 512 * 1024**2
@@ -91,7 +92,7 @@ class OpenedFile:
                 reason = str(error) if isinstance(error, FileError) else f"cannot be read: {error.strerror}."
                 raise FileError(sentence_about(self.path, reason)) from None
         size = (z1 - z0) * self.header.slice_bytes
-        work = WORKING_SECONDS + size / BYTES_READ_A_SECOND
+        work = WORKING_SECONDS + size / BYTES_READ_A_SECOND + (z1 - z0) * SECONDS_A_SLICE
         if self.in_order:
             work += z0 * self.header.slice_bytes / BYTES_SKIPPED_A_SECOND
         request = {**self.request, "memory": LEAST_MEMORY + 6 * size}

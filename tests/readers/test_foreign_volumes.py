@@ -4,6 +4,7 @@ ITK is SimpleITK 2.5.7 and writes millimetres into NIfTI and no unit elsewhere; 
 nibabel 5.4.2 were told that the edges 0.5, 1 and 2 are micrometres.
 """
 
+import struct
 from pathlib import Path
 
 import numpy as np
@@ -73,3 +74,21 @@ def test_that_vtk_writes_what_is_read(name, tmp_path) -> None:
     # VTK's NIfTI writer turns the rows round unless it is given a matrix; MetaImage keeps them.
     found = volume.array.T
     assert np.array_equal(found, slices) or np.array_equal(found[:, ::-1, :], slices)
+
+
+def test_that_left_handed_axes_are_told(tmp_path) -> None:
+    """The same file with the first axis turned round: particles are their mirror images."""
+    data = bytearray((FOLDER / "nib1.nii").read_bytes())
+    assert describe_volume(FOLDER / "nib1.nii").notes == ()
+    struct.pack_into("<f", data, 280, -0.5)
+    (tmp_path / "turned.nii").write_bytes(data)
+    assert (
+        describe_volume(tmp_path / "turned.nii").notes[0].startswith("The axes of the volume are left-handed")
+    )
+    text = (FOLDER / "pynrrd-raw.nrrd").read_bytes().replace(b"(0.5,0,0)", b"(-.5,0,0)")
+    (tmp_path / "turned.nrrd").write_bytes(text)
+    assert (
+        describe_volume(tmp_path / "turned.nrrd")
+        .notes[0]
+        .startswith("The axes of the volume are left-handed")
+    )

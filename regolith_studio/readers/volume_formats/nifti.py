@@ -37,6 +37,7 @@ _REFUSED = {
     2304: "colours",
 }
 _UNITS = {1: "m", 2: "mm", 3: "um"}
+_MIRRORED = "The axes of the volume are left-handed: particles come in as their mirror images."
 _LABELS = 1002
 """Intent code of a volume of labels."""
 
@@ -54,7 +55,8 @@ class NiftiHeader:
     intercept: float
     units: int
     intent: int
-    magic: bytes
+    form: tuple[int, ...]
+    rows: tuple[float, ...]
 
 
 class ScaledVoxels:
@@ -139,7 +141,7 @@ def _first(head: bytes, order: str) -> NiftiHeader:
     offset, slope, intercept = at(108, "3f")
     return NiftiHeader(
         order, at(40, "8h"), at(70, "h")[0], at(76, "8f"), _offset(offset, 348), slope, intercept,
-        at(123, "B")[0], at(68, "h")[0], head[344:348],
+        at(123, "B")[0], at(68, "h")[0], at(252, "2h"), at(280, "12f"),
     )  # fmt: skip
 
 
@@ -154,7 +156,7 @@ def _second(head: bytes, order: str) -> NiftiHeader:
     slope, intercept = at(176, "2d")
     return NiftiHeader(
         order, at(16, "8q"), at(12, "h")[0], at(104, "8d"), _offset(at(168, "q")[0], 540), slope, intercept,
-        at(500, "i")[0], at(504, "i")[0], head[4:8],
+        at(500, "i")[0], at(504, "i")[0], at(344, "2i"), at(400, "12d"),
     )  # fmt: skip
 
 
@@ -186,7 +188,17 @@ def _voxel_header(header: NiftiHeader, stored: np.dtype[Any]) -> VoxelHeader:
     )
     unit = _UNITS.get(header.units & 7) if size else None
     kind: Kind | None = "labels" if header.intent == _LABELS and stored.kind in "ui" else None
-    return VoxelHeader(shape, voxel_type(stored), size, unit, kind)
+    notes = (_MIRRORED,) if _is_mirrored(header) else ()
+    return VoxelHeader(shape, voxel_type(stored), size, unit, kind, notes)
+
+
+def _is_mirrored(header: NiftiHeader) -> bool:
+    """Whether the matrix of the header, or else its quaternion, turns right hands into left ones."""
+    qform, sform = header.form
+    if sform > 0:
+        matrix = np.array(header.rows).reshape(3, 4)[:, :3]
+        return bool(np.isfinite(matrix).all() and np.linalg.det(matrix) < 0)
+    return qform > 0 and header.pixdim[0] < 0
 
 
 def _recognises(head: bytes) -> bool:
