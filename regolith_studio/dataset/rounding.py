@@ -1,6 +1,7 @@
 """Polyhedra with rounded edges: facets moved in by a radius, then swept by a ball of it."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -23,6 +24,11 @@ class RoundedPolyhedron:
 
     core: ConvexPolyhedron
     radius: float
+
+    @cached_property
+    def edges(self) -> list[tuple[int, int]]:
+        """Of the core, each once, as vertex indices."""
+        return edges_of(self.core)
 
     @property
     def volume(self) -> float:

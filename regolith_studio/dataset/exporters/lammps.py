@@ -6,7 +6,7 @@ from regolith_studio.dataset.bodies import Bodies, lay_out
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export_tables import sizes_csv
 from regolith_studio.dataset.exporting import NOTES, Exporter, ExportOptions
-from regolith_studio.dataset.rounding import RoundedPolyhedron, edges_of, rounded
+from regolith_studio.dataset.rounding import RoundedPolyhedron, rounded
 from regolith_studio.errors import DatasetError
 
 LINES, WIDTH = 32, 250
@@ -58,7 +58,7 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
 def _room(shape: RoundedPolyhedron) -> int:
     """Nmax of the atom style: LAMMPS reserves nine numbers for each vertex and fails where it takes more."""
     core = shape.core
-    numbers = 3 * core.n_vertices + 2 * len(edges_of(core)) + 4 * core.n_triangles
+    numbers = 3 * core.n_vertices + 2 * len(shape.edges) + 4 * core.n_triangles
     return max(core.n_vertices, -(-numbers // 9))
 
 
@@ -91,7 +91,7 @@ def _body(
     turn, scale = bodies.rotation_of(index), float(bodies.scale[index])
     tensor = turn @ (inertia * mass * scale**2) @ turn.T
     corners = shape.core.vertices @ turn.T * scale
-    edges, faces = edges_of(shape.core), shape.core.mesh.faces.tolist()
+    edges, faces = shape.edges, shape.core.mesh.faces.tolist()
     size = 6 + 3 * len(corners) + 2 * len(edges) + 4 * len(faces) + 1
     values = [*tensor[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]], *corners.ravel()]
     words = [f"{value:.10g}" for value in values]

@@ -5,7 +5,7 @@ import numpy as np
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export_tables import shape_names, sizes_csv
 from regolith_studio.dataset.exporting import NOTES, Exporter, ExportOptions
-from regolith_studio.dataset.rounding import edges_of, rounded
+from regolith_studio.dataset.rounding import rounded
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 
 _NOTE = """shapes.shp holds all shapes, of volume 1 before rounding; a particle's homothety is its
@@ -37,10 +37,9 @@ def _block(key: str, shape: ConvexPolyhedron, rounding: float) -> tuple[str, flo
     body = rounded(shape, rounding)
     core, radius = body.core, body.radius
     low, high = core.vertices.min(axis=0), core.vertices.max(axis=0)
-    edges = edges_of(core)
     lines = ["<", f"name {key}", f"radius {radius!r}", "preCompDone y"]
     lines += [f"nv {core.n_vertices}", *(_row(corner) for corner in core.vertices)]
-    lines += [f"ne {len(edges)}", *(f"{first} {second}" for first, second in edges)]
+    lines += [f"ne {len(body.edges)}", *(f"{first} {second}" for first, second in body.edges)]
     lines += [f"nf {core.n_faces}"]
     lines += [" ".join(map(str, (len(facet), *facet))) for facet in core.facets]
     lines += [
