@@ -61,6 +61,7 @@ def run_document(
         ],
         "particles": {
             "mass": prepared.mass,
+            "mean_faces": prepared.mean_faces,
             "surface_energy": prepared.surface_energy,
             **_plain(asdict(consequences(prepared))),
         },

@@ -199,3 +199,18 @@ def test_that_runs_are_compared(page, dataset, wait):
     page.set_runs_folder(run.folder.parent)
     (curve,) = page.runs.plot.curves
     assert (curve.x, curve.y) == ((0.2, 0.8), (18.0, 26.0))
+
+
+def test_that_each_engine_has_its_own_numerics(page):
+    page.setup.numerics.setValue({"time_step": 0.01})
+    page.setup.engine.setCurrentIndex(page.setup.engine.findData("lammps"))
+    assert page.setup.order().engine == "lammps"
+    page.setup.numerics.setValue({"spheres": 3})
+    assert page.setup.order().settings.spheres == 3
+    kept = page.state()
+    page.setup.engine.setCurrentIndex(page.setup.engine.findData("mujoco"))
+    page.setup.numerics.setValue({})
+    page.restore(kept)
+    assert page.setup.order().settings.spheres == 3
+    page.setup.engine.setCurrentIndex(page.setup.engine.findData("mujoco"))
+    assert page.setup.order().settings.time_step == 0.01

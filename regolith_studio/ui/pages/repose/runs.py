@@ -22,6 +22,7 @@ from regolith_studio.ui.widgets.curve_plot import Curve, CurvePlot
 
 AGAINST: Mapping[str, tuple[str, ...]] = {
     "Static friction": ("case", "contact", "static_friction"),
+    "Facets a particle": ("particles", "mean_faces"),
     "Rolling resistance": ("case", "contact", "rolling_friction"),
     "Gravity [m/s²]": ("case", "test", "gravity"),
     "Wall friction": ("case", "test", "wall_friction"),

@@ -16,7 +16,7 @@ from PySide6.QtWidgets import (
 )
 
 from regolith_studio.dem.case import ReposeCase
-from regolith_studio.dem.engines import DEFAULT_ENGINE, ENGINES, engine_named
+from regolith_studio.dem.engines import ENGINES, engine_named
 from regolith_studio.dem.evaluation.settings import EvaluationSettings
 from regolith_studio.dem.parameters import GRAVITIES, ContactParameters, LiftingCylinderTest
 from regolith_studio.errors import InputError
@@ -77,7 +77,7 @@ class SetupPanel(QWidget):
         self.test = ParameterForm(LiftingCylinderTest, "test")
         self.contact = ParameterForm(ContactParameters, "contact")
         self.evaluation = SettingsForm(EvaluationSettings)
-        self.numerics = SettingsForm(engine_named(DEFAULT_ENGINE).Settings)
+        self._numerics = {key: SettingsForm(engine.Settings) for key, engine in ENGINES.items()}
         self.told = remark()
         self.told.setObjectName("repose_consequences")
         self.problem = remark(role="warning")
@@ -86,6 +86,11 @@ class SetupPanel(QWidget):
         self.run.setDefault(True)
         self._place()
         self._connect()
+
+    @property
+    def numerics(self) -> SettingsForm:
+        """The settings of the chosen engine."""
+        return self._numerics[self.engine.currentData()]
 
     @property
     def dataset(self) -> Path | None:
@@ -115,8 +120,8 @@ class SetupPanel(QWidget):
             cohesion=self.cohesion.currentData(),
             seed=self.seed.value(),
         )
-        settings: dict[str, Any] = self.numerics.value() if engine.key == DEFAULT_ENGINE else {}
-        return ReposeOrder(case, engine.key, engine.Settings(**settings), self.evaluation_settings())
+        settings = engine.Settings(**self.numerics.value())
+        return ReposeOrder(case, engine.key, settings, self.evaluation_settings())
 
     def evaluation_settings(self) -> EvaluationSettings:
         """How piles are measured.
@@ -151,7 +156,7 @@ class SetupPanel(QWidget):
             "test": self.test.changes(),
             "contact": self.contact.changes(),
             "evaluation": self.evaluation.value(),
-            "numerics": self.numerics.value(),
+            "numerics": {key: form.value() for key, form in self._numerics.items()},
             "dataset": str(self._dataset) if self._dataset else None,
         }
 
@@ -163,7 +168,8 @@ class SetupPanel(QWidget):
             self.particles.setValue(int(state.get("particles", self.particles.value())))
             self.seed.setValue(int(state.get("seed", 0)))
             self.evaluation.setValue(state.get("evaluation", {}))
-            self.numerics.setValue(state.get("numerics", {}))
+            for key, form in self._numerics.items():
+                form.setValue(state.get("numerics", {}).get(key, {}))
         except (InputError, TypeError, ValueError, AttributeError):
             return
         for box, name in ((self.shapes, "shapes"), (self.cohesion, "cohesion"), (self.engine, "engine")):
@@ -200,7 +206,12 @@ class SetupPanel(QWidget):
         column.addWidget(Collapsible("Test (Table 2)", self.test))
         column.addWidget(Collapsible("Contact (Table 1)", self.contact))
         column.addWidget(Collapsible("Evaluation (section 3.3)", self.evaluation))
-        column.addWidget(Collapsible("Numerics of MuJoCo", self.numerics))
+        forms = QWidget()
+        inside = QVBoxLayout(forms)
+        inside.setContentsMargins(0, 0, 0, 0)
+        for numerics in self._numerics.values():
+            inside.addWidget(numerics)
+        column.addWidget(Collapsible("Numerics of the engine", forms))
         column.addWidget(remark("* not given in the paper: a choice, yours to change."))
 
     def _connect(self) -> None:
@@ -215,12 +226,18 @@ class SetupPanel(QWidget):
             self.engine.currentIndexChanged,
             self.test.valueChanged,
             self.contact.valueChanged,
-            self.numerics.valueChanged,
+            *(each.valueChanged for each in self._numerics.values()),
         ):
             signal.connect(lambda *_: self.valueChanged.emit())
         self.evaluation.valueChanged.connect(lambda *_: self.evaluationChanged.emit())
+        self.engine.currentIndexChanged.connect(lambda *_: self._show_numerics())
+        self._show_numerics()
         self.gravity.currentIndexChanged.connect(self._take_gravity)
         self.test.valueChanged.connect(self._show_gravity)
+
+    def _show_numerics(self) -> None:
+        for key, form in self._numerics.items():
+            form.setVisible(key == self.engine.currentData())
 
     def _take_gravity(self) -> None:
         if text := self.gravity.currentData():
