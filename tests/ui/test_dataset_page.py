@@ -18,8 +18,8 @@ from regolith_studio.session.session import Session
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.dataset import PAGE
-from regolith_studio.ui.widgets.thumbnails import picture_of
 from regolith_studio.ui.theme import DARK, LIGHT
+from regolith_studio.ui.widgets.thumbnails import picture_of
 from regolith_studio.ui.widgets.toast import Toast
 from regolith_studio.ui.wiring import Wiring
 

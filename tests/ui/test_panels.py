@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 
+import pyqtgraph as pg
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
@@ -20,6 +21,7 @@ from regolith_studio.ui.panels.fit import FitPanel
 from regolith_studio.ui.panels.loss import LossPanel
 from regolith_studio.ui.panels.particle_list import ParticleListPanel, health_icon_name
 from regolith_studio.ui.panels.tasks import IDLE, TasksPanel
+from regolith_studio.ui.widgets.bar_plot import BarPlot, BarSeries
 from regolith_studio.ui.widgets.settings_form import SettingsForm
 
 WEIGHTS = LossWeights.of(volume=0.5, sphericity=1.25, jaccard_distance=7.0)
@@ -181,3 +183,12 @@ def test_that_a_form_holds_only_what_differs_from_the_defaults(shown):
     assert form.value() == wanted
     form.setValue({})
     assert form.value() == {}
+
+
+def test_that_a_line_is_drawn_across_a_bar_where_it_cannot_be_lower(shown):
+    plot = shown(BarPlot("Descriptor", "Relative error [%]", "Nothing yet."))
+    plot.set_bars(["V", "CH"], [BarSeries("Polyhedron", "#e69f00", (0.0, 12.0), bounds=(0.0, 10.0))])
+    lines = [item.getData() for item in plot._items if isinstance(item, pg.PlotDataItem)]
+    assert len(lines) == 1
+    assert list(lines[0][1]) == [10.0, 10.0]
+    assert lines[0][0].mean() == pytest.approx(1.0)

@@ -16,7 +16,7 @@ KEYS = (*LOSS_KEYS, JACCARD)
 
 
 class ErrorBarsPanel(QWidget):
-    """Grouped bars; those of a coarsening that is being replaced are faint."""
+    """Grouped bars; faint while a coarsening is replaced, with a line at what no polyhedron can undercut."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -27,20 +27,28 @@ class ErrorBarsPanel(QWidget):
         layout.addWidget(self.plot)
         self._shown: tuple[Results, Choices] | None = None
         self._polyhedron: dict[str, float] = {}
+        self._bounds: dict[str, float] = {}
         self._polyhedron_of = ""
 
     def show_results(self, results: Results, choices: Choices) -> None:
         """Draw the errors of these results."""
         self._shown = (results, choices)
         if choices.selected != self._polyhedron_of:
-            self._polyhedron, self._polyhedron_of = {}, choices.selected
+            self._polyhedron, self._bounds, self._polyhedron_of = {}, {}, choices.selected
         done = results.coarsened
         if done is not None:
             self._polyhedron = {**done.errors, JACCARD: done.jaccard_distance}
+            self._bounds = dict(done.bounds)
         theme, target = self.plot.theme, "fit" if choices.target == "fit" else "particle"
         series = [
             BarSeries("Fit vs. particle", theme.fit, _percent(results.fit_errors)),
-            BarSeries(f"Polyhedron vs. {target}", theme.polyhedron, _percent(self._polyhedron), done is None),
+            BarSeries(
+                f"Polyhedron vs. {target}",
+                theme.polyhedron,
+                _percent(self._polyhedron),
+                done is None,
+                _percent(self._bounds) if self._bounds else (),
+            ),
         ]
         self.plot.set_bars([*(plain_symbol(CATALOGUE[key].symbol) for key in LOSS_KEYS), "Jaccard"], series)
         self.plot.set_remark("" if done is None else f"loss (Eq. 9): {done.loss:.4g}")

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import pyqtgraph as pg
@@ -26,12 +27,15 @@ class BarSeries:
         One for each category; NaN for none.
     faint
         Drawn half transparent: of a result that is about to be replaced.
+    bounds
+        A line across each bar: what cannot be undercut. Empty for none.
     """
 
     label: str
     colour: str
     values: tuple[float, ...]
     faint: bool = False
+    bounds: tuple[float, ...] = ()
 
 
 class BarPlot(Plot):
@@ -76,6 +80,8 @@ class BarPlot(Plot):
             )
             self.canvas.addItem(bars)
             self._items.append(bars)
+            if series.bounds:
+                self._draw_bounds(places, np.asarray(series.bounds), width / 2)
         self.canvas.getAxis("bottom").setTicks([list(enumerate(self._categories))])
         tops = [value for each in self._series for value in each.values if np.isfinite(value)]
         top = max(tops, default=1.0) * 1.12 or 1.0
@@ -87,6 +93,15 @@ class BarPlot(Plot):
         )
         self.set_legend([(each.colour, each.label) for each in self._series])
 
+    def _draw_bounds(self, places: np.ndarray[Any, Any], bounds: np.ndarray[Any, Any], reach: float) -> None:
+        seen = np.isfinite(bounds) & (bounds > 0.0)
+        x = np.column_stack([places[seen] - reach, places[seen] + reach]).ravel()
+        line = pg.PlotDataItem(
+            x, np.repeat(bounds[seen], 2), connect="pairs", pen=self.pen(self.theme.text, 2.0)
+        )
+        self.canvas.addItem(line, ignoreBounds=True)
+        self._items.append(line)
+
     def _point(self, where: QPointF) -> None:
         here = self.canvas.plotItem.vb.mapSceneToView(where)
         category = round(here.x())
@@ -94,6 +109,11 @@ class BarPlot(Plot):
             self.canvas.setToolTip("")
             return
         lines = [f"{each.label}: {each.values[category]:.3g} {self._unit}" for each in self._series]
+        lines += [
+            f"not below {each.bounds[category]:.3g} {self._unit} (line)"
+            for each in self._series
+            if each.bounds and each.bounds[category] > 0.0
+        ]
         text = "\n".join([self._categories[category], *lines])
         if self.canvas.toolTip() != text:
             QToolTip.hideText()

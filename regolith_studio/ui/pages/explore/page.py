@@ -72,10 +72,14 @@ class ExplorePage(PageWidget):
         wiring.refresh("particles", lambda: self.particles.set_entries(session.particles))
         wiring.refresh("particles choices", lambda: self.triptych.show_particle(session.selected))
         wiring.refresh("fit", self._show_star_point)
-        wiring.refresh("fit", lambda: self.fit.set_findings(session.results.fit), slow=True)
+        wiring.refresh("fit choices", self._show_findings, slow=True)
         wiring.refresh("surface", self._show_fit)
         wiring.refresh("coarsening", self._show_coarsening)
         self.plots.wire(session, wiring)
+
+    def _show_findings(self) -> None:
+        fit = self._session.results.fit
+        self.fit.set_findings(fit.truncated(self._session.choices.l_max) if fit else None)
 
     def _show_star_point(self) -> None:
         fit = self._session.results.fit
