@@ -12,7 +12,6 @@ from regolith_studio.jobs.extracting import VolumeInput
 from regolith_studio.jobs.grain_recipe import GrainRecipe, read_grain_recipe
 from regolith_studio.jobs.runners.thread import ThreadRunner
 from regolith_studio.session.session import Session
-from regolith_studio.ui.app import open_window
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.scan import PAGE
@@ -26,19 +25,12 @@ SECONDS = 120.0
 
 
 @pytest.fixture
-def window(shown, preferences, wait):
-    made = open_window(views="image", preferences=preferences)
-    made.resize(1300, 800)
-    shown(made)
-    wait(lambda: made.session.particles and not made.session.tasks, SECONDS)
-    return made
-
-
-@pytest.fixture
-def page(shown, preferences, wait):
-    """The page alone, with a session of its own."""
+def page(shown, preferences, wait, monkeypatch):
+    """The page alone, with a session of its own that keeps what it is handed and does no more with it."""
     poster = Poster()
     session = Session(ThreadRunner(poster.post))
+    adopted = []
+    monkeypatch.setattr(session, "adopt", adopted.extend)
     frame = shown(QWidget())
     toast = Toast(frame)
     wiring = Wiring(session, toast.problem, frame)
@@ -49,7 +41,7 @@ def page(shown, preferences, wait):
     )  # fmt: skip
     session.topics.failed.connect(lambda failure: toast.problem(failure.sentence))
     made = PAGE.build(context)
-    made.context, made.visited = context, visited
+    made.context, made.visited, made.adopted = context, visited, adopted
     QVBoxLayout(frame).addWidget(made)
     frame.resize(1200, 750)
     made.set_theme(current_theme())
@@ -82,8 +74,7 @@ def grains_seen(view):
     return np.mean([colour.hsvSaturation() > 60 for colour in colours])
 
 
-def test_that_a_new_user_gets_from_the_sample_scan_to_particles(window, wait):
-    page = window.go("scan")
+def test_that_a_new_user_gets_from_the_sample_scan_to_particles(page, wait):
     assert not page.steps.search.isEnabled()
     assert not page.steps.convert.isEnabled()
     press(page.steps.sample)
@@ -98,14 +89,13 @@ def test_that_a_new_user_gets_from_the_sample_scan_to_particles(window, wait):
     assert page.grains.n_grains == 60
     assert "60 grains" in page.steps.found.text()
     press(page.steps.convert)
-    wait(lambda: len(window.session.particles) > 40, SECONDS)
-    assert window.session.particles[0].particle.group == "synthetic-grey"
     wait(lambda: page.steps.show_them.isVisible(), SECONDS)
+    assert len(page.adopted) == 46
+    assert {particle.group for particle in page.adopted} == {"synthetic-grey"}
+    weights = page.context.session.shelf.get("grain_weights")
+    assert min(weights[particle.name] for particle in page.adopted) > 1.0
     press(page.steps.show_them)
-    assert window.go("sample").isVisible()
-    for task in window.session.tasks:
-        window.session.cancel(task.id)
-    wait(lambda: not window.session.tasks, SECONDS)
+    assert page.visited == ["sample"]
 
 
 def test_that_a_dragged_threshold_is_a_manual_one_and_changes_the_preview(page, part, wait):
@@ -138,6 +128,10 @@ def test_that_h_and_the_frame_change_the_preview_and_settings_undo_what_was_foun
     assert page.grains.n_grains == expected.n_grains
     assert np.array_equal(page.grains.labels.array, expected.labels.array)
     assert page.steps.convert.isEnabled()
+    page.controls.least.field.setValue(2000)
+    assert page.grains is not None
+    few = np.count_nonzero(expected.sizes < 2000)
+    assert f"{few} of them have fewer than 2000 voxels" in page.steps.found.text()
     page.controls.split.click()
     assert page.grains is None
     assert not page.steps.convert.isEnabled()
@@ -169,9 +163,7 @@ def test_that_labels_go_straight_to_particles(page, tmp_path, wait):
     assert not page.controls.denoise.isEnabled()
     press(page.steps.convert)
     wait(lambda: page.steps.show_them.isVisible(), SECONDS)
-    assert page.context.session.particles[0].particle.group == "labels"
-    for task in page.context.session.tasks:
-        page.context.session.cancel(task.id)
+    assert {particle.group for particle in page.adopted} == {"labels"}
 
 
 def test_that_a_file_that_is_no_volume_costs_one_sentence(page, tmp_path, wait):

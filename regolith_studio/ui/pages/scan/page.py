@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QFileDialog, QHBoxLayout
 
 from regolith_studio.errors import RegolithError
 from regolith_studio.imaging.extraction import Extraction
-from regolith_studio.imaging.segmentation.segment import Segmentation
+from regolith_studio.imaging.segmentation.segment import Segmentation, SegmentationSettings
 from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.extracting import VolumeInput, extract_labels, segment_volume
 from regolith_studio.jobs.grain_recipe import GrainRecipe, read_grain_recipe
@@ -45,6 +45,7 @@ class ScanPage(PageWidget):
         self.scan: Scan | None = None
         self.grains: Segmentation | None = None
         self.preview: Segmentation | None = None
+        self._found_with: SegmentationSettings | None = None
         self.overview, self.controls, self.steps = Overview(), SegmentationControls(), StepsPanel()
         self._timer = QTimer(self, interval=PREVIEW_DELAY, singleShot=True)
         self._arrange()
@@ -169,8 +170,9 @@ class ScanPage(PageWidget):
             self._context.toast.note("Open a volume of grey values first.")
             return
         self._context.stop("preview")
-        job = Job(segment_volume, (self.scan.volume, self.controls.value().segmentation))
-        self._context.start("Finding grains", job, self._found, lane="grains")
+        settings = self.controls.value().segmentation
+        job = Job(segment_volume, (self.scan.volume, settings))
+        self._context.start("Finding grains", job, lambda found: self._found(found, settings), lane="grains")
 
     def make_particles(self) -> None:
         """Make particles of the grains and hand them to all other pages."""
@@ -185,8 +187,8 @@ class ScanPage(PageWidget):
         )
         self._context.start("Making particles", job, self._adopt, lane="grains")
 
-    def _found(self, grains: Segmentation) -> None:
-        self.grains, self.preview = grains, None
+    def _found(self, grains: Segmentation, settings: SegmentationSettings) -> None:
+        self.grains, self.preview, self._found_with = grains, None, settings
         self.overview.show_whole(grains)
         self.controls.show_automatic_level(grains.level)
         self._show_state()
@@ -204,15 +206,16 @@ class ScanPage(PageWidget):
         self._context.toast.note(extraction.summary)
         self.steps.set_particles(extraction.summary)
 
-    def _changed(self, _recipe: object) -> None:
-        if self.scan is None:
-            return
-        if self.grains is not None:
-            self.grains = None
+    def _changed(self, recipe: GrainRecipe) -> None:
+        """Forget grains that were found with other settings, and begin a preview with these."""
+        if self.grains is not None and recipe.segmentation == self._found_with:
             self._show_state()
+            return
+        self.grains = None
         self._context.stop("grains")
         self._show_level()
         self._begin_preview()
+        self._show_state()
 
     def _level_dragged(self, level: float) -> None:
         if self.scan is not None:
@@ -256,7 +259,8 @@ class ScanPage(PageWidget):
     # --- the rest ------------------------------------------------------------------------------
 
     def _show_state(self) -> None:
-        self.steps.show_state(self.scan, self.preview, self.grains)
+        least = self.controls.value().extraction.min_voxels
+        self.steps.show_state(self.scan, self.preview, self.grains, least)
 
     def _stop_work(self) -> None:
         self._timer.stop()

@@ -46,9 +46,9 @@ class StepsPanel(QWidget):
         self.show_them.clicked.connect(self.showRequested)
 
     def show_state(
-        self, scan: Scan | None, preview: Segmentation | None, grains: Segmentation | None
+        self, scan: Scan | None, preview: Segmentation | None, grains: Segmentation | None, least: int
     ) -> None:
-        """Say what is open and what has been found."""
+        """Say what is open and what has been found, and how much of it has fewer than `least` voxels."""
         is_grey = scan is not None and scan.volume.kind == "grey"
         self.search.setEnabled(is_grey)
         self.convert.setEnabled(grains is not None or (scan is not None and not is_grey))
@@ -60,11 +60,11 @@ class StepsPanel(QWidget):
         elif not is_grey:
             self.found.setText("The volume holds labels: its grains have been found already.")
         elif grains is not None:
-            self.found.setText(grains.summary)
+            self.found.setText(f"{grains.summary} {_too_small(grains, least)}".strip())
         elif preview is not None:
             self.found.setText(
                 f"In the frame: {preview.n_grains} grains from {preview.n_bodies} connected bodies. "
-                "Click into a slice to move the frame."
+                f"{_too_small(preview, least)} Click into a slice to move the frame.".replace("  ", " ")
             )
         else:
             self.found.setText("No grain in the frame so far.")
@@ -73,6 +73,11 @@ class StepsPanel(QWidget):
         """Say what came out."""
         self.made.setText(summary)
         self.show_them.show()
+
+
+def _too_small(found: Segmentation, least: int) -> str:
+    count = int((found.sizes < least).sum())
+    return f"{count} of them have fewer than {least} voxels and will be left out." if count else ""
 
 
 def _about(scan: Scan | None) -> str:
