@@ -1,11 +1,13 @@
 """Which particles stand for a sample: descriptors of all, then representatives for one number or for many."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from regolith_studio.dataset.dataset import Representation
 from regolith_studio.dataset.quality import QualityCurve, curve_counts, quality_steps
 from regolith_studio.dataset.representatives import (
+    NEEDED,
     Representatives,
     choose_representatives,
     representation_error,
@@ -131,16 +133,25 @@ def measure_population(particles: Sequence[Particle], workers: int | Crew = 1) -
         If no particle has descriptors.
     """
     examined = yield from examine_sample(particles, workers=workers)
-    found = [(at, one.descriptors) for at, one in enumerate(examined) if one.descriptors is not None]
-    if not found:
+    kept: list[tuple[int, Descriptors]] = []
+    omitted = []
+    for at, (particle, one) in enumerate(zip(particles, examined, strict=True)):
+        problem = one.problem if one.descriptors is None else _unusable(one.descriptors)
+        if one.descriptors is None or problem:
+            omitted.append((particle.name, problem))
+        else:
+            kept.append((at, one.descriptors))
+    if not kept:
         raise InputError("No particle can be described, so none can stand for the others.")
-    return Population(
-        tuple(at for at, _ in found),
-        tuple(descriptors for _, descriptors in found),
-        tuple(
-            (particles[at].name, one.problem) for at, one in enumerate(examined) if one.descriptors is None
-        ),
-    )
+    return Population(tuple(at for at, _ in kept), tuple(found for _, found in kept), tuple(omitted))
+
+
+def _unusable(descriptors: Descriptors) -> str:
+    """Why a choice cannot look at these descriptors, or nothing."""
+    for key in NEEDED:
+        if not (math.isfinite(descriptors[key]) and descriptors[key] > 0.0):
+            return f"Its {key} is {descriptors[key]:g}, which is no measure."
+    return ""
 
 
 def measure_quality(population: Population, order: RepresentativesOrder) -> Steps:

@@ -1,0 +1,101 @@
+"""Representatives of samples that hold particles which cannot be described or coarsened."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from regolith_studio.coarsening.weights import LossWeights
+from regolith_studio.dataset.folder import read_dataset
+from regolith_studio.errors import DatasetError, InputError
+from regolith_studio.geometry.directions import icosphere
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.jobs import building
+from regolith_studio.jobs.building import DatasetOptions, build_dataset_folder
+from regolith_studio.jobs.coarsening import CoarsenedParticle, CoarseningOrder
+from regolith_studio.jobs.events import Partial, Steps
+from regolith_studio.jobs.representing import RepresentativesOrder, choose, measure_population, survey
+
+ORDER = CoarseningOrder(LossWeights.from_preset("all"), method="quadric", target="particle")
+FLAT = Mesh([[0, 0, 0], [9, 0, 0], [0, 9, 0], [9, 9, 0]], [[0, 1, 2], [0, 2, 1], [1, 3, 2], [1, 2, 3]])
+
+
+def played(steps: Steps) -> tuple[list[Any], Any]:
+    heard = []
+    while True:
+        try:
+            heard.append(next(steps))
+        except StopIteration as end:
+            return heard, end.value
+
+
+def sample(count: int = 8) -> list[Particle]:
+    """Rounder and longer grains in turn, a flat one in third place."""
+    made = []
+    for index in range(count):
+        stretch = np.diag([1.0, 1.2, 1.3 if index % 2 else 2.6])
+        made.append(Particle(f"grain-{index}", icosphere(2).moved(rotation=stretch, scale=20.0 + index)))
+    return [*made[:2], Particle("flat", FLAT), *made[2:]]
+
+
+def test_that_a_particle_without_descriptors_is_left_out_and_named() -> None:
+    _, population = played(measure_population(sample()))
+    assert population.kept == (0, 1, 3, 4, 5, 6, 7, 8)
+    ((name, reason),) = population.omitted
+    assert name == "flat"
+    assert reason
+    chosen = choose(population, RepresentativesOrder(2))
+    assert 2 not in chosen.places
+
+
+def test_that_a_survey_tells_its_points_and_holds_every_choice() -> None:
+    heard, found = played(survey(sample(), RepresentativesOrder(3)))
+    points = [each.value for each in heard if isinstance(each, Partial)]
+    assert tuple(points) == found.curve.points
+    assert found.chosen(3).representatives.chosen.shape == (3,)
+    assert found.chosen(7) is None
+    again, _ = played(survey(sample(), RepresentativesOrder(3), found.population))
+    assert len(again) < len(heard)
+
+
+def test_that_nothing_to_describe_is_told() -> None:
+    with pytest.raises(InputError, match="No particle can be described"):
+        played(measure_population([Particle("flat", FLAT)]))
+    with pytest.raises(InputError, match="at least two"):
+        played(survey(sample(1)[:1], RepresentativesOrder(1)))
+
+
+def failing(names: set[str]):
+    """A coarsening that fails for particles of these names."""
+    real = building.coarsen_sample
+
+    def coarsen(particles, order, workers=1, indices=None) -> Steps:
+        outcomes = yield from real(particles, order, workers, indices)
+        return tuple(
+            CoarsenedParticle(one.name, one.index, None, "It is cursed.") if one.name in names else one
+            for one in outcomes
+        )
+
+    return coarsen
+
+
+def test_that_a_representative_that_cannot_be_coarsened_makes_way(tmp_path: Path, monkeypatch) -> None:
+    options = DatasetOptions(representatives=RepresentativesOrder(2))
+    _, first = played(build_dataset_folder(sample(), ORDER, tmp_path / "a", options))
+    cursed = first.dataset.representatives[0].name
+    monkeypatch.setattr(building, "coarsen_sample", failing({cursed}))
+    _, built = played(build_dataset_folder(sample(), ORDER, tmp_path / "b", options))
+    names = [one.name for one in built.dataset.representatives]
+    assert len(names) == 2
+    assert cursed not in names
+    assert sum(one.n_members for one in read_dataset(tmp_path / "b").representatives) == 7
+
+
+def test_that_too_few_that_can_be_coarsened_are_told_with_the_reason(tmp_path: Path, monkeypatch) -> None:
+    monkeypatch.setattr(building, "coarsen_sample", failing({f"grain-{index}" for index in range(8)}))
+    options = DatasetOptions(representatives=RepresentativesOrder(6))
+    with pytest.raises(DatasetError, match="It is cursed"):
+        played(build_dataset_folder(sample(), ORDER, tmp_path / "x", options))
+    assert not (tmp_path / "x").exists()
