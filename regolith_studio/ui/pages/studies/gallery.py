@@ -15,7 +15,6 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.session.solids import Solid, row_labels
 from regolith_studio.ui.theme import Theme, current_theme
-from regolith_studio.ui.widgets.labels import remark
 from regolith_studio.ui.widgets.study_frame import StudyFrame
 from regolith_studio.ui.widgets.thumbnails import picture_of
 
@@ -41,8 +40,8 @@ class SolidGallery(QWidget):
         self.table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
         self.table.verticalHeader().setDefaultSectionSize(SIZE + 24)
         self.table.verticalHeader().setMaximumWidth(190)
-        self.hint = remark("The polyhedra of Fig. 7 for the particle on screen and those after it.")
         self.frame = StudyFrame("solids", self.table)
+        self.frame.set_remark("for the particle on screen and those after it, one row a loss function")
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(self.frame, 1)
