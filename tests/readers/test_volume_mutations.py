@@ -190,8 +190,10 @@ def test_that_forty_thousand_mutations_give_voxels_or_a_sentence(name, folder) -
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", LIBRARIES)
-def test_that_three_thousand_mutations_of_library_formats_give_voxels_or_a_sentence(name, folder) -> None:
-    assert run_guarded(name, 3_000, 24, folder / name) <= 30
+def test_that_forty_thousand_mutations_of_a_library_format_give_voxels_or_a_sentence(name, folder) -> None:
+    """Five kinds of TIFF and two of HDF5 share 40,000 each; few files may end the child that reads them."""
+    count = 40_000 // sum(Path(other).suffix == Path(name).suffix for other in LIBRARIES)
+    assert run_guarded(name, count, 24, folder / name) <= count // 500
 
 
 CRASHES = sorted(Path(__file__).with_name("crashes_volumes").iterdir())
