@@ -1,4 +1,4 @@
-"""Starts the window."""
+"""Makes the window with its session, and says what went wrong in it."""
 
 import sys
 import traceback
@@ -7,66 +7,26 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-from PySide6.QtCore import QCoreApplication, Qt, QTimer
-from PySide6.QtGui import QIcon, QSurfaceFormat
+from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QApplication
 
 from regolith_studio.errors import RegolithError
 from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.runners.thread import ThreadRunner
 from regolith_studio.jobs.warming import warm_up
-from regolith_studio.resources import resource
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.session.session import Session
-from regolith_studio.ui.environment import check_display
 from regolith_studio.ui.main_window import MainWindow
 from regolith_studio.ui.posting import Poster
 from regolith_studio.ui.tour import TOUR_SEEN
-from regolith_studio.ui.views.factory import best_kind, surface_format
+from regolith_studio.ui.views.factory import best_kind
 
 
-def run(paths: Sequence[str | Path] = (), unit: str | None = None) -> int:
-    """Open the window, with these files or with the shipped sample; returns when it is closed.
-
-    Parameters
-    ----------
-    paths
-        Mesh files and folders.
-    unit
-        Their length unit; the window asks if it is not given.
-
-    Raises
-    ------
-    EnvironmentProblem
-        If there is no display.
-    """
-    check_display()
-    app = make_application(sys.argv[:1])
-    window = open_window(paths, unit)
-    sys.excepthook = telling_hook(window.toast.problem)
-    window.show()
-    QTimer.singleShot(0, window, lambda: _welcome(window))
-    code = app.exec()
-    sys.excepthook = sys.__excepthook__
-    return code
-
-
-def _welcome(window: MainWindow) -> None:
+def welcome(window: MainWindow) -> None:
     """Bring back what a crash has left; show who is new around."""
     window.projects.offer_recovery()
     if not window.preferences.window.get(TOUR_SEEN):
         window.show_round()
-
-
-def make_application(arguments: Sequence[str]) -> QApplication:
-    """The one application object, with contexts shared between windows and the format that VTK needs."""
-    QCoreApplication.setAttribute(Qt.ApplicationAttribute.AA_ShareOpenGLContexts)
-    QSurfaceFormat.setDefaultFormat(surface_format())
-    app = QApplication(list(arguments))
-    app.setApplicationName("Regolith Studio")
-    app.setDesktopFileName("regolith-studio")
-    app.setWindowIcon(QIcon(str(resource("icons", "app.svg"))))
-    return app
 
 
 def open_window(

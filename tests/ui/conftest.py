@@ -20,7 +20,7 @@ from PySide6.QtWidgets import QApplication, QWidget
 from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
 
 from regolith_studio.session.preferences import Preferences
-from regolith_studio.ui.app import make_application
+from regolith_studio.ui.application import make_application
 
 
 @pytest.fixture(scope="session")

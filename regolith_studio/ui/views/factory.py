@@ -6,7 +6,6 @@ from PySide6.QtGui import QGuiApplication, QOffscreenSurface, QOpenGLContext, QS
 from PySide6.QtWidgets import QWidget
 
 from regolith_studio.scene.palette import LIGHT, Surroundings
-from regolith_studio.ui.views.image_view import ImageView
 from regolith_studio.ui.views.protocol import SceneView
 
 VARIABLE = "REGOLITH_STUDIO_VIEWS"
@@ -17,6 +16,8 @@ _WITHOUT_OPENGL = ("offscreen", "minimal", "vnc", "linuxfb")
 def make_view(kind: str, surroundings: Surroundings = LIGHT, parent: QWidget | None = None) -> SceneView:
     """A view of the kind ``live`` or ``image``."""
     if kind == "image":
+        from regolith_studio.ui.views.image_view import ImageView
+
         return ImageView(surroundings, parent)
     from regolith_studio.ui.views.live_view import LiveView
 

@@ -1,0 +1,68 @@
+"""Starts the window: a splash first, then everything that takes time to load."""
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from PySide6.QtCore import Qt, QTimer
+from PySide6.QtGui import QColor, QFont, QPainter, QPixmap
+from PySide6.QtWidgets import QSplashScreen
+
+from regolith_studio import __version__
+from regolith_studio.ui.application import make_application
+from regolith_studio.ui.environment import check_display
+from regolith_studio.ui.icons import pixmap
+
+_WIDTH, _HEIGHT, _MARK = 420, 170, 92
+_GROUND, _LETTERS, _QUIET = "#1d2126", "#e4e7eb", "#9aa4b0"
+
+
+def run(paths: Sequence[str | Path] = (), unit: str | None = None) -> int:
+    """Open the window, with these files or with the shipped sample; returns when it is closed.
+
+    Parameters
+    ----------
+    paths
+        Mesh files and folders, a project or a recipe.
+    unit
+        Their length unit; the window asks if it is not given.
+
+    Raises
+    ------
+    EnvironmentProblem
+        If there is no display.
+    """
+    check_display()
+    app = make_application(sys.argv[:1])
+    splash = make_splash()
+    splash.show()
+    app.processEvents()
+    from regolith_studio.ui.app import open_window, telling_hook, welcome
+
+    window = open_window(paths, unit)
+    sys.excepthook = telling_hook(window.toast.problem)
+    window.show()
+    splash.finish(window)
+    QTimer.singleShot(0, window, lambda: welcome(window))
+    code = app.exec()
+    sys.excepthook = sys.__excepthook__
+    return code
+
+
+def make_splash() -> QSplashScreen:
+    """Mark, name and version."""
+    picture = QPixmap(_WIDTH, _HEIGHT)
+    picture.fill(QColor(_GROUND))
+    painter = QPainter(picture)
+    painter.drawPixmap(32, (_HEIGHT - _MARK) // 2, pixmap("app", _LETTERS, _MARK))
+    large = QFont()
+    large.setPointSize(19)
+    large.setBold(True)
+    painter.setFont(large)
+    painter.setPen(QColor(_LETTERS))
+    painter.drawText(150, 82, "Regolith Studio")
+    painter.setFont(QFont())
+    painter.setPen(QColor(_QUIET))
+    painter.drawText(150, 108, f"{__version__}   from CT scans to DEM particles")
+    painter.end()
+    return QSplashScreen(picture, Qt.WindowType.WindowStaysOnTopHint)

@@ -1,0 +1,40 @@
+"""The program as it is started: splash, window, end."""
+
+import os
+import subprocess
+import sys
+
+from regolith_studio.ui.start import make_splash
+
+START = """
+import sys
+from regolith_studio.ui import start
+heavy = {"numba", "scipy.stats", "pyvista", "matplotlib"} & set(sys.modules)
+assert not heavy, heavy
+import regolith_studio.ui.app as app
+seen = []
+def welcome(window):
+    seen.append(window.isVisible())
+    window.close()
+app.welcome = welcome
+code = start.run()
+assert seen == [True], seen
+sys.exit(code)
+"""
+
+
+def test_that_the_program_starts_with_a_light_import_and_ends_with_its_window(tmp_path):
+    surroundings = os.environ | {"QT_QPA_PLATFORM": "offscreen", "REGOLITH_STUDIO_CONFIG": str(tmp_path)}
+    ended = subprocess.run(
+        [sys.executable, "-c", START], env=surroundings, capture_output=True, text=True, timeout=170
+    )
+    assert ended.returncode == 0, ended.stderr
+    assert "Traceback" not in ended.stderr
+    assert (tmp_path / "preferences.json").exists()
+
+
+def test_that_the_splash_shows_mark_and_name(shown):
+    splash = shown(make_splash())
+    image = splash.pixmap().toImage()
+    colours = {image.pixel(x, y) for x in range(0, image.width(), 7) for y in range(0, image.height(), 7)}
+    assert len(colours) > 5
