@@ -50,8 +50,8 @@ class LossFunction:
         """Errors and loss, or ``None`` where the half-spaces bound no proper polyhedron."""
         rays = self._target.rays
         status, values = evaluate(
-            normals,
-            offsets,
+            np.array(normals),
+            np.array(offsets),
             rays.directions,
             rays.first,
             rays.distance,

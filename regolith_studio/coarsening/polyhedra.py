@@ -1,4 +1,8 @@
-"""Half-spaces to polyhedra by the compiled intersection: quick enough for every step of a method."""
+"""Half-spaces to polyhedra by the compiled intersection: quick enough for every step of a method.
+
+Kernels get copies of the locked arrays of half-spaces: numba would compile all of them a second time for
+arrays that cannot be written.
+"""
 
 import numpy as np
 
@@ -19,7 +23,7 @@ def polyhedron_of(half_spaces: HalfSpaces) -> ConvexPolyhedron:
         If the intersection is unbounded.
     """
     size = float(half_spaces.offsets.max())
-    status, vertices, triples = intersect(half_spaces.normals, half_spaces.offsets / size)
+    status, vertices, triples = intersect(np.array(half_spaces.normals), half_spaces.offsets / size)
     if status != FINE:
         return ConvexPolyhedron.from_half_spaces(half_spaces)
     n = len(half_spaces)
@@ -50,8 +54,8 @@ def facet_areas(half_spaces: HalfSpaces) -> FloatArray:
     GeometryError
         If the intersection is unbounded.
     """
-    status, vertices, triples = intersect(half_spaces.normals, half_spaces.offsets)
+    normals, offsets = np.array(half_spaces.normals), np.array(half_spaces.offsets)
+    status, vertices, triples = intersect(normals, offsets)
     if status != FINE:
         raise GeometryError("The half-spaces bound no volume: their intersection is unbounded.")
-    edges = edges_of(triples, len(half_spaces))
-    return facets_of(half_spaces.normals, half_spaces.offsets, vertices, edges)[0]
+    return facets_of(normals, offsets, vertices, edges_of(triples, len(half_spaces)))[0]

@@ -110,7 +110,8 @@ class Target:
         rays = self._dense_rays
         radius = np.empty(len(rays.directions))
         plane = np.empty(len(rays.directions), dtype=np.int64)
-        exits(half_spaces.normals, half_spaces.offsets, rays.directions, radius, plane)
+        normals, offsets = np.array(half_spaces.normals), np.array(half_spaces.offsets)
+        exits(normals, offsets, rays.directions, radius, plane)
         shared = shared_volume(rays.first, rays.distance, rays.sign, rays.weight, radius)
         return float(jaccard(shared, 1.0, rays.weight * float(np.sum(radius**3)) / 3.0))
 

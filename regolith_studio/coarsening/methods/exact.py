@@ -32,6 +32,8 @@ class Level:
 
 
 COMPROMISE_STEPS = 64
+STARTS_FOR_FACETS = 3
+"""Further starts where all conditions are met, but a half-space bounds no facet."""
 LEVELS = {"fast": Level(1, 12, 16), "best": Level(3, 20, 40)}
 
 
@@ -110,7 +112,7 @@ class ExactMethod:
                 yield MethodStep(tried, total, history[-1], HalfSpaces(best.normals, best.offsets))
             if tried >= level.starts and best is not None and best.exact:
                 best = confirmed(request, (fine, dense), best)
-                if best.exact and (best.n_facets == n_faces or tried > level.starts):
+                if best.exact and (best.n_facets == n_faces or tried >= level.starts + STARTS_FOR_FACETS):
                     break
         if best is None:
             raise GeometryError("No start of the exact method bounds a polyhedron.")
