@@ -14,6 +14,7 @@ from benchmarks.contests import Growth, Outcome
 
 matplotlib.use("Agg")
 from matplotlib import pyplot
+from matplotlib.ticker import NullFormatter
 
 
 def table(outcomes: Sequence[Outcome]) -> str:
@@ -117,6 +118,8 @@ def _growth(growths: Sequence[Growth]) -> Any:
             if each.size == kind:
                 label = f"{each.title}: {each.exponent:.2f}"
                 axes.loglog(each.sizes, each.milliseconds, "o-", markersize=3, linewidth=1, label=label)
+        axes.xaxis.set_minor_formatter(NullFormatter())
+        axes.yaxis.set_minor_formatter(NullFormatter())
         axes.set_xlabel(kind)
         axes.set_ylabel("milliseconds")
         axes.legend(fontsize=7, title="exponents", title_fontsize=7)

@@ -302,7 +302,7 @@ def growths(place: Path, rounds: int) -> Iterator[Growth]:
         yield grown(
             f"exact, {level}",
             "faces of the polyhedron",
-            (8, 12, 20, 40) if level == "best" else (8, 12, 20, 40, 80),
+            (12, 20, 40) if level == "best" else (12, 20, 40, 80),
             lambda n, k=level: lambda: coarsen(target, n, "exact", settings={"level": k}),
             min(rounds, 3),
         )
