@@ -1,15 +1,17 @@
 """LAMMPS: clumps against exact volume and inertia, its input, and a whole run where the program is."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
 from regolith_studio.dataset.dataset import Dataset
-from regolith_studio.dem.case import ReposeCase, prepare
+from regolith_studio.dem.case import CohesionKind, ReposeCase, prepare
 from regolith_studio.dem.engine import Ending
 from regolith_studio.dem.engines.lammps import ENGINE
 from regolith_studio.dem.engines.lammps.clumps import clump_shape, clumps_of
-from regolith_studio.dem.engines.lammps.script import schedule, script, stiffness
+from regolith_studio.dem.engines.lammps.script import schedule, script, stiffness, viscosity
 from regolith_studio.dem.engines.lammps.settings import LammpsSettings
 from regolith_studio.dem.engines.lammps.simulation import kinetic_energies, read_bodies
 from regolith_studio.dem.parameters import ContactParameters, LiftingCylinderTest
@@ -78,13 +80,16 @@ def test_that_the_script_says_the_paper_s_contact_laws(boxes: Dataset) -> None:
     prepared, settings = prepare(boxes, case), LammpsSettings()
     text = script(prepared, settings, schedule(prepared, settings, 30.0), 4.0, 30.0)
     energy = 0.010 / (3075 * 9.81 * prepared.mean_diameter**2) / 2
-    assert f"jkr 20000.0 0.3 0.2 {energy!r}" in text
+    assert f"jkr 20000.0 {viscosity(2e4, 0.2, 0.3)!r} 0.2 {energy!r}" in text
+    assert "damping viscoelastic" in text
+    assert "tsuji" not in text
     assert "mindlin_rescale NULL 1.0 0.8" in text
     assert "sds" in text
     dry = prepare(boxes, SMALL)
     text = script(dry, settings, schedule(dry, settings, 30.0), 4.0, 30.0)
     assert "hertz/material 20000.0 0.3 0.2" in text
     assert "rolling none" in text
+    assert "damping tsuji" in text
 
 
 def test_that_what_lammps_writes_is_read_and_losses_are_noticed(tmp_path) -> None:
@@ -107,8 +112,9 @@ def test_that_bad_settings_are_one_sentence() -> None:
 
 @pytest.mark.slow
 @pytest.mark.skipif(not ENGINE.find().there, reason="LAMMPS or its MPI library is not here")
-def test_that_lammps_fills_lifts_and_comes_to_rest(boxes: Dataset) -> None:
-    prepared = prepare(boxes, SMALL)
+@pytest.mark.parametrize("cohesion", ["none", "scaled"])
+def test_that_lammps_fills_lifts_and_comes_to_rest(boxes: Dataset, cohesion: CohesionKind) -> None:
+    prepared = prepare(boxes, replace(SMALL, cohesion=cohesion))
     steps = ENGINE.simulate(prepared, LammpsSettings(spheres=4, rest=15.0, snapshots=30))
     moments = []
     while True:

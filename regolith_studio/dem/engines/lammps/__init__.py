@@ -11,7 +11,7 @@ SECONDS_PER_SPHERE_AND_STEP = 0.7e-6
 """Measured on one core."""
 REPRESENTS = Representation(
     shape="rigid clumps of inscribed spheres (8 by default) with the polyhedra's mass and inertia: rounder",
-    normal="Hertz from Young's modulus (softened, recorded) with restitution",
+    normal="Hertz from Young's modulus (softened, recorded) with restitution, approximate with cohesion",
     tangential="Mindlin with history and Coulomb friction, one coefficient (the static one)",
     cohesion="Johnson, Kendall and Roberts between spheres",
     rolling="spring, dashpot and slider (where resistance is above 0)",

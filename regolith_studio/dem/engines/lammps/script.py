@@ -14,6 +14,8 @@ from regolith_studio.dem.engines.lammps.clumps import Clumps
 from regolith_studio.dem.engines.lammps.settings import LammpsSettings
 
 TANGENTIAL_DAMPING = 1.0
+TYPICAL_OVERLAP = 0.005
+"""Mean diameters, where the two laws of damping are made equal."""
 SETTLE = 8.0
 
 
@@ -177,13 +179,26 @@ def _contact(prepared: Prepared, settings: LammpsSettings, friction: float) -> s
     bounce = min(max(contact.restitution, 0.05), 0.98)
     weight = contact.density * prepared.case.test.gravity * prepared.mean_diameter**2
     energy = prepared.surface_energy / weight / 2  # two surfaces of LAMMPS make the w of 3/2 pi w R*
-    normal = f"hertz/material {young!r} {bounce!r} {poisson!r}"
-    if energy > 0.0:
-        normal = f"jkr {young!r} {bounce!r} {poisson!r} {energy!r}"
+    normal, damping = f"hertz/material {young!r} {bounce!r} {poisson!r}", "tsuji"
+    if energy > 0.0:  # LAMMPS has no law of restitution for cohesive contacts
+        normal = f"jkr {young!r} {viscosity(young, poisson, bounce)!r} {poisson!r} {energy!r}"
+        damping = "viscoelastic"
     rolling = "none"
     if contact.rolling_friction > 0.0:
         rolling = f"sds {0.1 * young!r} {0.02 * young!r} {contact.rolling_friction!r}"
     return (
         f"{normal} tangential mindlin_rescale NULL {TANGENTIAL_DAMPING!r} {friction!r} "
-        f"rolling {rolling} damping tsuji"
+        f"rolling {rolling} damping {damping}"
     )
+
+
+def viscosity(young: float, poisson: float, bounce: float) -> float:
+    """Coefficient of viscoelastic damping that equals Tsuji's at the typical contact of two mean particles.
+
+    Tsuji's damping is alpha(e) sqrt(m k) with k = 4/3 E* a, the viscoelastic one is this coefficient times
+    a m, where a is the radius of the contact and m the reduced mass.
+    """
+    alpha = float(np.polyval([4.8218, -18.022, 27.467, -22.348, 11.087, -4.2783, 1.2728], bounce))
+    effective = young / (2 * (1 - poisson**2))
+    radius, mass = np.sqrt(0.25 * TYPICAL_OVERLAP), np.pi / 12
+    return float(alpha * np.sqrt(4 / 3 * effective / (radius * mass)))
