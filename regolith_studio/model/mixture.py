@@ -6,7 +6,9 @@ directions within a degree are even in an isotropic field. ::
     ln p(i | k) = ln N(x_i; mu_k, s_k^2) - 1/2 sum over l of ((2 l + 1) ln A_lk + P_il / A_lk) + constant
 """
 
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import Self
 
 import numpy as np
 from scipy.cluster.vq import kmeans2
@@ -99,6 +101,47 @@ class Mixture:
         shape = powers[:, 1:] @ (1 / variances).T + (np.log(variances) @ orders)[None]
         far = ((sizes[:, None] - self.means) / self.deviations) ** 2 + 2 * np.log(self.deviations)
         return np.asarray(np.log(self.weights) - 0.5 * (shape + far))
+
+
+class NamedParts:
+    """What fitted mixtures have in common: parts with spectra, and names for them."""
+
+    spectra: FloatArray
+    names: tuple[str, ...]
+
+    @property
+    def l_max(self) -> int:
+        """Degree of the particles."""
+        return int(self.spectra.shape[1]) - 1
+
+    @property
+    def n_components(self) -> int:
+        """Number of parts."""
+        return len(self.spectra)
+
+    def renamed(self, names: Sequence[str]) -> Self:
+        """The same mixture with other names for its parts.
+
+        Raises
+        ------
+        InputError
+            If there are not as many names as parts.
+        """
+        return replace(self, names=tuple(names))  # type: ignore[type-var]
+
+
+def part_names(names: Sequence[str], k: int) -> tuple[str, ...]:
+    """One name for each of `k` parts: those given, or "part 1", "part 2" and so on.
+
+    Raises
+    ------
+    InputError
+        If there are not as many.
+    """
+    found = tuple(names) or tuple(f"part {i + 1}" for i in range(k))
+    if len(found) != k:
+        raise InputError(f"A mixture of {k} parts needs {k} names, got {len(found)}.")
+    return found
 
 
 def chosen_mixture(

@@ -5,8 +5,8 @@ N(0, A_lk). The number of parts is the one with the lowest information criterion
 is not positive are thrown away and counted; ``mixture_field`` is the same for ln r, where there are none.
 """
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from functools import partial
 from typing import Any, ClassVar
 
@@ -18,7 +18,7 @@ from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray, loc
 from regolith_studio.harmonics.coefficients import degrees
 from regolith_studio.model.chunks import accepted, chunks, joined
 from regolith_studio.model.draws import Draws
-from regolith_studio.model.mixture import MixtureSettings, chosen_mixture
+from regolith_studio.model.mixture import MixtureSettings, NamedParts, chosen_mixture, part_names
 from regolith_studio.model.positive import acceptable
 from regolith_studio.model.protocol import SizeRange
 from regolith_studio.model.sample import Sample
@@ -28,7 +28,7 @@ KEY = "gaussian_mixture"
 
 
 @dataclass(frozen=True, eq=False)
-class GaussianMixture:
+class GaussianMixture(NamedParts):
     """The parts, the largest share first.
 
     Parameters
@@ -71,27 +71,11 @@ class GaussianMixture:
         if not ((self.spectra >= 0).all() and (self.weights >= 0).all() and self.weights.sum() > 0):
             raise InputError("Shares and variances of a mixture must not be negative.")
         object.__setattr__(self, "bic", tuple(float(value) for value in self.bic))
-        object.__setattr__(self, "names", tuple(self.names) or tuple(f"part {i + 1}" for i in range(k)))
-        if len(self.names) != k:
-            raise InputError(f"A mixture of {k} parts needs {k} names, got {len(self.names)}.")
+        object.__setattr__(self, "names", part_names(self.names, k))
 
     def __reduce__(self) -> tuple[Callable[..., "GaussianMixture"], tuple[Any, ...]]:
         fields = (self.weights, self.means, self.spectra, self.unit, self.bic, self.names, self.labels)
         return GaussianMixture, fields
-
-    @property
-    def l_max(self) -> int:
-        """Degree of the particles it draws."""
-        return int(self.spectra.shape[1]) - 1
-
-    @property
-    def n_components(self) -> int:
-        """Number of parts."""
-        return len(self.weights)
-
-    def renamed(self, names: Sequence[str]) -> "GaussianMixture":
-        """The same mixture with other names for its parts."""
-        return replace(self, names=tuple(names))
 
     def draw(self, n: int, seed: int, size_range: SizeRange | None = None) -> Draws:
         """`n` particles with a positive radius, and in the range of equivalent radii if given.

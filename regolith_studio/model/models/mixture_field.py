@@ -5,8 +5,8 @@ or size classes of different shape. In ln r, so that no draw has a negative radi
 one with the lowest information criterion of Bayes.
 """
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
@@ -18,7 +18,7 @@ from regolith_studio.harmonics.coefficients import degrees
 from regolith_studio.model.chunks import CHUNK, chunks, joined
 from regolith_studio.model.draws import Draws
 from regolith_studio.model.log_shapes import log_shapes, sized
-from regolith_studio.model.mixture import MixtureSettings, chosen_mixture
+from regolith_studio.model.mixture import MixtureSettings, NamedParts, chosen_mixture, part_names
 from regolith_studio.model.protocol import SizeRange
 from regolith_studio.model.sample import Sample
 from regolith_studio.model.size_law import LogNormalSizes, checked_bounds
@@ -27,7 +27,7 @@ KEY = "mixture_field"
 
 
 @dataclass(frozen=True, eq=False)
-class MixtureField:
+class MixtureField(NamedParts):
     """The parts, the largest share first.
 
     Parameters
@@ -60,28 +60,11 @@ class MixtureField:
         if not (self.spectra >= 0).all():
             raise InputError("A spectrum needs one variance A_l for each degree, none of them negative.")
         object.__setattr__(self, "bic", tuple(float(value) for value in self.bic))
-        names = tuple(self.names) or tuple(f"part {i + 1}" for i in range(k))
-        object.__setattr__(self, "names", names)
-        if len(names) != k:
-            raise InputError(f"A mixture of {k} parts needs {k} names, got {len(names)}.")
+        object.__setattr__(self, "names", part_names(self.names, k))
 
     def __reduce__(self) -> tuple[Callable[..., "MixtureField"], tuple[Any, ...]]:
         fields = (self.sizes, self.spectra, self.unit, self.bic, self.names, self.labels)
         return MixtureField, fields
-
-    @property
-    def l_max(self) -> int:
-        """Degree of ln r."""
-        return int(self.spectra.shape[1]) - 1
-
-    @property
-    def n_components(self) -> int:
-        """Number of parts."""
-        return len(self.spectra)
-
-    def renamed(self, names: Sequence[str]) -> "MixtureField":
-        """The same mixture with other names for its parts."""
-        return replace(self, names=tuple(names))
 
     def draw(self, n: int, seed: int, size_range: SizeRange | None = None) -> Draws:
         """`n` particles; `components` of the draws tells the part of each.

@@ -28,7 +28,7 @@ from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.model.controls import DrawControls, SourceControls, order_from
 from regolith_studio.ui.pages.model.files import ask_card, ask_model
 from regolith_studio.ui.pages.model.judgement import JudgementPanel
-from regolith_studio.ui.pages.model.sources import Sources
+from regolith_studio.ui.pages.model.sources import Sources, usual_sizes
 from regolith_studio.ui.pages.model.views import Gallery, LiveShape
 from regolith_studio.ui.theme import Theme
 
@@ -202,9 +202,8 @@ class ModelPage(PageWidget):
         self.judgement.show_judged(None)
         self._show_state()
         self.drawing.show_names(getattr(model, "names", ()))
-        if isinstance(fitted.source.content, Sample):
-            radii = fitted.source.content.equivalent_radii
-            self.drawing.suggest(float(radii.min()), float(radii.max()))
+        if (sizes := usual_sizes(fitted.source)) is not None:
+            self.drawing.suggest(*sizes)
         if fitted.source.notes:
             self._context.toast.problem(fitted.source.notes[0], "\n".join(fitted.source.notes))
 

@@ -1,6 +1,7 @@
 """What the page can draw from: the open particles, the shipped materials, files that were opened."""
 
 from dataclasses import dataclass
+from math import exp
 
 from regolith_studio.errors import InputError
 from regolith_studio.jobs.fitting import FIT_DEGREE
@@ -85,3 +86,16 @@ class Sources:
                 raise InputError("No particle is open: open some, or choose a material.")
             return particles
         return self._files[key] if key in self._files else ShapeSource(materials()[key], key)
+
+
+def usual_sizes(source: ShapeSource) -> tuple[float, float] | None:
+    """Smallest and largest equivalent radius of the particles, or two deviations about a card's median."""
+    match source.content:
+        case Sample():
+            radii = source.content.equivalent_radii
+            return float(radii.min()), float(radii.max())
+        case MaterialCard():
+            spread = exp(2 * source.content.log_deviation)
+            return source.content.median_radius / spread, source.content.median_radius * spread
+        case _:
+            return None
