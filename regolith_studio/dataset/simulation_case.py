@@ -1,6 +1,7 @@
 """The lifting cylinder of section 2.6: contact parameters, cylinder, how many particles fill it. SI units."""
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
+from typing import Any
 
 import numpy as np
 
@@ -8,6 +9,15 @@ from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.errors import InputError
 
 MICROMETRE = 1e-6
+
+
+NOT_GIVEN = "not given in the paper"
+
+
+def _number(default: float, label: str, minimum: float, maximum: float, decimals: int, source: str) -> Any:
+    """A field that a form can edit; `source` says where the default comes from."""
+    limits = {"minimum": minimum, "maximum": maximum, "decimals": decimals, "step": 10.0**-decimals}
+    return field(default=default, metadata={"label": label, "tip": source, **limits})
 
 
 @dataclass(frozen=True)
@@ -30,15 +40,15 @@ class ContactParameters:
         Of particles on the cylinder and on the plate below; not given in the paper.
     """
 
-    density: float = 3075.0
-    young_modulus: float = 30e9
-    poisson_ratio: float = 0.2
-    static_friction: float = 0.8
-    dynamic_friction: float = 0.8
-    surface_energy: float = 0.010
-    restitution: float = 0.3
-    wall_friction: float = 0.3
-    plate_friction: float = 0.8
+    density: float = _number(3075.0, "Density [kg/m³]", 100, 30000, 0, "Table 1")
+    young_modulus: float = _number(30e9, "Young's modulus [Pa]", 10000.0, 10000000000000.0, 0, "Table 1")
+    poisson_ratio: float = _number(0.2, "Poisson's ratio", 0, 0.49, 3, "Table 1")
+    static_friction: float = _number(0.8, "Static friction", 0, 5, 3, "Table 1")
+    dynamic_friction: float = _number(0.8, "Dynamic friction", 0, 5, 3, "Table 1")
+    surface_energy: float = _number(0.010, "Surface energy [J/m²]", 0, 10, 4, "Table 1")
+    restitution: float = _number(0.3, "Restitution", 0, 1, 3, NOT_GIVEN)
+    wall_friction: float = _number(0.3, "Friction on the tube", 0, 5, 3, NOT_GIVEN)
+    plate_friction: float = _number(0.8, "Friction on the plate", 0, 5, 3, NOT_GIVEN)
 
     def __post_init__(self) -> None:
         _check_positive(self, ("density", "young_modulus"))
@@ -71,12 +81,12 @@ class LiftingCylinder:
         m/s and s; not given in the paper.
     """
 
-    diameter: float = 0.02
-    height: float = 0.08
-    total_mass: float = 0.015
-    lifting_speed: float = 0.03
-    settling_time: float = 1.0
-    resting_time: float = 1.0
+    diameter: float = _number(0.02, "Tube diameter [m]", 1e-05, 10, 5, "Table 2")
+    height: float = _number(0.08, "Tube height [m]", 1e-05, 100, 5, "Table 2")
+    total_mass: float = _number(0.015, "Mass of all particles [kg]", 1e-09, 1000000.0, 6, "Table 2")
+    lifting_speed: float = _number(0.03, "Lifting speed [m/s]", 1e-05, 10, 5, NOT_GIVEN)
+    settling_time: float = _number(1.0, "Settling time [s]", 0.0001, 10000.0, 4, NOT_GIVEN)
+    resting_time: float = _number(1.0, "Resting time [s]", 0.0001, 10000.0, 4, NOT_GIVEN)
 
     def __post_init__(self) -> None:
         _check_positive(self, tuple(field.name for field in fields(self)))

@@ -134,11 +134,15 @@ def test_that_shapes_are_changed_only_with_a_second_tick(chosen, tmp_path, wait)
 def test_that_settings_reach_the_exports(chosen, tmp_path, wait) -> None:
     chosen.build_in(tmp_path / "set")
     wait(lambda: chosen.targets.export.isEnabled())
-    chosen.targets.setValue({"targets": ["rocky"], "coarse_graining": 4})
+    settings = {"targets": ["rocky"], "coarse_graining": 4, "contact": {"density": 2900.0}}
+    chosen.targets.setValue(settings | {"cylinder": {"lifting_speed": 0.05}})
     chosen.export_to(tmp_path / "out")
     wait(lambda: len(chosen.exports.exports) == 1)
     case = json.loads((tmp_path / "out" / "rocky" / "case.json").read_text())
     assert case["coarse_graining_factor"] == 4.0
+    assert case["contact"]["density"] == 2900.0
+    assert case["contact"]["young_modulus"] == 30e9
+    assert case["cylinder"]["lifting_speed"] == 0.05
 
 
 def test_that_a_dataset_is_replaced_only_when_asked(chosen, tmp_path, wait, monkeypatch) -> None:
@@ -195,7 +199,15 @@ def test_that_what_was_set_comes_back(page) -> None:
     page.representatives.setValue({"count": 33, "weighting": "volume"})
     page.sizes.set_text("sieve:20,30=1@volume")
     page.folder.name.setText("mare")
-    page.targets.setValue({"targets": ["yade"], "coarse_graining": 3, "particles": 77, "lossy": True})
+    page.targets.setValue(
+        {
+            "targets": ["yade"],
+            "coarse_graining": 3,
+            "particles": 77,
+            "lossy": True,
+            "contact": {"restitution": 0.4},
+        }
+    )
     state = json.loads(json.dumps(page.state()))
     page.restore({"sizes": "measured", "export": {}, "representatives": {}})
     assert page.state() != state

@@ -18,8 +18,11 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.dataset.exporters import EXPORTERS
 from regolith_studio.dataset.exporting import Exported, ExportOptions
+from regolith_studio.dataset.simulation_case import ContactParameters, LiftingCylinder
+from regolith_studio.ui.widgets.collapsible import Collapsible
 from regolith_studio.ui.widgets.labels import ElidedLabel, heading, remark
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
+from regolith_studio.ui.widgets.settings_form import SettingsForm
 
 FIRST = ("rocky", "yade")
 COARSE_GRAINING = NumberSpec("", "Coarse-graining factor", 1, 20, limit=1000, tip="The paper has 10.")
@@ -41,6 +44,7 @@ class TargetsPanel(QWidget):
         self.coarse_graining, self.particles = NumberSlider(COARSE_GRAINING), NumberSlider(PARTICLES)
         self.coarse_graining.field.setObjectName("dataset_coarse_graining")
         self.particles.field.setObjectName("dataset_particles")
+        self.contact, self.cylinder = SettingsForm(ContactParameters), SettingsForm(LiftingCylinder)
         self.lossy = QCheckBox("Shapes may be changed")
         self.lossy.setObjectName("dataset_lossy")
         self.export = QPushButton("Export …")
@@ -54,6 +58,7 @@ class TargetsPanel(QWidget):
         for box in self.boxes.values():
             layout.addWidget(box)
         layout.addLayout(form)
+        layout.addWidget(Collapsible("Material and cylinder", _column((self.contact, self.cylinder))))
         layout.addWidget(self.lossy)
         layout.addWidget(self.export)
         self.coarse_graining.setValue(10)
@@ -72,7 +77,7 @@ class TargetsPanel(QWidget):
         return ExportOptions(
             coarse_graining_factor=float(self.coarse_graining.value()),
             n_particles=int(self.particles.value()),
-        )
+        ).replaced(**self.contact.value(), **self.cylinder.value())
 
     def consent(self) -> bool:
         """Whether shapes may be changed."""
@@ -90,6 +95,8 @@ class TargetsPanel(QWidget):
             "coarse_graining": float(self.coarse_graining.value()),
             "particles": int(self.particles.value()),
             "lossy": self.consent(),
+            "contact": self.contact.value(),
+            "cylinder": self.cylinder.value(),
         }
 
     def setValue(self, value: Mapping[str, Any]) -> None:
@@ -100,6 +107,8 @@ class TargetsPanel(QWidget):
         self.coarse_graining.setValue(float(value.get("coarse_graining", 10.0)))
         self.particles.setValue(int(value.get("particles", 200)))
         self.lossy.setChecked(bool(value.get("lossy", False)))
+        self.contact.setValue(value.get("contact", {}))
+        self.cylinder.setValue(value.get("cylinder", {}))
         self._show()
 
     def _box(self, key: str) -> QCheckBox:
@@ -121,6 +130,16 @@ class TargetsPanel(QWidget):
             "" if allowed else f"{EXPORTERS[altering[0]].label}: {EXPORTERS[altering[0]].alters}"
         )
         self.chosenChanged.emit()
+
+
+def _column(parts: Sequence[QWidget]) -> QWidget:
+    """Forms below each other."""
+    column = QWidget()
+    layout = QVBoxLayout(column)
+    layout.setContentsMargins(0, 0, 0, 0)
+    for part in parts:
+        layout.addWidget(part)
+    return column
 
 
 class LossesLabel(QScrollArea):
