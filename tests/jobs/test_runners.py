@@ -395,3 +395,27 @@ def test_that_a_waiting_job_can_be_cancelled_while_all_processes_are_busy() -> N
     finally:
         runner.close()
     assert busy == [Stopped()]
+
+
+def test_that_a_listener_that_stumbles_does_not_stop_the_pool(
+    pool: ProcessPoolRunner, caplog: pytest.LogCaptureFixture
+) -> None:
+    def stumbling(_event: Event) -> None:
+        raise KeyError("oops")
+
+    pool.submit(Job(square, (1,)), stumbling)
+    assert [e for e in in_order(pool, [Job(square, (2,))], 1) if e] == [Finished(4)]
+    assert "A listener" in caplog.text
+
+
+def test_that_a_process_that_cannot_start_is_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
+    runner = ProcessPoolRunner(1)
+
+    def refuse_to_start() -> None:
+        raise OSError(11, "Resource temporarily unavailable")
+
+    monkeypatch.setattr(runner, "_hire", refuse_to_start)
+    (ending,) = [e for e in in_order(runner, [Job(square, (2,))], 1) if e]
+    runner.close()
+    assert isinstance(ending, Failed)
+    assert "could not be started" in ending.sentence

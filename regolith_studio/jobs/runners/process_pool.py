@@ -1,6 +1,7 @@
 """Runs jobs in a few warm processes; for batches."""
 
 import contextlib
+import logging
 import multiprocessing
 import multiprocessing.util as process_end
 import os
@@ -15,6 +16,7 @@ from typing import Any
 from regolith_studio.jobs.events import Ending, Failed, Finished, Job, Listener, Stopped
 from regolith_studio.jobs.runners.worker import SLOTS, work
 
+_log = logging.getLogger(__name__)
 _THREAD_LIMITS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 _LEAST_MEMORY, _MOST_MEMORY, _SHARE_OF_MEMORY = 768 * 1024**2, 2 * 1024**3, 0.6
 _LAST_WAIT = 10.0
@@ -63,7 +65,10 @@ class _PoolHandle:
         if self.cancelled and isinstance(ending, Finished):
             ending = Stopped()
         self.ended.set()
-        self.listener(ending)
+        try:
+            self.listener(ending)
+        except Exception:  # noqa: BLE001  the pool must outlive whoever listens
+            _log.exception("A listener to a process pool made a mistake.")
 
 
 @dataclass(eq=False)
@@ -189,7 +194,13 @@ class ProcessPoolRunner:
     def _hand_out(self) -> None:
         """Give waiting jobs to idle processes; a suspect only while nobody else works."""
         while len(self._busy) < self.workers and (handle := self._next()):
-            idle = next((worker for worker in self._team if not worker.handle), None) or self._hire()
+            try:
+                idle = next((worker for worker in self._team if not worker.handle), None) or self._hire()
+            except OSError as error:
+                handle.finish(
+                    Failed(f"A worker process could not be started ({error.strerror}).", repr(error))
+                )
+                continue
             idle.handle = handle
             with contextlib.suppress(OSError):  # it has died idle: its pipe tells so in a moment
                 idle.pipe.send_bytes(handle.message)
