@@ -41,8 +41,8 @@ class ContactParameters:
     """
 
     density: float = _number(3075.0, "Density [kg/m³]", 100, 30000, 0, "Table 1")
-    young_modulus: float = _number(30e9, "Young's modulus [Pa]", 10000.0, 10000000000000.0, 0, "Table 1")
-    poisson_ratio: float = _number(0.2, "Poisson's ratio", 0, 0.49, 3, "Table 1")
+    young_modulus: float = _number(30e9, "Young’s modulus [Pa]", 10000.0, 10000000000000.0, 0, "Table 1")
+    poisson_ratio: float = _number(0.2, "Poisson’s ratio", 0, 0.49, 3, "Table 1")
     static_friction: float = _number(0.8, "Static friction", 0, 5, 3, "Table 1")
     dynamic_friction: float = _number(0.8, "Dynamic friction", 0, 5, 3, "Table 1")
     surface_energy: float = _number(0.010, "Surface energy [J/m²]", 0, 10, 4, "Table 1")

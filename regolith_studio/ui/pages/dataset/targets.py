@@ -6,6 +6,7 @@ from typing import Any
 from PySide6.QtCore import Qt, QUrl, Signal
 from PySide6.QtGui import QDesktopServices, QGuiApplication
 from PySide6.QtWidgets import (
+    QAbstractSpinBox,
     QCheckBox,
     QFormLayout,
     QHBoxLayout,
@@ -25,6 +26,7 @@ from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
 from regolith_studio.ui.widgets.settings_form import SettingsForm
 
 FIRST = ("rocky", "yade")
+NARROW = 84
 COARSE_GRAINING = NumberSpec("", "Coarse-graining factor", 1, 20, limit=1000, tip="The paper has 10.")
 PARTICLES = NumberSpec(
     "", "Particles drawn", 1, 5000, limit=1_000_000, tip="For formats that list single bodies."
@@ -139,6 +141,8 @@ def _column(parts: Sequence[QWidget]) -> QWidget:
     layout.setContentsMargins(0, 0, 0, 0)
     for part in parts:
         layout.addWidget(part)
+        for field in part.findChildren(QAbstractSpinBox):
+            field.setMinimumWidth(NARROW)  # its own would have room for the largest number
     return column
 
 
