@@ -45,7 +45,8 @@ class OpenedFile:
     in_order, layer
         Whether the file is best read from its beginning on, and how many slices at a time.
     guard
-        Whose child it is.
+        Whose child reads it; by default the one for volumes of the process that asks, so that opened
+        files can go to the workers of a pool.
     straight
         The voxels themselves, where they lie in the file as they are and need no child.
     """
@@ -56,7 +57,7 @@ class OpenedFile:
     format: str
     in_order: bool
     layer: int
-    guard: Guard
+    guard: Guard | None = None
     straight: PlainVoxels | None = None
 
     def pieces(self, z0: int, z1: int) -> Iterator[tuple[int, int]]:
@@ -96,7 +97,9 @@ class OpenedFile:
         if self.in_order:
             work += z0 * self.header.slice_bytes / BYTES_SKIPPED_A_SECOND
         request = {**self.request, "memory": LEAST_MEMORY + 6 * size}
-        message = self.guard.ask("volume-slices", self.path, PATIENCE * work, work, z0=z0, z1=z1, **request)
+        message = (self.guard or volume_guard()).ask(
+            "volume-slices", self.path, PATIENCE * work, work, z0=z0, z1=z1, **request
+        )
         voxels = message.arrays[0]
         if voxels.shape != (z1 - z0, *self.header.shape[1:]) or voxels.dtype != self.header.dtype:
             raise FileError(sentence_about(self.path, "changed while it was read."))
@@ -113,7 +116,7 @@ def opened_file(
     FileError
         With one sentence if it is no volume, is damaged, or holds several and none was named.
     """
-    guard = guard or volume_guard()
+    reader = guard or volume_guard()
     names = slice_names(path) if path.is_dir() else ()
     if path.is_dir():
         size, stamp = slices_stamp(path, names)
@@ -126,9 +129,9 @@ def opened_file(
         "raw": None if raw is None else raw.as_request(),
         "names": list(names),
     }
-    guard.ask("volume-prepare", path, START_SECONDS)
+    reader.ask("volume-prepare", path, START_SECONDS)
     work = WORKING_SECONDS + size / BYTES_OPENED_A_SECOND
-    answer = guard.ask("volume-open", path, PATIENCE * work, work, memory=LEAST_MEMORY, **request).header
+    answer = reader.ask("volume-open", path, PATIENCE * work, work, memory=LEAST_MEMORY, **request).header
     header = _header_from(answer)
     straight = answer["plain"] and plain_voxels(answer["plain"], header.shape, header.dtype)
     return OpenedFile(

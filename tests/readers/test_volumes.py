@@ -1,5 +1,7 @@
 """Volumes come in voxel for voxel, whatever they were written as; other programs wrote the files."""
 
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
@@ -187,6 +189,12 @@ def test_that_slabs_are_the_slices_in_turn(stack) -> None:
     assert np.array_equal(np.concatenate([slab for _, slab in source.slabs(3)], axis=2), SLICES.T)
     starts = [(z0, slab.shape[2]) for z0, slab in source.slabs(3, overlap=1)]
     assert starts == [(0, 4), (3, 4), (6, 1)]
+
+
+def test_that_an_opened_volume_can_go_to_the_workers_of_a_pool(stack) -> None:
+    source = open_slabs(stack, voxel_size=1.0, kind="grey")
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
+        assert np.array_equal(pool.submit(source.read, 2, 5).result(), SLICES.T[:, :, 2:5])
 
 
 def test_that_progress_is_told_and_may_stop(stack) -> None:
