@@ -2,15 +2,15 @@
 
 import dataclasses
 from collections.abc import Sequence
-from typing import Any
 
 from PySide6.QtCore import QSignalBlocker, Signal
-from PySide6.QtWidgets import QCheckBox, QComboBox, QDoubleSpinBox, QFormLayout, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QCheckBox, QDoubleSpinBox, QFormLayout, QVBoxLayout, QWidget
 
 from regolith_studio.imaging.extraction import voxel_diameter
 from regolith_studio.imaging.segmentation.cleaning import CleaningSettings
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings
 from regolith_studio.jobs.grain_recipe import GrainRecipe
+from regolith_studio.ui.pages.scan.fields import choice
 from regolith_studio.ui.widgets.labels import heading, remark
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
 
@@ -50,10 +50,10 @@ class SegmentationControls(QWidget):
         super().__init__(parent)
         self.setObjectName("segmentation")
         self._recipe = GrainRecipe()
-        self.denoise = _choice("denoise", "Denoise", DENOISE)
-        self.threshold = _choice("threshold", "Threshold", THRESHOLD)
+        self.denoise = choice("denoise", "Denoise", DENOISE)
+        self.threshold = choice("threshold", "Threshold", THRESHOLD)
         self.level = QDoubleSpinBox()
-        self.boundary = _choice("boundary", "Boundary", ((1, "dark | middle"), (2, "middle | bright")))
+        self.boundary = choice("boundary", "Boundary", ((1, "dark | middle"), (2, "middle | bright")))
         self.dark = _check("dark", "Grains are dark", "Grains are darker than what is between them.")
         self.split = _check("split", "Part touching grains", "Otherwise each connected body is one grain.")
         self.pores = _check("fill_pores", "Fill closed pores", "Pores without a way out become grain.")
@@ -208,15 +208,6 @@ class SegmentationControls(QWidget):
         layout.addWidget(self.border)
         layout.addWidget(self.least)
         layout.addWidget(self.diameter)
-
-
-def _choice(name: str, words: str, rows: Sequence[tuple[Any, str]]) -> QComboBox:
-    box = QComboBox()
-    box.setObjectName(name)
-    box.setAccessibleName(words)
-    for key, label in rows:
-        box.addItem(label, key)
-    return box
 
 
 def _check(name: str, words: str, tip: str) -> QCheckBox:

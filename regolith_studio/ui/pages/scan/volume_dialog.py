@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from PySide6.QtWidgets import (
-    QComboBox,
     QDialog,
     QDialogButtonBox,
     QDoubleSpinBox,
@@ -18,6 +17,7 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.jobs.extracting import VolumeInput
 from regolith_studio.readers.volume_header import RawLayout, VolumeHeader
+from regolith_studio.ui.pages.scan.fields import choice
 from regolith_studio.ui.widgets.labels import remark
 
 RAW_SUFFIXES = (".raw", ".bin", ".vol", ".dat")
@@ -42,13 +42,13 @@ class VolumeDialog(QDialog):
         self.setObjectName("volume_dialog")
         self._path, self._header = path, header
         self.edges = [_number(f"voxel_{axis}", f"Edge of a voxel along {axis}") for axis in "xyz"]
-        self.unit = _choice("voxel_unit", "Unit of the voxel size", UNITS)
-        self.dataset = _choice("dataset", "Volume in the file", ())
+        self.unit = choice("voxel_unit", "Unit of the voxel size", UNITS)
+        self.dataset = choice("dataset", "Volume in the file", ())
         self.shape = [_count(f"shape_{axis}", f"Voxels along {axis}") for axis in "xyz"]
-        self.dtype = _choice("dtype", "Type of a voxel", [(name, name) for name in _TYPES])
-        self.order = _choice("byte_order", "Byte order", (("little", "little endian"), ("big", "big endian")))
+        self.dtype = choice("dtype", "Type of a voxel", [(name, name) for name in _TYPES])
+        self.order = choice("byte_order", "Byte order", (("little", "little endian"), ("big", "big endian")))
         self.offset = _count("offset", "Bytes before the first voxel", least=0)
-        self.kind = _choice(
+        self.kind = choice(
             "kind", "What the volume holds",
             ((None, "Whatever it looks like"), ("grey", "Grey values"), ("labels", "Labels of grains")),
         )  # fmt: skip
@@ -151,15 +151,6 @@ def _count(name: str, words: str, least: int = 1) -> QSpinBox:
     field.setAccessibleName(words)
     field.setRange(least, 1_000_000_000)
     return field
-
-
-def _choice(name: str, words: str, rows: Sequence[tuple[object, str]]) -> QComboBox:
-    box = QComboBox()
-    box.setObjectName(name)
-    box.setAccessibleName(words)
-    for key, label in rows:
-        box.addItem(label, key)
-    return box
 
 
 def _row(parts: Sequence[QWidget]) -> QWidget:
