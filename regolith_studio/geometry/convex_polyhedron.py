@@ -58,11 +58,12 @@ class ConvexPolyhedron:
         corners, triples = _dual_vertices(half_spaces)
         vertices, merged = _merged(corners)
         kept, facets = [], []
+        along, across = _tangents(half_spaces.normals)
         for plane in range(len(half_spaces)):
             around = np.unique(merged[(triples == plane).any(axis=1)])
             if len(around) >= 3:
                 kept.append(plane)
-                facets.append(_ordered(around, vertices, half_spaces.normals[plane]))
+                facets.append(_ordered(around, vertices[around], along[plane], across[plane]))
         solid = HalfSpaces(half_spaces.normals[kept], half_spaces.offsets[kept])
         return cls(solid, vertices, tuple(facets))
 
@@ -154,10 +155,15 @@ def _merged(corners: FloatArray) -> tuple[FloatArray, IntArray]:
     return corners[distinct], inverse.astype(np.int64)
 
 
-def _ordered(around: IntArray, vertices: FloatArray, normal: FloatArray) -> tuple[int, ...]:
-    """The facet's vertices counter-clockwise about its normal."""
-    spokes = vertices[around] - vertices[around].mean(axis=0)
-    first = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
-    first /= np.linalg.norm(first)
-    angle = np.arctan2(spokes @ np.cross(normal, first), spokes @ first)
-    return tuple(int(index) for index in around[np.argsort(angle)])
+def _tangents(normals: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Two unit vectors across each normal, (n, 3) each; with it they are right-handed."""
+    first = np.cross(normals, np.eye(3)[np.abs(normals).argmin(axis=1)])
+    first /= np.linalg.norm(first, axis=1)[:, None]
+    return first, np.cross(normals, first)
+
+
+def _ordered(around: IntArray, corners: FloatArray, along: FloatArray, across: FloatArray) -> tuple[int, ...]:
+    """The facet's vertices counter-clockwise about its normal, from their `corners` and its tangents."""
+    spokes = corners - corners.mean(axis=0)
+    angle = np.arctan2(spokes @ across, spokes @ along)
+    return tuple(around[np.argsort(angle)].tolist())
