@@ -141,7 +141,9 @@ def test_that_the_default_model_reaches_the_noise_of_sampling(real_data: Callabl
         table = stored["anm"][:600, :441]
     degree, order = degrees(441), orders(441)
     particles = [from_complex_rows(np.column_stack([degree, order, row.real, row.imag])) for row in table]
-    _, study = run(Sample.of(particles), ["gaussian_field", "sample_matched"], n_draws=300, n_splits=2)
+    _, study = run(
+        Sample.of(particles), ["gaussian_field", "sample_matched"], n_draws=500, n_splits=2, n_repeats=1
+    )
     paper, matched = (model.distances for model in study.models)
     aspect, convexity = KEYS.index("aspect_ratio"), KEYS.index("convexity")
     assert matched.wasserstein[:, 0, aspect].mean() < paper.wasserstein[:, 0, aspect].mean() / 3
