@@ -6,7 +6,7 @@ from typing import Annotated, Any
 import typer
 
 from regolith_studio.cli import repose_runs
-from regolith_studio.cli.options import Json, Settings, as_bad_use
+from regolith_studio.cli.options import Jobs, Json, Seed, Settings, as_bad_use
 from regolith_studio.cli.repose_options import evaluation_settings
 from regolith_studio.cli.whole_help import WholeHelp
 
@@ -30,8 +30,9 @@ Diameter = Annotated[
 
 
 @app.command("engines")
-def engines(json: Json = False) -> None:
+def engines(json: Json = False, jobs: Jobs = 1, seed: Seed = 0) -> None:
     """What each engine represents of the paper's contact model, and whether it is here."""
+    del jobs, seed  # taken by every command
     from regolith_studio.cli.terminal import print_json
     from regolith_studio.dem.engine_table import HEADINGS, engine_rows
 
@@ -55,13 +56,16 @@ def measure(
     diameter: Diameter = 0.0,
     unit: PositionUnit = "m",
     json: Json = False,
+    jobs: Jobs = 1,
+    seed: Seed = 0,
 ) -> None:
     """Measure the angle of repose of a pile: both sections and both models of the paper."""
     from regolith_studio.cli.repose_words import in_words
     from regolith_studio.cli.terminal import complain, print_json
     from regolith_studio.dem.repose import measure_repose, measurement_document
 
-    settings = evaluation_settings(set_)
+    del jobs  # taken by every command
+    settings = evaluation_settings([f"seed={seed}", *(set_ or ())])
     points, diameters = positions_in(file, unit, diameter)
     measurement = measure_repose(points, diameters, settings)
     document = {"file": str(file), "length_unit": "m"} | measurement_document(measurement)

@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
-from regolith_studio.cli.options import Folder, Json, Seed, Settings, values
+from regolith_studio.cli.options import Folder, Jobs, Json, Seed, Settings, values
 from regolith_studio.cli.repose_options import (
     CASE_KEYS,
     Contact,
@@ -36,6 +36,7 @@ def run(
     cohesion: Annotated[str, typer.Option("--cohesion", help="none, given or scaled.", metavar="C")] = "none",
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace an earlier run.")] = False,
     json: Json = False,
+    jobs: Jobs = 1,
     seed: Seed = 0,
 ) -> None:
     """Simulate the lifting cylinder with particles of a dataset and measure the pile (section 2.6)."""
@@ -45,6 +46,7 @@ def run(
     from regolith_studio.cli.terminal import complain, follow, print_json
     from regolith_studio.jobs.repose import simulate_repose
 
+    del jobs  # a run is one process
     order = order_from(
         engine,
         contact,
@@ -84,6 +86,7 @@ def study(
     set_: Settings = None,
     measure: Measure = None,
     json: Json = False,
+    jobs: Jobs = 1,
     seed: Seed = 0,
 ) -> None:
     """Angle of repose against one value or one dataset against others; goes on where it was stopped."""
@@ -91,6 +94,7 @@ def study(
     from regolith_studio.jobs.repose import StudyRow, study_repose
     from regolith_studio.studies.repose import repose_table, write_repose_study
 
+    del jobs  # one run after the other, so that what is there already is known
     key, points = _varied(vary)
     rows = []
     for folder in datasets:

@@ -11,6 +11,9 @@ from regolith_studio.dataset.folder import write_dataset
 from regolith_studio.dem.parameters import ContactParameters, LiftingCylinderTest
 from regolith_studio.dem.pile import Pile, pile_bytes
 from regolith_studio.dem.run_folder import read_run
+from regolith_studio.geometry.directions import icosphere
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.runners.inline import InlineRunner
 from regolith_studio.session.session import Session
 from regolith_studio.ui.commands import Commands
@@ -214,3 +217,15 @@ def test_that_each_engine_has_its_own_numerics(page):
     assert page.setup.order().settings.spheres == 3
     page.setup.engine.setCurrentIndex(page.setup.engine.findData("mujoco"))
     assert page.setup.order().settings.time_step == 0.01
+
+
+def test_that_the_open_particles_become_a_dataset(page, wait):
+    session = page._context.session
+    session.choose(method="quadric", target="particle")
+    session.adopt([Particle("ball", Mesh(40.0 * icosphere(2).vertices, icosphere(2).faces))])
+    page.make_dataset()
+    wait(lambda: page.setup.dataset is not None)
+    assert page.setup.dataset.name == "open-particles"
+    wait(lambda: page.player.pile is not None)
+    assert page.setup.run.isEnabled()
+    assert not page._context.toast.sentence.text()
