@@ -4,6 +4,7 @@ A slab is a run of slices along z. Whatever reads one, a file or an array, is a 
 what is written slab by slab lies in a :class:`Scratch`, in memory or in files that vanish with it.
 """
 
+import math
 import shutil
 import tempfile
 from pathlib import Path
@@ -13,6 +14,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
+from regolith_studio.errors import EnvironmentProblem
 from regolith_studio.imaging.volume import VolumeKind
 
 SLAB_VOXELS = 2**24
@@ -84,10 +86,23 @@ class Scratch:
         self.close()
 
     def zeros(self, shape: tuple[int, int, int], dtype: DTypeLike) -> NDArray[Any]:
-        """Zeros of shape (nx, ny, nz) whose slices along z are contiguous."""
+        """Zeros of shape (nx, ny, nz) whose slices along z are contiguous.
+
+        Raises
+        ------
+        EnvironmentProblem
+            If the disk has no room for them: a file that outgrows its disk ends the process.
+        """
         slices_first = shape[::-1]
         if self._folder is None:
             return np.zeros(slices_first, dtype).T
+        needed = math.prod(shape) * np.dtype(dtype).itemsize
+        free = shutil.disk_usage(self._folder).free
+        if needed > free:
+            raise EnvironmentProblem(
+                f"{needed / 2**30:.3g} GiB of temporary files do not fit into {self._folder.parent}, "
+                f"which has {free / 2**30:.3g} GiB left."
+            )
         self._count += 1
         path = self._folder / f"{self._count}.raw"
         return np.memmap(path, dtype=np.dtype(dtype), mode="w+", shape=slices_first).T
