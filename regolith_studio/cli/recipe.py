@@ -67,7 +67,7 @@ def run(
     if seed is not None:
         wish = wish.model_copy(update={"seed": seed})
     with contextlib.closing(_crew(runner, jobs, address, tls)) as crew:
-        done = follow(perform(wish, recipe.parent, output, crew, resume, chunk))
+        done = follow(perform(wish, recipe.parent, output, crew, resume, chunk), logged=True)
     complain(done.problems)
     if json:
         print_json({"folder": str(output), "files": done.files, "problems": list(done.problems)})

@@ -1,6 +1,7 @@
 """What a command says while it works (stderr, only to a person) and when it is done (stdout)."""
 
 import json
+import math
 import sys
 import time
 from collections.abc import Iterable
@@ -17,13 +18,21 @@ _SILENCE = 30.0
 """Seconds between two lines of progress where there is no terminal."""
 
 
-def follow(steps: "Steps") -> Any:
-    """Drive a job to its result; on a terminal with a progress bar, else with a line now and then."""
-    return _with_bar(steps) if sys.stderr.isatty() else _with_lines(steps)
+def follow(steps: "Steps", logged: bool = False) -> Any:
+    """Drive a job to its result; on a terminal with a progress bar that disappears in the end.
+
+    Parameters
+    ----------
+    logged
+        Whether to write a line now and then where there is no terminal, as long batches do.
+    """
+    if sys.stderr.isatty():
+        return _with_bar(steps)
+    return _with_lines(steps, _SILENCE if logged else math.inf)
 
 
-def _with_lines(steps: "Steps") -> Any:
-    """Quiet, but for a line about every half minute, as a log wants it."""
+def _with_lines(steps: "Steps", silence: float) -> Any:
+    """A line after so many seconds without one."""
     from regolith_studio.jobs import events
 
     said = time.monotonic()
@@ -32,7 +41,7 @@ def _with_lines(steps: "Steps") -> Any:
             step = next(steps)
         except StopIteration as end:
             return end.value
-        if isinstance(step, events.Progress) and time.monotonic() - said > _SILENCE:
+        if isinstance(step, events.Progress) and time.monotonic() - said > silence:
             said = time.monotonic()
             complain([f"{step.done:,} of {step.total:,}{': ' if step.message else ''}{step.message}"])
 

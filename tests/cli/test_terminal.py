@@ -19,4 +19,6 @@ def test_that_a_log_gets_a_line_now_and_then(
     assert capsys.readouterr().err == ""
     monkeypatch.setattr(terminal, "_SILENCE", -1.0)
     assert terminal.follow(story()) == 7
+    assert capsys.readouterr().err == ""
+    assert terminal.follow(story(), logged=True) == 7
     assert capsys.readouterr().err == "1,500 of 2,000: 5 a second, 1 min 40 s left\n"
