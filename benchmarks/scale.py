@@ -145,6 +145,9 @@ def report(runs: Sequence[Run]) -> None:
     if len({run.particles for run in runs}) > 1:
         counts, costs = np.array([(run.particles, run.processor) for run in runs]).T
         each, before = np.polyfit(counts, costs, 1)
+        if each <= 0:
+            print("The machine was too uneven for a line through these runs: nothing is extrapolated.")
+            return
         memory_each, memory_before = np.polyfit(counts, [run.memory for run in runs], 1)
         for count in (10_000, 100_000):
             wall = (before + each * count) / 2
@@ -166,6 +169,7 @@ def main() -> None:
     if options.one:
         print(json.dumps(asdict(one(options.one, options.jobs))))
         return
+    measured(2, 1)  # compiles kernels, if any have changed
     runs = []
     for particles in options.particles:
         runs.append(measured(particles, options.jobs))
