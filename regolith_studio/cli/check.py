@@ -1,4 +1,4 @@
-"""``check``: versions, OpenGL, display, and what is missing."""
+"""``check``: versions, OpenGL, display, engines, and what is missing."""
 
 import typer
 
@@ -6,7 +6,7 @@ from regolith_studio.cli.options import Json
 
 
 def check(json: Json = False) -> None:
-    """Print versions, the OpenGL renderer, the display and what is missing."""
+    """Print versions, the OpenGL renderer, the display, the DEM engines found and what is missing."""
     from regolith_studio.cli.machine import examine_machine
     from regolith_studio.cli.terminal import print_json
 

@@ -42,7 +42,7 @@ print(json.dumps({
 
 
 def examine_machine() -> dict[str, Any]:
-    """Versions, machine, OpenGL, display, and a list of sentences about what is missing."""
+    """Versions, machine, OpenGL, display, DEM engines, and sentences about what is missing."""
     missing: list[str] = []
     opengl = _ask_child(_OPENGL_QUESTION)
     if "problem" in opengl:
@@ -58,8 +58,16 @@ def examine_machine() -> dict[str, Any]:
         "machine": {"system": platform.platform(), "cores": os.cpu_count(), "executable": sys.executable},
         "opengl": opengl,
         "display": display,
+        "engines": _engines(),
         "missing": missing,
     }
+
+
+def _engines() -> dict[str, str]:
+    """Versions of the engines that can simulate the angle of repose, or why one cannot be used."""
+    from regolith_studio.dem.engine_table import engine_rows
+
+    return {row["key"]: row["problem"] or row["version"] for row in engine_rows()}
 
 
 def _packages() -> dict[str, str | None]:
