@@ -237,6 +237,8 @@ def flush_after_turn(view: View, n: int, i: int, cosine: float, sine: float) -> 
     Also the squared length of that side in the turned plane; 0 where it has no direction.
     """
     x, y, z, touch = view.x, view.y, view.z, view.touch
+    if view.dx[i] == 0.0 and view.dy[i] == 0.0:
+        return 0.0, 0.0
     j = i + 1 if i + 1 < n else 0
     dx, dy = x[j] - x[i], (y[j] - y[i]) * cosine - (z[j] - z[i]) * sine
     squared = dx * dx + dy * dy

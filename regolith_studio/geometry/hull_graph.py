@@ -45,7 +45,8 @@ class HullGraph(NamedTuple):
     outgoing
         One half-edge that starts at each vertex, shape (n,).
     closed
-        Whether every half-edge has a twin and every vertex a face; nothing else works if not.
+        Whether half-edges pair up as twins, every vertex has a face and every face a normal; nothing else
+        works if not.
     """
 
     points: FloatArray
@@ -80,9 +81,13 @@ def hull_graph(points: FloatArray, faces: IntArray) -> HullGraph:
                 twin[h] = bucket[i]
         closed = closed and twin[h] >= 0
         outgoing[origin[h]] = h
+    for h in range(len(origin)):
+        closed = closed and twin[twin[h]] == h
     for v in range(len(points)):
         closed = closed and outgoing[v] >= 0
     normals, blur = _face_normals(points, faces, twin)
+    for f in range(len(faces)):
+        closed = closed and length(row(normals, f)) > 0.0
     facet = _facets(normals, blur, twin)
     return HullGraph(points, normals, facet, origin, twin, outgoing, closed)
 
@@ -107,20 +112,24 @@ def _face_normals(points: FloatArray, faces: IntArray, twin: IntArray) -> tuple[
                 normals[f, k] = normal[k] / size
         else:
             slivers += 1
-    for _ in range(slivers):
+    for attempt in range(2 * slivers):
         for f in range(len(faces)):
             if length(row(normals, f)) == 0.0:
-                _take_normal(points, faces, twin, f, normals)
+                _take_normal(points, faces, twin, f, normals, attempt >= slivers)
     return normals, blur
 
 
 @kernel
-def _take_normal(points: FloatArray, faces: IntArray, twin: IntArray, f: int, normals: FloatArray) -> None:
-    """Give face `f` the normal of the neighbour across its longest edge."""
+def _take_normal(
+    points: FloatArray, faces: IntArray, twin: IntArray, f: int, normals: FloatArray, known: bool
+) -> None:
+    """Give face `f` the normal across its longest edge; if `known`, its longest to one that has a normal."""
     longest = 0.0
     for k in range(3):
         edge = mixed(row(points, faces[f, (k + 1) % 3]), 1.0, row(points, faces[f, k]), -1.0)
         neighbour = twin[3 * f + k] // 3
+        if known and length(row(normals, neighbour)) == 0.0:
+            continue
         if neighbour >= 0 and length(edge) > longest:
             longest = length(edge)
             for axis in range(3):

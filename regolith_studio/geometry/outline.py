@@ -27,7 +27,7 @@ def outline(x: FloatArray, y: FloatArray) -> IntArray:
             chain[n] = v
             n += 1
         n -= 1
-    return chain[:n]
+    return chain[: min(n, len(x))]
 
 
 @inlined

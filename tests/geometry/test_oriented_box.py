@@ -191,3 +191,29 @@ def test_that_the_corners_of_a_box_span_it() -> None:
     assert np.ptp(box.corners, axis=0) == pytest.approx(box.extents)
     assert box.corners.mean(axis=0) == pytest.approx(box.centre)
     assert (box.max_diameter, box.intermediate_diameter, box.min_diameter) == (3.0, 2.0, 1.0)
+
+
+def test_that_two_slivers_on_one_edge_of_a_hull_do_not_disturb_the_box() -> None:
+    corners = np.vstack([cuboid(3.0, 2.0, 1.0).vertices, [[0.0, -1.0, -0.5], [0.3, -1.0 - 1e-11, -0.5]]])
+    mesh = cloud(corners)
+    vars(mesh)["hull"] = Mesh(corners, split_edge(cuboid(3.0, 2.0, 1.0).faces.tolist(), corners))
+    assert minimum_volume_box(mesh).extents == pytest.approx([3.0, 2.0, 1.0], rel=1e-8)
+
+
+def split_edge(faces: list[list[int]], corners: FloatArray) -> list[list[int]]:
+    """The cuboid's faces with both points put on one of its long edges: two triangles without height."""
+    on_edge = np.flatnonzero((corners[:8, 1] == -1.0) & (corners[:8, 2] == -0.5))
+    left, right = (int(i) for i in on_edge[np.argsort(corners[on_edge, 0])])
+    split: list[list[int]] = []
+    for face in faces:
+        for k in range(3):
+            a, b, c = (face[(k + step) % 3] for step in range(3))
+            if (a, b) == (left, right):
+                split += [[a, 8, c], [8, b, c]]
+                break
+            if (a, b) == (right, left):
+                split += [[a, 9, c], [9, b, c]]
+                break
+        else:
+            split.append(face)
+    return [*split, [8, left, 9], [right, 8, 9]]
