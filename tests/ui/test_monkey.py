@@ -1,0 +1,213 @@
+"""A monkey at the window: random clicks, keys, drags, wheels; nothing may break, hang or be left behind."""
+
+import os
+import random
+import sys
+
+import pytest
+import shiboken6
+from PySide6.QtCore import QEvent, QPoint, QPointF, Qt
+from PySide6.QtGui import QMouseEvent, QWheelEvent
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import (
+    QAbstractButton,
+    QApplication,
+    QComboBox,
+    QDialog,
+    QFileDialog,
+    QLineEdit,
+    QMenu,
+    QMessageBox,
+    QPlainTextEdit,
+    QSlider,
+    QWidget,
+)
+
+from regolith_studio.ui.app import open_window
+
+FORBIDDEN = {
+    "quit",
+    "studies.run_all",
+    "open",
+    "open_folder",
+    "save_recipe",
+    "save_project",
+    "save_project_as",
+}
+"""Commands that ask for files of the machine, or end the game."""
+LONG_WORK = {"toast_details", "lmax_study_start", "coarsening_study_start", "solids_start"}
+KEYS = (
+    *(Qt.Key.Key_Left, Qt.Key.Key_Right, Qt.Key.Key_Up, Qt.Key.Key_Down, Qt.Key.Key_Home, Qt.Key.Key_End),
+    *(Qt.Key.Key_PageUp, Qt.Key.Key_PageDown, Qt.Key.Key_Tab, Qt.Key.Key_Space, Qt.Key.Key_Escape),
+    *(Qt.Key.Key_0, Qt.Key.Key_1, Qt.Key.Key_5, Qt.Key.Key_9, Qt.Key.Key_Period, Qt.Key.Key_Backspace),
+)
+LOOK_AROUND = 8
+"""Events between two looks at what is there to be clicked, and between two turns of the event loop."""
+PAGES = ("explore", "sample", "studies")
+"""Those that this folder answers for."""
+
+
+class Monkey:
+    """Acts on whatever it finds in the window.
+
+    Parameters
+    ----------
+    window
+        The playground.
+    seed
+        The same one does the same things.
+    """
+
+    def __init__(self, window, seed):
+        self.window, self.random, self.done = window, random.Random(seed), 0
+        self._known = []
+
+    def act(self):
+        """One thing a user could do."""
+        if self.done % LOOK_AROUND == 0:
+            self._close_dialogs()
+            self._known = self._widgets()
+        self.done += 1
+        action = self.random.choices(
+            (self._click, self._press, self._drag, self._wheel, self._command, self._go, self._resize),
+            (30, 25, 20, 12, 6, 2, 1),
+        )[0]
+        action()
+
+    def _widgets(self):
+        return [
+            each
+            for each in self.window.page.findChildren(QWidget)
+            if each.isVisible() and each.isEnabled() and each.width() > 4 and each.height() > 4
+        ]
+
+    def _some_widget(self):
+        widget = self.random.choice(self._known or [self.window.page])
+        alive = shiboken6.isValid(widget) and widget.isVisible() and widget.isEnabled()
+        return widget if alive else self.window.page
+
+    def _place(self, widget):
+        return QPoint(self.random.randrange(widget.width()), self.random.randrange(widget.height()))
+
+    def _click(self):
+        widget = self._some_widget()
+        if self._is_dangerous(widget):
+            return
+        _mouse(widget, QEvent.Type.MouseButtonPress, self._place(widget))
+        _mouse(widget, QEvent.Type.MouseButtonRelease, self._place(widget))
+
+    def _press(self):
+        widget = self._some_widget()
+        if not self._is_dangerous(widget) and not isinstance(widget, QPlainTextEdit):
+            QTest.keyClick(widget, self.random.choice(KEYS))
+
+    def _drag(self):
+        sliders = [each for each in self._known if shiboken6.isValid(each) and isinstance(each, QSlider)]
+        if sliders and self.random.random() < 0.5:
+            slider = self.random.choice(sliders)
+            slider.setValue(self.random.randint(slider.minimum(), slider.maximum()))
+            return
+        widget = self._some_widget()
+        if self._is_dangerous(widget):
+            return
+        _mouse(widget, QEvent.Type.MouseButtonPress, self._place(widget))
+        for _ in range(3):
+            _mouse(widget, QEvent.Type.MouseMove, self._place(widget))
+        _mouse(widget, QEvent.Type.MouseButtonRelease, self._place(widget))
+
+    def _wheel(self):
+        widget = self._some_widget()
+        place = QPointF(self._place(widget))
+        turn = QPoint(0, self.random.choice((-120, 120)))
+        nothing, phase = Qt.KeyboardModifier.NoModifier, Qt.ScrollPhase.NoScrollPhase
+        event = QWheelEvent(
+            place, widget.mapToGlobal(place), QPoint(), turn, Qt.MouseButton.NoButton, nothing, phase, False
+        )
+        QApplication.sendEvent(widget, event)
+
+    def _command(self):
+        names = [
+            name
+            for name, action in self.window.menus.by_name.items()
+            if action.isEnabled() and action.isVisible() and name not in FORBIDDEN and action.menu() is None
+        ]
+        name = self.random.choice(names)
+        action = self.window.menus.by_name[name]
+        if "…" not in action.text() and not name.startswith("go.") and "page" not in name:
+            action.trigger()
+
+    def _go(self):
+        self.window.go(self.random.choice(PAGES))
+
+    def _resize(self):
+        self.window.resize(self.random.randint(600, 900), self.random.randint(420, 600))
+
+    def _is_dangerous(self, widget):
+        """Whether a click opens a file dialog or a menu with a loop of its own."""
+        if isinstance(widget, QAbstractButton):
+            return "…" in widget.text() or widget.objectName() in LONG_WORK
+        return isinstance(widget, QComboBox | QMenu | QLineEdit) and self.random.random() < 0.7
+
+    def _close_dialogs(self):
+        popup = QApplication.activePopupWidget()
+        while popup is not None:
+            popup.close()
+            popup = QApplication.activePopupWidget()
+        for each in QApplication.topLevelWidgets():
+            if isinstance(each, QDialog | QMessageBox | QFileDialog) and each.isVisible():
+                each.reject()
+
+
+def _mouse(widget, kind, place):
+    """A mouse event straight to a widget, so that no real pointer is needed."""
+    left, nothing = Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier
+    local = QPointF(place)
+    buttons = Qt.MouseButton.NoButton if kind == QEvent.Type.MouseButtonRelease else left
+    button = Qt.MouseButton.NoButton if kind == QEvent.Type.MouseMove else left
+    event = QMouseEvent(kind, local, widget.mapToGlobal(local), button, buttons, nothing)
+    QApplication.sendEvent(widget, event)
+
+
+@pytest.fixture
+def window(shown, preferences, wait, monkeypatch):
+    monkeypatch.setattr("regolith_studio.ui.main_window.may_close", lambda *_: True)
+    made = open_window(views="image", preferences=preferences)
+    made.resize(760, 520)
+    shown(made)
+    wait(lambda: made.session.results.coarsened is not None and not made.session.tasks, 120.0)
+    made.session.choose(method="quadric", level=2)
+    return made
+
+
+def play(window, monkeypatch, app, count, seed):
+    """Let the monkey act; what goes wrong in a slot reaches sys.excepthook and fails the test."""
+    wrong = []
+    monkeypatch.setattr(sys, "excepthook", lambda *error: wrong.append(error))
+    problems = []
+    window.toast.said.connect(lambda _mood, _sentence, details: problems.append(details))
+    monkey = Monkey(window, seed)
+    for number in range(count):
+        monkey.act()
+        if number % LOOK_AROUND == 0:
+            app.processEvents()
+        assert not wrong, f"event {number} of seed {seed}: {wrong[0]}"
+    mistakes = [text for text in problems if "Traceback" in text and "regolith_studio.errors" not in text]
+    assert not mistakes, mistakes[0]
+    for task in window.session.tasks:
+        window.session.cancel(task.id)
+
+
+def test_that_a_short_visit_of_the_monkey_leaves_the_window_well(window, monkeypatch, app, wait):
+    play(window, monkeypatch, app, 250, seed=1)
+    window.go("explore")
+    window.session.choose(selected=window.session.particles[0].id, l_max=7)
+    wait(lambda: not window.session.tasks, 60.0)
+    assert window.session.results.surface_l_max == 7 or window.session.results.surface is None
+
+
+@pytest.mark.slow
+@pytest.mark.skipif("REGOLITH_STUDIO_MONKEY" not in os.environ, reason="asked for by a number of events")
+def test_that_a_long_visit_of_the_monkey_leaves_the_window_well(window, monkeypatch, app, wait):
+    """``REGOLITH_STUDIO_MONKEY=50000`` lets it stay for so many events, about 15 ms each."""
+    play(window, monkeypatch, app, int(os.environ["REGOLITH_STUDIO_MONKEY"]), seed=2)
+    wait(lambda: not window.session.tasks, 60.0)
