@@ -10,7 +10,7 @@ from PySide6.QtCore import QPointF
 from PySide6.QtGui import QColor
 from PySide6.QtWidgets import QToolTip, QWidget
 
-from regolith_studio.ui.widgets.plot import Plot
+from regolith_studio.ui.widgets.plot import Numbers, Plot
 
 
 @dataclass(frozen=True)
@@ -61,6 +61,13 @@ class BarPlot(Plot):
         self._categories, self._series = tuple(categories), tuple(series)
         self.set_empty(not any(np.isfinite(each.values).any() for each in series))
         self.redraw()
+
+    def numbers(self) -> Numbers:
+        rows: list[tuple[str | float, ...]] = [
+            (category, *(each.values[place] for each in self._series))
+            for place, category in enumerate(self._categories)
+        ]
+        return ("category", *(f"{each.label} [{self._unit}]" for each in self._series)), rows
 
     def redraw(self) -> None:
         for item in self._items:

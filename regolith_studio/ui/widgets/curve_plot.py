@@ -7,7 +7,8 @@ import numpy as np
 import pyqtgraph as pg
 from PySide6.QtWidgets import QWidget
 
-from regolith_studio.ui.widgets.plot import Plot
+from regolith_studio.ui.widgets.plot import Numbers, Plot
+from regolith_studio.ui.widgets.plot_files import plain_text
 
 
 @dataclass(frozen=True)
@@ -65,6 +66,14 @@ class CurvePlot(Plot):
         self._curves = tuple(curves)
         self.set_empty(not any(curve.x for curve in curves))
         self.redraw()
+
+    def numbers(self) -> Numbers:
+        rows: list[tuple[str | float, ...]] = [
+            (plain_text(curve.label), float(x), float(y))
+            for curve in self._curves
+            for x, y in zip(curve.x, curve.y, strict=True)
+        ]
+        return ("curve", *self._labels), rows
 
     def set_marker(self, x: float | None) -> None:
         """A vertical line at `x`, or none."""

@@ -1,15 +1,34 @@
 """A plot with a legend above it, labelled axes, and a sentence where there is nothing to show yet."""
 
+from collections.abc import Callable, Iterable
+from pathlib import Path
+
 import pyqtgraph as pg
 from PySide6.QtCore import Qt
-from PySide6.QtGui import QColor, QFont, QResizeEvent
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QStackedLayout, QVBoxLayout, QWidget
+from PySide6.QtGui import QColor, QContextMenuEvent, QFont, QResizeEvent
+from PySide6.QtWidgets import (
+    QFileDialog,
+    QHBoxLayout,
+    QLabel,
+    QMenu,
+    QMessageBox,
+    QStackedLayout,
+    QVBoxLayout,
+    QWidget,
+)
 
+from regolith_studio.errors import RegolithError
 from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.widgets.plot_files import DRAWN, save_figure, save_numbers
+
+Numbers = tuple[tuple[str, ...], list[tuple[str | float, ...]]]
+"""Names of columns, and rows."""
 
 
 class Plot(QWidget):
     """Axes, grid, legend and placeholder; subclasses draw into ``self.canvas``.
+
+    A click with the right button offers to save the figure, and its numbers where :meth:`numbers` has any.
 
     Parameters
     ----------
@@ -30,6 +49,7 @@ class Plot(QWidget):
         self.canvas.setMouseEnabled(x=False, y=False)
         self.canvas.hideButtons()
         self.canvas.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self.canvas.setContextMenuPolicy(Qt.ContextMenuPolicy.NoContextMenu)
         self.legend = QLabel()
         self.legend.setTextFormat(Qt.TextFormat.RichText)
         self.remark = QLabel()
@@ -50,6 +70,7 @@ class Plot(QWidget):
         top.addStretch(1)
         top.addWidget(self.remark)
         page = QWidget()
+        self._page = page
         column = QVBoxLayout(page)
         column.setContentsMargins(2, 2, 8, 2)
         column.setSpacing(0)
@@ -118,6 +139,68 @@ class Plot(QWidget):
 
     def redraw(self) -> None:
         """Draw everything again, because the colours have changed."""
+
+    def numbers(self) -> Numbers:
+        """What is drawn, as a table; no columns where a plot cannot say it in numbers."""
+        return (), []
+
+    def contextMenuEvent(self, event: QContextMenuEvent) -> None:
+        """Offer the figure and its numbers as files."""
+        if not self.is_empty():
+            self.menu().popup(event.globalPos())
+
+    def menu(self) -> QMenu:
+        """What can be done with the plot."""
+        menu = QMenu(self)
+        menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        menu.addAction("Save &figure ...", lambda: self._save("Save figure", DRAWN, self.save_figure))
+        if self.numbers()[0]:
+            menu.addAction(
+                "Save &numbers ...", lambda: self._save("Save numbers", (".csv",), self.save_numbers)
+            )
+        return menu
+
+    def save_figure(self, path: Path) -> None:
+        """Write legend and plot as a PNG, SVG or PDF file.
+
+        Raises
+        ------
+        InputError
+            If the ending is another.
+        FileError
+            If the file cannot be written.
+        """
+        save_figure(self._page, path)
+
+    def save_numbers(self, path: Path) -> None:
+        """Write what is drawn as a CSV file.
+
+        Raises
+        ------
+        FileError
+            If the file cannot be written.
+        """
+        save_numbers(self.accessibleName() or self.objectName(), *self.numbers(), path)
+
+    def _ask_for_figure(self) -> None:
+        self._save("Save figure", DRAWN, self.save_figure)
+
+    def _ask_for_numbers(self) -> None:
+        self._save("Save numbers", (".csv",), self.save_numbers)
+
+    def _save(self, title: str, endings: Iterable[str], write: Callable[[Path], None]) -> None:
+        known = tuple(endings)
+        kinds = ";;".join(f"{ending[1:].upper()} (*{ending})" for ending in known)
+        name, kind = QFileDialog.getSaveFileName(self, title, str(Path.home() / f"plot{known[0]}"), kinds)
+        if not name:
+            return
+        path = Path(name)
+        if path.suffix.lower() not in known:
+            path = path.with_name(path.name + "." + kind.partition(" ")[0].lower())
+        try:
+            write(path)
+        except RegolithError as error:
+            QMessageBox.warning(self, title, str(error))
 
     def pen(self, colour: str, width: float = 1.0, dash: bool = False) -> object:
         """A line of this colour."""
