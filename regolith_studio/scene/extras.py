@@ -9,13 +9,14 @@ import numpy as np
 import pyvista as pv
 from numpy.typing import ArrayLike
 
-from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.arrays import BoolArray, FloatArray
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.scene import palette, surfaces
 from regolith_studio.scene.palette import Surroundings
 
 BOX = "bounding_box"
 STAR_POINT = "star_point"
+HIDDEN = "hidden"
 GHOST = "ghost"
 GHOST_OPACITY = 0.28
 SEEN_THROUGH = 0.45
@@ -60,6 +61,22 @@ def show_star_point(
     ball = pv.Sphere(radius=STAR_SHARE * size, center=tuple(np.asarray(point, dtype=float)))
     actor = _show(plotter, STAR_POINT, ball, surroundings.ink, 1.0)
     actor.prop.lighting = False
+
+
+def show_hidden(plotter: Any, mesh: Mesh | None, hidden: BoolArray | None) -> None:
+    """The faces that the star point cannot see, in a colour of their own.
+
+    Parameters
+    ----------
+    hidden
+        Shape (m,), one for each face of `mesh`.
+    """
+    if mesh is None or hidden is None or not hidden.any():
+        _hide(plotter, HIDDEN)
+        return
+    faces = mesh.faces[hidden]
+    cells = np.column_stack([np.full(len(faces), 3), faces]).ravel()
+    _show(plotter, HIDDEN, pv.PolyData(np.array(mesh.vertices), faces=cells), palette.HIDDEN_COLOUR, 1.0)
 
 
 def show_ghost(plotter: Any, mesh: Mesh | None, colour: str = palette.PARTICLE_MATERIAL.colour) -> None:

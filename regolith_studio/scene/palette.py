@@ -9,6 +9,8 @@ POLYHEDRON = "#e69f00"
 DESCRIPTOR_COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8d8a84", "#b5a900")
 """One for each curve of a descriptor, in the order of the catalogue."""
 
+HIDDEN_COLOUR = "#d55e00"
+"""What cannot be seen from the star point."""
 ERROR_MAP = "RdBu_r"
 """Diverging: blue where the fit lies inside the particle, red where outside."""
 

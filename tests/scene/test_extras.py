@@ -50,3 +50,14 @@ def test_that_the_star_point_is_seen_through_the_surface(plotter) -> None:
     extras.show_star_point(plotter, None)
     plotter.render()
     assert np.abs(plotter.screenshot(return_img=True).astype(int) - plain).max() < 3
+
+
+def test_that_only_the_hidden_faces_are_coloured_and_go_again(plotter) -> None:
+    ball = icosphere(1)
+    hidden = ball.triangles[:, :, 2].min(axis=1) > 0.0
+    extras.show_hidden(plotter, ball, hidden)
+    shown = plotter.actors[extras.HIDDEN]
+    assert shown.mapper.dataset.n_cells == hidden.sum() > 0
+    assert shown.mapper.dataset.points[np.unique(shown.mapper.dataset.regular_faces)][:, 2].min() > 0.0
+    extras.show_hidden(plotter, ball, np.zeros_like(hidden))
+    assert not shown.GetVisibility()

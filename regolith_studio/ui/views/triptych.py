@@ -8,10 +8,11 @@ import numpy as np
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QSplitter, QWidget
 
-from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.arrays import BoolArray, FloatArray
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.oriented_box import minimum_volume_box
+from regolith_studio.harmonics.visibility import hidden_faces
 from regolith_studio.scene import extras, surfaces
 from regolith_studio.scene.distance import signed_distances
 from regolith_studio.session.results import ParticleEntry, Results
@@ -49,6 +50,7 @@ class Triptych(QSplitter):
         self._heat = False
         self._extras: dict[str, bool] = {}
         self._star_point: FloatArray | None = None
+        self._hidden: BoolArray | None = None
         self._solid: tuple[ConvexPolyhedron, FloatArray] | None = None
         self.set_theme(self._theme)
         self._empty_titles()
@@ -58,7 +60,7 @@ class Triptych(QSplitter):
         if entry is None or entry.particle.mesh is self._shown:
             return
         mesh = self._shown = entry.particle.mesh
-        self._fit = self._solid = self._star_point = None
+        self._fit = self._solid = self._star_point = self._hidden = None
         for name in NAMES[1:]:
             self.views[name].draw(surfaces.clear)
         self._draw_extras(*NAMES)
@@ -108,8 +110,8 @@ class Triptych(QSplitter):
         self._draw_extras(*NAMES)
 
     def show_star_point(self, point: FloatArray | None) -> None:
-        """Where the radius function begins."""
-        self._star_point = point
+        """Where the radius function begins; what it cannot see of the particle is shown with it."""
+        self._star_point, self._hidden = point, None
         self._draw_extras("particle", "fit")
 
     def set_wireframe(self, wireframe: bool) -> None:
@@ -160,8 +162,16 @@ class Triptych(QSplitter):
         seen = self._extras.get("star_point") and mesh is not None and name != "polyhedron"
         size = float(np.ptp(self._shown.vertices, axis=0).max()) if self._shown is not None else 1.0
         extras.show_star_point(plotter, self._star_point if seen else None, size, ink)
+        if name == "particle":
+            extras.show_hidden(plotter, mesh, self._hidden_faces() if seen else None)
         over = self._extras.get("overlay") and name != "particle" and (mesh is not None or solid is not None)
         extras.show_ghost(plotter, self._shown if over else None)
+
+    def _hidden_faces(self) -> BoolArray | None:
+        """Faces of the particle that the star point cannot see; looked for once a fit."""
+        if self._hidden is None and self._shown is not None and self._star_point is not None:
+            self._hidden = hidden_faces(self._shown, self._star_point)
+        return self._hidden
 
     def _empty_titles(self) -> None:
         self.frames["particle"].set_texts("CT particle")

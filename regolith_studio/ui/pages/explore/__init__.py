@@ -39,7 +39,7 @@ PAGE = Page(
         ActionSpec("&View", "heat", "&Distance map", "heat", "Ctrl+D", "Show fitting errors", False, "icon"),
         ActionSpec("&View", "overlay", "&Overlay the particle", "overlay", "", "In all", False, "icon"),
         ActionSpec("&View", "box", "&Bounding box", "box", "Ctrl+B", "Smallest in volume", False, "icon"),
-        ActionSpec("&View", "star_point", "Star &point", "star", "", "Of the fit", False, "icon"),
+        ActionSpec("&View", "star_point", "Star &point", "star", "", "And what it cannot see", False, "icon"),
         ActionSpec(PAGE_MENU, "save_picture", "Save &picture …", "camera", "Ctrl+P", "PNG", bar="icon"),
         ActionSpec(PAGE_MENU, "save_animation", "Save &animation of l_max …", tip="GIF of l_max 0 to 30"),
     ),
