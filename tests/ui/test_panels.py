@@ -15,11 +15,12 @@ from regolith_studio.geometry.health import inspect
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.results import ParticleEntry
+from regolith_studio.session.sample_table import health_word
 from regolith_studio.session.tasks import Task
 from regolith_studio.ui.panels.coarsening import CoarseningPanel
 from regolith_studio.ui.panels.fit import FitPanel
 from regolith_studio.ui.panels.loss import LossPanel
-from regolith_studio.ui.panels.particle_list import ParticleListPanel, health_icon_name
+from regolith_studio.ui.panels.particle_list import ParticleListPanel
 from regolith_studio.ui.panels.tasks import IDLE, TasksPanel
 from regolith_studio.ui.widgets.bar_plot import BarPlot, BarSeries
 from regolith_studio.ui.widgets.settings_form import SettingsForm
@@ -145,12 +146,12 @@ def test_that_the_list_sorts_by_number_and_not_by_text(shown):
 
 
 def test_that_health_is_told_by_an_icon():
-    assert health_icon_name(entry("a")) == "unknown"
-    assert health_icon_name(measured("a", 1.0)) == "sound"
+    assert health_word(entry("a")) == "unknown"
+    assert health_word(measured("a", 1.0)) == "sound"
     mended = Particle("a", icosphere(1), notes=("A hole was closed.",))
-    assert health_icon_name(ParticleEntry("a", mended, inspect(mended.mesh))) == "doubtful"
+    assert health_word(ParticleEntry("a", mended, inspect(mended.mesh))) == "mended"
     open_mesh = type(mended.mesh)(mended.mesh.vertices, mended.mesh.faces[1:])
-    assert health_icon_name(ParticleEntry("a", Particle("a", open_mesh), inspect(open_mesh))) == "unsound"
+    assert health_word(ParticleEntry("a", Particle("a", open_mesh), inspect(open_mesh))) == "unsound"
 
 
 def test_that_a_task_appears_after_a_moment_and_can_be_stopped(shown, wait):

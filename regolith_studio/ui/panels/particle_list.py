@@ -16,15 +16,15 @@ from PySide6.QtCore import (
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from regolith_studio.session.results import ParticleEntry
-from regolith_studio.ui.icons import pixmap
+from regolith_studio.session.sample_table import health_sentences, health_word
 from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.widgets.health_icons import health_pixmaps
 from regolith_studio.ui.widgets.labels import heading, remark
 from regolith_studio.ui.widgets.table import ListTable
 
 Index = QModelIndex | QPersistentModelIndex
 NOWHERE = QModelIndex()
 SORT_ROLE = Qt.ItemDataRole.UserRole + 1
-_ICON = 15
 
 
 @dataclass(frozen=True)
@@ -68,23 +68,6 @@ COLUMNS = (
 )
 
 
-def health_icon_name(entry: ParticleEntry) -> str:
-    """Which icon tells the health of a particle's mesh."""
-    if entry.health is None:
-        return "unknown"
-    if not entry.health.sound:
-        return "unsound"
-    return "doubtful" if entry.health.problems or entry.particle.notes else "sound"
-
-
-def health_text(entry: ParticleEntry) -> str:
-    """All that is known about it, one sentence a line."""
-    if entry.health is None:
-        return "Being measured …"
-    sentences = (*entry.health.problems, *entry.particle.notes)
-    return "\n".join(sentences) or "A closed mesh without faults."
-
-
 class _Model(QAbstractTableModel):
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)
@@ -92,13 +75,7 @@ class _Model(QAbstractTableModel):
         self.icons: dict[str, Any] = {}
 
     def set_theme(self, theme: Theme) -> None:
-        colours = {
-            "sound": theme.good,
-            "doubtful": theme.doubtful,
-            "unsound": theme.bad,
-            "unknown": theme.muted,
-        }
-        self.icons = {name: pixmap(name, colour, _ICON) for name, colour in colours.items()}
+        self.icons = health_pixmaps(theme)
 
     def rowCount(self, parent: Index = NOWHERE) -> int:
         return 0 if parent.isValid() else len(self.entries)
@@ -112,9 +89,9 @@ class _Model(QAbstractTableModel):
             case Qt.ItemDataRole.DisplayRole:
                 return column.text(entry)
             case Qt.ItemDataRole.DecorationRole if index.column() == 0:
-                return self.icons.get(health_icon_name(entry))
+                return self.icons.get(health_word(entry))
             case Qt.ItemDataRole.ToolTipRole:
-                return health_text(entry)
+                return health_sentences(entry)
             case Qt.ItemDataRole.TextAlignmentRole if index.column() >= 2:
                 return int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
         return column.key(entry) if role == SORT_ROLE else None

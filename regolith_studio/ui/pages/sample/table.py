@@ -19,17 +19,15 @@ from PySide6.QtWidgets import QAbstractItemView, QWidget
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import Filter, form_of, health_sentences, health_word
-from regolith_studio.ui.icons import pixmap
 from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.widgets.health_icons import health_pixmaps
 from regolith_studio.ui.widgets.labels import plain_symbol
 from regolith_studio.ui.widgets.table import ListTable
 
 Index = QModelIndex | QPersistentModelIndex
 NOWHERE = QModelIndex()
 SORT_ROLE = Qt.ItemDataRole.UserRole + 1
-_ICON = 15
 _UNITS = {0: "", 1: " [µm]", 2: " [µm²]", 3: " [µm³]", 5: " [µm⁵]"}
-HEALTH_ICONS = {"sound": "sound", "mended": "doubtful", "unsound": "unsound", "unknown": "unknown"}
 HEALTH = "health"
 WORDS = 4
 """Columns of words; those of numbers follow."""
@@ -97,13 +95,7 @@ class SampleModel(QAbstractTableModel):
 
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
-        colours = {
-            "sound": theme.good,
-            "mended": theme.doubtful,
-            "unsound": theme.bad,
-            "unknown": theme.muted,
-        }
-        self._icons = {word: pixmap(HEALTH_ICONS[word], colours[word], _ICON) for word in colours}
+        self._icons = health_pixmaps(theme)
 
     def set_entries(self, entries: tuple[ParticleEntry, ...]) -> None:
         """Show other particles, or the same ones with more known about them."""
