@@ -43,7 +43,8 @@ def length_text(micrometres: float) -> str:
 class ScaleBar:
     """A bar at the lower left that keeps its meaning while the camera zooms and the picture is resized.
 
-    It is exact because the cameras use parallel projection.
+    It is there while anything is shown that could be measured with it, and exact because the cameras use
+    parallel projection.
 
     Parameters
     ----------
@@ -85,11 +86,6 @@ class ScaleBar:
         self._bar.GetProperty().SetColor(red, green, blue)
         self._label.GetTextProperty().SetColor(red, green, blue)
 
-    def set_visible(self, visible: bool) -> None:
-        """Show or hide it."""
-        self._bar.SetVisibility(visible)
-        self._label.SetVisibility(visible)
-
     @property
     def text(self) -> str:
         """What the bar says."""
@@ -98,7 +94,11 @@ class ScaleBar:
     def update(self) -> None:
         """Fit the bar to the camera; called by itself before every picture."""
         width, height = self._renderer.GetSize()
-        if not width or not height:
+        low, high = self._renderer.ComputeVisiblePropBounds()[:2]
+        measurable = low <= high  # the other way round, there is no surface
+        self._bar.SetVisibility(measurable)
+        self._label.SetVisibility(measurable)
+        if not (width and height and measurable):
             return
         per_pixel = 2.0 * self._renderer.GetActiveCamera().GetParallelScale() / height
         now = (width, height, per_pixel)

@@ -40,6 +40,22 @@ def test_that_the_bar_follows_zoom_and_stops_when_removed():
     plotter.close()
 
 
+def test_that_there_is_no_bar_where_nothing_is_shown():
+    plotter = pv.Plotter(off_screen=True, window_size=[400, 200])
+    bar = ScaleBar(plotter)
+    plotter.show(auto_close=False)
+    empty = plotter.screenshot(return_img=True)
+    ball = plotter.add_mesh(pv.Sphere(radius=40.0))
+    plotter.render()
+    corners = [picture[-40:, :150] for picture in (empty, plotter.screenshot(return_img=True))]
+    assert [int(corner.std(axis=(0, 1)).max() > 5) for corner in corners] == [0, 1]
+    ball.SetVisibility(False)
+    plotter.render()
+    assert plotter.screenshot(return_img=True)[-40:, :150].std(axis=(0, 1)).max() < 5
+    bar.remove()
+    plotter.close()
+
+
 def test_that_a_software_renderer_is_known_by_its_name():
     assert is_software("OpenGL renderer string:  llvmpipe (LLVM 15.0.6, 256 bits)")
     assert not is_software("OpenGL renderer string:  NVIDIA GeForce RTX 3060/PCIe/SSE2")

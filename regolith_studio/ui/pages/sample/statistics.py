@@ -19,7 +19,7 @@ from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.descriptors.distributions import WEIGHTINGS
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import UNITS, statistics_table
-from regolith_studio.studies.tables import Table
+from regolith_studio.studies.tables import Column, Table
 
 _WEIGHTING_LABELS = {"number": "each counts once", "volume": "weighted by volume"}
 
@@ -74,8 +74,7 @@ class StatisticsPanel(QWidget):
         shown = self.value()
         self.table.setColumnCount(len(shown.columns))
         self.table.setRowCount(len(shown.rows))
-        headers = [_with_signs(each.header) for each in shown.columns]
-        self.table.setHorizontalHeaderLabels(headers)
+        self.table.setHorizontalHeaderLabels([_two_lines(each) for each in shown.columns])
         for at, row in enumerate(shown.rows):
             for column, cell in enumerate(row):
                 item = QTableWidgetItem(f"{cell:.4g}" if isinstance(cell, float) else str(cell))
@@ -84,8 +83,10 @@ class StatisticsPanel(QWidget):
                 self.table.setItem(at, column, item)
 
 
-def _with_signs(header: str) -> str:
-    """A header of a file as it is read on screen."""
-    for plain, sign in (("[um", "[µm"), ("^2]", "²]"), ("^3]", "³]"), ("^5]", "⁵]")):
-        header = header.replace(plain, sign)
-    return header
+def _two_lines(column: Column) -> str:
+    """Name above unit, short enough for a narrow window; the file has them in full."""
+    name = column.name.replace("standard deviation", "std. dev.").replace("quantile", "quant.")
+    unit = column.unit
+    for plain, sign in (("um", "µm"), ("^2", "²"), ("^3", "³"), ("^5", "⁵")):
+        unit = unit.replace(plain, sign)
+    return f"{name}\n[{unit}]" if unit else name
