@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 
+import numpy as np
 import pyqtgraph as pg
 import pytest
 from PySide6.QtCore import Qt
@@ -17,8 +18,10 @@ from regolith_studio.session.choices import Choices
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import health_word
 from regolith_studio.session.tasks import Task
+from regolith_studio.studies.lmax import LmaxStudy
 from regolith_studio.ui.panels.coarsening import CoarseningPanel
 from regolith_studio.ui.panels.fit import FitPanel
+from regolith_studio.ui.panels.lmax_study import LmaxStudyPanel
 from regolith_studio.ui.panels.loss import LossPanel
 from regolith_studio.ui.panels.particle_list import ParticleListPanel
 from regolith_studio.ui.panels.tasks import IDLE, TasksPanel
@@ -193,3 +196,16 @@ def test_that_a_line_is_drawn_across_a_bar_where_it_cannot_be_lower(shown):
     assert len(lines) == 1
     assert list(lines[0][1]) == [10.0, 10.0]
     assert lines[0][0].mean() == pytest.approx(1.0)
+
+
+def test_that_the_smallest_l_max_follows_the_error_that_is_allowed(shown):
+    panel = shown(LmaxStudyPanel())
+    assert not panel.answer.isVisible()
+    errors = np.array([[[0.2, 0.1], [0.04, 0.06], [0.01, 0.02]]])
+    panel.show_study(LmaxStudy((2, 6, 10), ("volume", "sphericity"), ("a",), ("",), errors), False)
+    assert panel.answer.isVisible()
+    assert panel.answer.text() == "<b>10</b>"
+    panel.tolerance.setValue(7.0)
+    assert panel.answer.text() == "<b>6</b>"
+    panel.tolerance.setValue(0.5)
+    assert panel.answer.text() == "none of these"

@@ -29,7 +29,7 @@ def test_that_the_gallery_fills_row_by_row_and_can_be_stopped(window, wait):
     table = page.gallery.table
     assert (table.rowCount(), table.columnCount()) == (len(row_labels()), 2)
     for row in range(table.rowCount()):
-        assert table.item(row, 0).text().startswith("loss ")
+        assert table.item(row, 0).text().startswith("J 0.")
         assert not table.item(row, 0).icon().isNull()
     page.gallery.frame.start.click()
     window.session.cancel(window.session.tasks[-1].id)

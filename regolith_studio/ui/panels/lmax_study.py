@@ -3,7 +3,7 @@
 from typing import Any
 
 import numpy as np
-from PySide6.QtWidgets import QVBoxLayout, QWidget
+from PySide6.QtWidgets import QDoubleSpinBox, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.scene.palette import DESCRIPTOR_COLOURS
@@ -16,7 +16,7 @@ WAITING = "Root mean squared relative error of each descriptor against l_max, as
 
 
 class LmaxStudyPanel(QWidget):
-    """A curve a descriptor, and a line at the l_max chosen now."""
+    """A curve a descriptor, a line at the l_max chosen now, and the smallest l_max that is enough."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -25,8 +25,10 @@ class LmaxStudyPanel(QWidget):
         self.frame = StudyFrame("lmax_study", self.plot)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(self.frame)
+        layout.addWidget(self.frame, 1)
+        layout.addWidget(self._asked())
         self._study: Any = None
+        self._answer()
 
     def show_study(self, study: Any, outdated: bool) -> None:
         """Draw an ``LmaxStudy``, or nothing."""
@@ -34,6 +36,7 @@ class LmaxStudyPanel(QWidget):
         if study is None:
             self.plot.set_curves([])
             self.frame.set_remark("")
+            self._answer()
             return
         values = 100.0 * np.asarray(study.rmsre())
         degrees = tuple(float(degree) for degree in study.degrees)
@@ -50,6 +53,7 @@ class LmaxStudyPanel(QWidget):
         self.plot.set_curves(curves)
         count = f"{len(study.names)} particles"
         self.frame.set_remark(f"{count}; computed with other choices" if outdated else count)
+        self._answer()
 
     def show_l_max(self, l_max: int) -> None:
         """Mark the degree chosen now."""
@@ -58,3 +62,30 @@ class LmaxStudyPanel(QWidget):
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
         self.plot.set_theme(theme)
+
+    def _asked(self) -> QWidget:
+        """How large an error may be, and the answer."""
+        self.tolerance = QDoubleSpinBox()
+        self.tolerance.setObjectName("lmax_study_tolerance")
+        self.tolerance.setAccessibleName("Largest error in percent")
+        self.tolerance.setRange(0.1, 100.0)
+        self.tolerance.setDecimals(1)
+        self.tolerance.setValue(5.0)
+        self.tolerance.setSuffix(" %")
+        self.tolerance.valueChanged.connect(lambda _value: self._answer())
+        self.answer = QLabel()
+        self.answer.setObjectName("lmax_study_answer")
+        self._question = QWidget()
+        row = QHBoxLayout(self._question)
+        row.setContentsMargins(8, 0, 8, 6)
+        row.addWidget(QLabel("Smallest l<sub>max</sub> with every error below"))
+        row.addWidget(self.tolerance)
+        row.addWidget(self.answer)
+        row.addStretch(1)
+        return self._question
+
+    def _answer(self) -> None:
+        self._question.setVisible(self._study is not None)
+        if self._study is not None:
+            found = self._study.smallest_l_max(self.tolerance.value() / 100)
+            self.answer.setText(f"<b>{found}</b>" if found is not None else "none of these")

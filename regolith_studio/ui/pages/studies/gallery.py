@@ -81,9 +81,12 @@ class SolidGallery(QWidget):
             item.setToolTip(solid.outcome.problem or "")
             return item
         item.setIcon(QIcon(picture_of(found.mesh, self._colour, SIZE)))
-        item.setText(f"loss {found.loss:.3g}")
+        item.setText(f"J {found.jaccard_distance:.3f}")
         worst = "\n".join(f"{key}: {error:.2%}" for key, error in found.errors.items())
-        item.setToolTip(f"{found.n_faces} facets, Jaccard distance {found.jaccard_distance:.3f}\n{worst}")
+        item.setToolTip(
+            f"{found.n_faces} facets, Jaccard distance J = {found.jaccard_distance:.3f}, loss of this row "
+            f"{found.loss:.3g}\n{worst}"
+        )
         return item
 
 
