@@ -7,13 +7,18 @@ from typing import Any
 import numpy as np
 
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
-from regolith_studio.geometry.edges import EdgeTable, bodies, edge_table, neighbours
+from regolith_studio.geometry.connectivity import Connectivity
+from regolith_studio.geometry.edges import EdgeTable
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.self_intersection import count_self_intersections
+from regolith_studio.geometry.star_shape import is_star_shaped
 from regolith_studio.geometry.welding import welded
 
 MOST_FACES_SEARCHED = 200_000
 """Meshes with more faces are not searched for self-intersections."""
+
+SMALLEST_SIZE = 1e-90
+"""The cube of a smaller mesh's size, or of a larger one's than its inverse, is no number any more."""
 
 LEAST_VOLUME = 1e-12
 """A mesh that encloses a smaller share of its bounding cube encloses nothing: its volume is rounding."""
@@ -99,28 +104,28 @@ def inspect(mesh: Mesh, *, self_intersections: bool = True) -> MeshHealth:
         Whether to search for crossing triangles (the slow part; never above 200,000 faces).
     """
     vertices, faces = unit_size(mesh)
-    table = edge_table(faces, len(vertices))
-    across = neighbours(table)
-    parts = bodies(across, table.forward)
+    links = Connectivity.of(faces, len(vertices))
+    table, used = links.table, links.vertices_used
+    share = Mesh(vertices, faces).volume if len(faces) else 0.0
     crossing = None
     if self_intersections and len(faces) <= MOST_FACES_SEARCHED:
-        crossing = count_self_intersections(vertices, faces)
-    used = len(np.unique(faces))
-    whole = bool(len(faces)) and bool((table.uses == 2).all())
+        crossing = 0 if _surely_simple(mesh, links) else count_self_intersections(vertices, faces)
     found = MeshHealth(
         faces=len(faces),
         vertices=used,
-        bodies=parts.count,
-        watertight=whole,
-        consistent_winding=bool(len(faces)) and _agrees(table, across),
-        volume=0.0 if _is_flat(vertices, faces) else mesh.volume,
+        bodies=links.parts.count,
+        watertight=links.closed,
+        consistent_winding=links.agrees,
+        volume=0.0 if abs(share) < LEAST_VOLUME else mesh.volume,
         euler_number=used - len(table.ends) + len(faces),
         degenerate_faces=int(np.count_nonzero(degenerate(vertices, faces))),
-        duplicate_faces=len(faces) - len(np.unique(np.sort(faces, axis=1), axis=0)),
+        duplicate_faces=links.duplicate_faces,
         open_edges=table.open_edges,
         crowded_edges=table.crowded_edges,
-        inverted_bodies=_inverted(vertices, faces, parts.body, table),
-        seam_vertices=used - len(welded(vertices, faces)[0]),
+        inverted_bodies=int(share < -LEAST_VOLUME)
+        if links.closed and links.parts.count == 1
+        else _inverted(vertices, faces, links.parts.body, table),
+        seam_vertices=_seam_vertices(vertices, faces, used),
         self_intersections=crossing,
     )
     problems = tuple(_sentences(found, searched=self_intersections))
@@ -159,13 +164,28 @@ def body_volumes(vertices: FloatArray, faces: IntArray, body: IntArray) -> Float
     return np.asarray(np.bincount(body, six / 6, minlength=count), dtype=np.float64)
 
 
-def _is_flat(vertices: FloatArray, faces: IntArray) -> bool:
-    return not len(faces) or abs(Mesh(vertices, faces).volume) < LEAST_VOLUME
+def _seam_vertices(vertices: FloatArray, faces: IntArray, used: int) -> int:
+    """Vertices of faces that lie exactly on another one; where all differ along one line, there are none."""
+    along = vertices[:, 0] + np.sqrt(2.0) * vertices[:, 1] + np.sqrt(3.0) * vertices[:, 2]
+    if used == len(vertices) == len(np.unique(along)):
+        return 0
+    return used - len(welded(vertices, faces)[0])
 
 
-def _agrees(table: EdgeTable, across: IntArray) -> bool:
-    paired = across >= 0
-    return not (table.forward[paired] == table.forward[across[paired]]).any()
+def _surely_simple(mesh: Mesh, links: Connectivity) -> bool:
+    """Whether the mesh is star-shaped about its frame's origin or its centroid, so that nothing can cross.
+
+    Synthesised particles are star-shaped about the origin, most others that are at all about the centroid.
+    """
+    if not (links.closed and links.agrees and links.parts.count == 1):
+        return False
+    size = float(np.ptp(mesh.bounds, axis=0).max())
+    if not SMALLEST_SIZE < size < 1 / SMALLEST_SIZE:
+        return False
+    return any(
+        is_star_shaped((mesh.vertices - point) / size, mesh.faces, np.zeros(3))
+        for point in (np.zeros(3), mesh.centroid)
+    )
 
 
 def _inverted(vertices: FloatArray, faces: IntArray, body: IntArray, table: EdgeTable) -> int:
