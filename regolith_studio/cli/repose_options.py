@@ -46,7 +46,7 @@ def order_from(
     """The order that options stand for; a wrong one is bad use. `case` are fields of ``ReposeCase``."""
     from regolith_studio.dem.case import ReposeCase
     from regolith_studio.dem.engines import engine_named
-    from regolith_studio.dem.parameters import ContactParameters, LiftingCylinderTest
+    from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
     from regolith_studio.jobs.repose import ReposeOrder
 
     with as_bad_use():

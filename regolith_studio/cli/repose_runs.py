@@ -128,7 +128,7 @@ def _varied(text: str) -> tuple[str, list[Any]]:
 
 def _table_of(key: str) -> str:
     """Whether a value belongs to Table 1 (``contact``) or Table 2 (``test``)."""
-    from regolith_studio.dem.parameters import ContactParameters, LiftingCylinderTest
+    from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
 
     for table, kind in (("contact", ContactParameters), ("test", LiftingCylinderTest)):
         if key in kind.__dataclass_fields__:

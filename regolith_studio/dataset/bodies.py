@@ -6,8 +6,9 @@ import numpy as np
 
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.exporting import ExportOptions
+from regolith_studio.dataset.parameters import LiftingCylinderTest
 from regolith_studio.dataset.sample import DrawnParticles, rotation_matrices, sample_dataset
-from regolith_studio.dataset.simulation_case import MICROMETRE, LiftingCylinder, tube_for
+from regolith_studio.dataset.simulation_case import MICROMETRE, tube_for
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 
@@ -79,11 +80,11 @@ def lay_out(dataset: Dataset, options: ExportOptions, within: float | None = Non
     )
 
 
-def fitting_tube(dataset: Dataset, options: ExportOptions) -> LiftingCylinder:
+def fitting_tube(dataset: Dataset, options: ExportOptions) -> LiftingCylinderTest:
     """The cylinder of the options, smaller if ``options.n_particles`` would only cover its ground."""
     drawn, spacing = _drawn(dataset, options)
     volume = float(((drawn.scale * options.coarse_graining_factor * MICROMETRE) ** 3).sum())
-    return tube_for(options.cylinder, volume, NARROWEST * spacing)
+    return tube_for(options.test, volume, NARROWEST * spacing)
 
 
 def _drawn(dataset: Dataset, options: ExportOptions) -> tuple[DrawnParticles, float]:

@@ -12,13 +12,15 @@ from typing import Any
 import regolith_studio
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.disk import recovered, replace_folder
+from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest, ScriptTimes
 from regolith_studio.dataset.reading import UNASKED
-from regolith_studio.dataset.simulation_case import ContactParameters, LiftingCylinder
+from regolith_studio.dataset.simulation_case import today_named
 from regolith_studio.dataset.strict_json import strict_json, tidy_json
 from regolith_studio.errors import DatasetError, InputError
 
 FORMAT = "regolith-studio-export"
 RECORD, README = "export.json", "README.txt"
+PARTS = ("contact", "test", "times")
 
 
 @dataclass(frozen=True)
@@ -27,8 +29,8 @@ class ExportOptions:
 
     Parameters
     ----------
-    contact, cylinder
-        Of the simulated case.
+    contact, test, times
+        Of the simulated case: Tables 1 and 2, and how long a script waits.
     coarse_graining_factor
         By which all diameters are enlarged (section 2.6); 10 in the paper.
     n_particles
@@ -43,7 +45,8 @@ class ExportOptions:
     """
 
     contact: ContactParameters = field(default_factory=ContactParameters)
-    cylinder: LiftingCylinder = field(default_factory=LiftingCylinder)
+    test: LiftingCylinderTest = field(default_factory=LiftingCylinderTest)
+    times: ScriptTimes = field(default_factory=ScriptTimes)
     coarse_graining_factor: float = 10.0
     n_particles: int = 200
     seed: int = 0
@@ -63,7 +66,7 @@ class ExportOptions:
             raise InputError(f"Between 1 and 500 spheres can be fitted, got {self.n_spheres}.")
 
     def replaced(self, **changes: Any) -> "ExportOptions":
-        """A copy with other values; fields of `contact` and `cylinder` by their own names.
+        """A copy with other values; fields of `contact`, `test` and `times` by their own names.
 
         Raises
         ------
@@ -71,10 +74,8 @@ class ExportOptions:
             If there is no such setting, or a value cannot be used.
         """
         own: dict[str, Any] = {}
-        for name, value in changes.items():
-            part = next(
-                (part for part in ("contact", "cylinder") if name in _names(getattr(self, part))), None
-            )
+        for name, value in today_named(changes).items():
+            part = next((part for part in PARTS if name in _names(getattr(self, part))), None)
             if part is not None:
                 own[part] = replace(own.get(part, getattr(self, part)), **{name: value})
             elif name in _names(self):
@@ -132,10 +133,9 @@ class Exported:
 
 
 def case_settings(options: ExportOptions) -> dict[str, Any]:
-    """What a simulation script is told: contact parameters, cylinder, coarse graining; SI units."""
+    """What a simulation script is told: Tables 1 and 2, waiting times, coarse graining; SI units."""
     return {
-        "contact": asdict(options.contact),
-        "cylinder": asdict(options.cylinder),
+        **{part: asdict(getattr(options, part)) for part in PARTS},
         "coarse_graining_factor": options.coarse_graining_factor,
     }
 

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from regolith_studio.dataset.parameters import PAPER_COARSE_GRAINING, PAPER_FILL_HEIGHT
 from regolith_studio.dem.case import Prepared
-from regolith_studio.dem.parameters import PAPER_COARSE_GRAINING, PAPER_FILL_HEIGHT
 
 
 @dataclass(frozen=True)

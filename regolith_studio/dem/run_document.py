@@ -4,11 +4,11 @@ from dataclasses import asdict
 from typing import Any
 
 import regolith_studio
+from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest, missing_in_paper
 from regolith_studio.dem.case import Prepared, ReposeCase
 from regolith_studio.dem.consequences import consequences
 from regolith_studio.dem.engine import Checks, Ending, Engine
 from regolith_studio.dem.evaluation.refusal import NoPile
-from regolith_studio.dem.parameters import ContactParameters, LiftingCylinderTest, missing_in_paper
 from regolith_studio.dem.repose import ReposeMeasurement, measurement_document
 from regolith_studio.dem.run_folder import FORMAT, SCHEMA_VERSION
 

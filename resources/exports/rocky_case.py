@@ -50,24 +50,24 @@ def set_physics(physics, case):
     physics.SetEnableCoarseGrainModeling(case["coarse_graining_factor"] != 1.0)
     physics.SetGravityXDirection(0.0, "m/s2")
     physics.SetGravityYDirection(0.0, "m/s2")
-    physics.SetGravityZDirection(-9.81, "m/s2")
+    physics.SetGravityZDirection(-case["test"]["gravity"], "m/s2")
 
 
 def set_materials(study, case):
     """One material for particles, tube and plate each, and how they meet."""
-    contact, materials = case["contact"], study.GetMaterialCollection()
+    contact, test, materials = case["contact"], case["test"], study.GetMaterialCollection()
     for name in ("regolith", "tube", "plate"):
         material = materials.New()
         material.SetName(name)
         material.SetUseBulkDensity(False)
         material.SetDensity(contact["density"], "kg/m3")
-        material.SetYoungsModulus(contact["young_modulus"], "N/m2")
-        material.SetPoissonRatio(contact["poisson_ratio"])
+        material.SetYoungsModulus(contact["youngs_modulus"], "N/m2")
+        material.SetPoissonRatio(contact["poissons_ratio"])
     pairs = study.GetMaterialsInteractionCollection()
     for other, static, dynamic in (
         ("regolith", contact["static_friction"], contact["dynamic_friction"]),
-        ("tube", contact["wall_friction"], contact["wall_friction"]),
-        ("plate", contact["plate_friction"], contact["plate_friction"]),
+        ("tube", test["wall_friction"], test["wall_friction"]),
+        ("plate", test["plate_friction"], test["plate_friction"]),
     ):
         pair = pairs.GetMaterialsInteraction("regolith", other)
         pair.SetStaticFriction(static)
@@ -113,13 +113,13 @@ def make_walls(study, folder, case):
         walls[name] = study.ImportWall(str(folder / "walls" / (name + ".stl")), 1.0, False)[0]
         walls[name].SetName(name)
         walls[name].SetMaterial(name)
-    cylinder = case["cylinder"]
+    test, settled = case["test"], case["times"]["settling_time"]
     frame = study.GetMotionFrameSource().NewFrame()
     frame.SetName("lift")
     frame.AddTranslationMotion(
-        start_time=(cylinder["settling_time"], "s"),
-        stop_time=(cylinder["settling_time"] + cylinder["height"] / cylinder["lifting_speed"], "s"),
-        velocity=((0.0, 0.0, cylinder["lifting_speed"]), "m/s"),
+        start_time=(settled, "s"),
+        stop_time=(settled + test["height"] / test["lift_speed"], "s"),
+        velocity=((0.0, 0.0, test["lift_speed"]), "m/s"),
     )
     frame.ApplyTo(walls["tube"])
     domain = study.GetDomainSettings()

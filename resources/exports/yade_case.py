@@ -26,26 +26,30 @@ FOLDER = Path(sys.argv[0]).resolve().parent
 def build(case):
     """Material, particles, plate and tube; the ids of the tube's facets."""
     contact = case["contact"]
-    frictions = {"regolith": "dynamic_friction", "tube": "wall_friction", "plate": "plate_friction"}
+    test = case["test"]
+    frictions = {
+        "regolith": contact["dynamic_friction"],
+        "tube": test["wall_friction"],
+        "plate": test["plate_friction"],
+    }
     for label, friction in frictions.items():
         O.materials.append(
             wrapper.PolyhedraMat(
                 density=contact["density"],
                 young=case["volumetric_stiffness"],
-                poisson=contact["poisson_ratio"],
-                frictionAngle=math.atan(contact[friction]),
+                poisson=contact["poissons_ratio"],
+                frictionAngle=math.atan(friction),
                 label=label,
             )
         )
     grain = O.materials["regolith"]
     for record in read_particles():
         O.bodies.append(make_particle(case, record, grain))
-    cylinder = case["cylinder"]
     O.bodies.append(utils.wall(0.0, axis=2, sense=1, material="plate"))
     tube = geom.facetCylinder(
-        (0.0, 0.0, cylinder["height"] * case["tube_stretch"] / 2),
-        radius=cylinder["diameter"] / 2,
-        height=cylinder["height"] * case["tube_stretch"],
+        (0.0, 0.0, test["height"] * case["tube_stretch"] / 2),
+        radius=test["diameter"] / 2,
+        height=test["height"] * case["tube_stretch"],
         segmentsNumber=48,
         wallMask=4,
         material="tube",
@@ -86,17 +90,17 @@ def set_engines(case):
             [wrapper.Ip2_PolyhedraMat_PolyhedraMat_PolyhedraPhys()],
             [wrapper.Law2_PolyhedraGeom_PolyhedraPhys_Volumetric()],
         ),
-        wrapper.NewtonIntegrator(gravity=(0.0, 0.0, -9.81), damping=case["damping"]),
-        wrapper.PyRunner(command="lift()", virtPeriod=case["cylinder"]["settling_time"] / 20, label="lifter"),
+        wrapper.NewtonIntegrator(gravity=(0.0, 0.0, -case["test"]["gravity"]), damping=case["damping"]),
+        wrapper.PyRunner(command="lift()", virtPeriod=case["times"]["settling_time"] / 20, label="lifter"),
     ]
     O.dt = case["time_step"]
 
 
 def lift():
     """Once the particles have settled, the tube moves up; called by the engine."""
-    if O.time >= CASE["cylinder"]["settling_time"]:
+    if O.time >= CASE["times"]["settling_time"]:
         for number in TUBE:
-            O.bodies[number].state.vel = Vector3(0.0, 0.0, CASE["cylinder"]["lifting_speed"])
+            O.bodies[number].state.vel = Vector3(0.0, 0.0, CASE["test"]["lift_speed"])
 
 
 def check():

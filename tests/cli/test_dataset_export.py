@@ -68,13 +68,15 @@ def test_that_all_formats_are_written_when_changed_shapes_are_allowed(
 def test_that_settings_reach_the_files(command, folder: Path, tmp_path: Path) -> None:
     said = command(
         "dataset", "export", folder, "--to", "rocky", "-o", tmp_path / "out",
-        "--coarse-graining", 5, "--set", "density=2900", "--set", "total_mass=0.01",
+        "--coarse-graining", 5,
+        "--set", "density=2900", "--set", "total_mass=0.01", "--set", "gravity=1.62",
     )  # fmt: skip
     assert said.code == 0
     case = json.loads((tmp_path / "out" / "rocky" / "case.json").read_text())
     assert case["coarse_graining_factor"] == 5.0
     assert case["contact"]["density"] == 2900
-    assert sum(one["mass"] for one in case["particles"]) == pytest.approx(0.01)
+    assert sum(one["mass"] for one in case["particles"]) == pytest.approx(0.01)  # a name of earlier versions
+    assert case["test"]["gravity"] == 1.62
 
 
 @pytest.mark.parametrize(

@@ -121,7 +121,7 @@ def test_that_yade_finds_the_volumes_masses_and_inertia_of_the_dataset(
 def test_that_yade_lets_the_particles_fall_and_lifts_the_tube(dataset: Dataset, tmp_path: Path) -> None:
     """Twelve particles in a tube that is lifted at once: they fall, stay above the plate, and spread."""
     options = OPTIONS.replaced(
-        n_particles=12, diameter=0.004, height=0.004, settling_time=0.002, lifting_speed=0.5
+        n_particles=12, diameter=0.004, height=0.004, settling_time=0.002, lift_speed=0.5
     )
     folder = exported(dataset, "yade", tmp_path / "yade", options)
     run_yade(folder, "--run", "3000")

@@ -117,10 +117,16 @@ def test_that_commands_bear_blanks_in_paths(tmp_path: Path, make_dataset) -> Non
 
 
 def test_that_settings_of_contact_and_cylinder_go_by_their_own_names() -> None:
-    options = ExportOptions().replaced(seed=3, density=2900.0, restitution=0.4, total_mass=0.01)
+    options = ExportOptions().replaced(seed=3, density=2900.0, restitution=0.4, mass=0.01)
     assert (options.seed, options.contact.density, options.contact.restitution) == (3, 2900.0, 0.4)
-    assert options.cylinder.total_mass == 0.01
-    assert options.contact.young_modulus == 30e9
+    assert options.test.mass == 0.01
+    assert options.contact.youngs_modulus == 30e9
+
+
+def test_that_names_of_earlier_versions_are_understood() -> None:
+    old = ExportOptions().replaced(young_modulus=1e9, poisson_ratio=0.3, total_mass=0.01, lifting_speed=0.1)
+    new = ExportOptions().replaced(youngs_modulus=1e9, poissons_ratio=0.3, mass=0.01, lift_speed=0.1)
+    assert old == new
 
 
 @pytest.mark.parametrize(
@@ -132,10 +138,10 @@ def test_that_settings_of_contact_and_cylinder_go_by_their_own_names() -> None:
         {"rounding": 0.0},
         {"n_spheres": 0},
         {"density": -1.0},
-        {"poisson_ratio": 0.5},
+        {"poissons_ratio": 0.5},
         {"restitution": 1.1},
         {"static_friction": -0.1},
-        {"lifting_speed": 0.0},
+        {"lift_speed": 0.0},
         {"colour": 1},
     ],
 )

@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 
 from regolith_studio.dataset.dataset import Dataset
-from regolith_studio.dem.case import ReposeCase, prepare
-from regolith_studio.dem.consequences import bond_number, consequences, rayleigh_time
-from regolith_studio.dem.parameters import (
+from regolith_studio.dataset.parameters import (
     NOT_GIVEN,
     ContactParameters,
     LiftingCylinderTest,
     missing_in_paper,
 )
+from regolith_studio.dem.case import ReposeCase, prepare
+from regolith_studio.dem.consequences import bond_number, consequences, rayleigh_time
 from regolith_studio.errors import InputError
 
 

@@ -7,6 +7,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from regolith_studio.dataset.dataset import Dataset
+from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
 from regolith_studio.dem.case import CohesionKind, ReposeCase, prepare
 from regolith_studio.dem.engine import Ending
 from regolith_studio.dem.engines.lammps import ENGINE
@@ -14,7 +15,6 @@ from regolith_studio.dem.engines.lammps.clumps import clump_shape, clumps_of
 from regolith_studio.dem.engines.lammps.script import schedule, script, stiffness, viscosity
 from regolith_studio.dem.engines.lammps.settings import LammpsSettings
 from regolith_studio.dem.engines.lammps.simulation import kinetic_energies, read_bodies
-from regolith_studio.dem.parameters import ContactParameters, LiftingCylinderTest
 from regolith_studio.errors import InputError, RegolithError
 
 SMALL = ReposeCase(LiftingCylinderTest(mass=0.003, lift_speed=0.3), n_particles=40, seed=2)

@@ -6,11 +6,11 @@ import pytest
 from scipy.spatial.distance import pdist, squareform
 
 from regolith_studio.dataset.dataset import Dataset
+from regolith_studio.dataset.parameters import ContactParameters
 from regolith_studio.dem.case import ReposeCase, prepare
 from regolith_studio.dem.engines.mujoco.model import N_WALLS, PARTICLE, Units, adhesion, build
 from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
 from regolith_studio.dem.filling import start_places
-from regolith_studio.dem.parameters import ContactParameters
 from regolith_studio.errors import InputError
 
 

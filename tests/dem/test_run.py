@@ -13,13 +13,13 @@ import pytest
 
 from regolith_studio.cli.entry import run
 from regolith_studio.dataset.folder import read_dataset
+from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
 from regolith_studio.dataset.reading import dataset_hash
 from regolith_studio.dem.case import ReposeCase, prepare
 from regolith_studio.dem.engine import Ending, Moment
 from regolith_studio.dem.engines import ENGINES
 from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
 from regolith_studio.dem.host import EngineStopped
-from regolith_studio.dem.parameters import ContactParameters, LiftingCylinderTest
 from regolith_studio.dem.pile import read_pile
 from regolith_studio.dem.run_folder import find_runs, read_run, read_shapes, snapshot_files
 from regolith_studio.errors import FileError, InputError

@@ -135,14 +135,24 @@ def test_that_settings_reach_the_exports(chosen, tmp_path, wait) -> None:
     chosen.build_in(tmp_path / "set")
     wait(lambda: chosen.targets.export.isEnabled())
     settings = {"targets": ["rocky"], "coarse_graining": 4, "contact": {"density": 2900.0}}
-    chosen.targets.setValue(settings | {"cylinder": {"lifting_speed": 0.05}})
+    chosen.targets.setValue(settings | {"test": {"lift_speed": 0.05}})
     chosen.export_to(tmp_path / "out")
     wait(lambda: len(chosen.exports.exports) == 1)
     case = json.loads((tmp_path / "out" / "rocky" / "case.json").read_text())
     assert case["coarse_graining_factor"] == 4.0
     assert case["contact"]["density"] == 2900.0
-    assert case["contact"]["young_modulus"] == 30e9
-    assert case["cylinder"]["lifting_speed"] == 0.05
+    assert case["contact"]["youngs_modulus"] == 30e9
+    assert case["test"]["lift_speed"] == 0.05
+
+
+def test_that_settings_of_an_earlier_version_are_understood(page) -> None:
+    old = {"contact": {"poisson_ratio": 0.25, "wall_friction": 0.1}, "cylinder": {"total_mass": 0.02}}
+    page.targets.setValue({"targets": ["rocky"]} | old)
+    options = page.targets.options()
+    assert options.contact.poissons_ratio == 0.25
+    assert (options.test.wall_friction, options.test.mass) == (0.1, 0.02)
+    page.targets.setValue(page.targets.value())
+    assert page.targets.options() == options
 
 
 def test_that_a_dataset_is_replaced_only_when_asked(chosen, tmp_path, wait, monkeypatch) -> None:

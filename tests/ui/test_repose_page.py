@@ -8,7 +8,7 @@ import pytest
 from PySide6.QtWidgets import QFileDialog, QInputDialog, QWidget
 
 from regolith_studio.dataset.folder import write_dataset
-from regolith_studio.dem.parameters import ContactParameters, LiftingCylinderTest
+from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
 from regolith_studio.dem.pile import Pile, pile_bytes
 from regolith_studio.dem.run_folder import read_run
 from regolith_studio.geometry.directions import icosphere
@@ -19,7 +19,7 @@ from regolith_studio.session.session import Session
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.repose import PAGE
-from regolith_studio.ui.pages.repose.parameter_form import ParameterForm
+from regolith_studio.ui.widgets.parameter_form import ParameterForm
 from regolith_studio.ui.widgets.toast import Toast
 from regolith_studio.ui.wiring import Wiring
 from tests.dem.conftest import box_dataset

@@ -44,10 +44,11 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
         "coarse_graining_factor": options.coarse_graining_factor,
         "material": {
             "density_kg_m3": contact.density,
-            "E_Pa": contact.young_modulus,
-            "nu": contact.poisson_ratio,
+            "E_Pa": contact.youngs_modulus,
+            "nu": contact.poissons_ratio,
             "CoR": contact.restitution,
             "mu": contact.dynamic_friction,
+            "Crr": contact.rolling_friction,
         },
         "shapes": records,
     }

@@ -31,7 +31,7 @@ pair_style      body/rounded/polyhedron 0.0 0.0 {friction!r} 1.0 {skin!r}
 pair_coeff      * * {stiffness!r} {stiffness!r}
 timestep        {timestep!r}
 fix             motion all nve/body
-fix             weight all gravity 9.81 vector 0 0 -1
+fix             weight all gravity {gravity} vector 0 0 -1
 thermo          10
 thermo_style    custom step atoms ke
 variable        total equal mass(all)
@@ -121,12 +121,13 @@ def _input(dataset: Dataset, bodies: Bodies, options: ExportOptions, bounds: dic
     """A soft stiffness: the weight of the heaviest particle presses a thousandth of its size."""
     size = float(bodies.scale.max())
     mass = options.contact.density * size**3
-    stiffness = mass * 9.81 / (1e-3 * size)
+    stiffness = mass * options.test.gravity / (1e-3 * size)
     return _INPUT.format(
         name=" ".join(dataset.name.split()),
         factor=options.coarse_graining_factor,
         cutoff=6 * size,
         skin=0.1 * size,
+        gravity=options.test.gravity,
         friction=options.contact.dynamic_friction,
         stiffness=stiffness,
         timestep=0.01 * float(np.sqrt(options.contact.density * float(bodies.scale.min()) ** 3 / stiffness)),

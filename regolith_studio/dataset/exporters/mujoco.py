@@ -10,8 +10,8 @@ from regolith_studio.dataset.export_tables import shape_names, sizes_csv
 from regolith_studio.dataset.exporting import NOTES, Exporter, ExportOptions
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 
-MILLIMETRES, GRAVITY = 1e3, 9.81e-3
-"""Per metre; and in mm/ms2."""
+MILLIMETRES = 1e3
+"""Per metre."""
 
 _NOTE = b"""Lengths in mm, masses in mg, times in ms (forces in mN): in SI units MuJoCo refuses particles this
 small. Each mesh of the file is a shape of volume 1 with a scale; bodies of the same shape and size share
@@ -46,12 +46,12 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
 def _model(
     name: str, options: ExportOptions, density: float, reach: float, meshes: list[str], bodies: list[str]
 ) -> str:
-    contact = options.contact
+    contact, test = options.contact, options.test
     return "\n".join(
         [
             f"<mujoco model={quoteattr(name)}>",
             "  <!-- mm, mg, ms; z up -->",
-            f'  <option gravity="0 0 {-GRAVITY!r}" timestep="0.01" integrator="implicitfast"/>',
+            f'  <option gravity="0 0 {-test.gravity * 1e-3!r}" timestep="0.01" integrator="implicitfast"/>',
             '  <compiler inertiafromgeom="true" boundmass="0" boundinertia="0"/>',
             f'  <statistic extent="{reach!r}"/>',
             "  <default>",
@@ -63,7 +63,7 @@ def _model(
             "  </asset>",
             "  <worldbody>",
             f'    <geom name="plate" type="plane" size="{reach!r} {reach!r} 1" '
-            f'friction="{contact.plate_friction!r} 0 0"/>',
+            f'friction="{test.plate_friction!r} 0 0"/>',
             *bodies,
             "  </worldbody>",
             "</mujoco>",

@@ -29,15 +29,13 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
         f"meshes/{key}.stl": stl_bytes(one.shape.mesh, f"regolith-studio unit-volume {key}")
         for key, one in zip(keys, dataset.representatives, strict=True)
     }
-    cylinder, factor = options.cylinder, options.coarse_graining_factor
-    count = particle_count(dataset, cylinder.total_mass, options.contact.density, factor)
-    notes = _NOTE.format(count=count, mass=cylinder.total_mass * 1e3, factor=factor)
+    test, factor = options.test, options.coarse_graining_factor
+    count = particle_count(dataset, test.mass, options.contact.density, factor)
+    notes = _NOTE.format(count=count, mass=test.mass * 1e3, factor=factor)
     return meshes | {
         "rocky_case.py": resource("exports", "rocky_case.py").read_bytes(),
         "case.json": tidy_json(_case(dataset, options, keys)).encode("utf-8"),
-        "walls/tube.stl": stl_bytes(
-            tube_mesh(cylinder.diameter, cylinder.height), "regolith-studio tube, metres"
-        ),
+        "walls/tube.stl": stl_bytes(tube_mesh(test.diameter, test.height), "regolith-studio tube, metres"),
         "walls/plate.stl": stl_bytes(box_mesh(_plate(options)), "regolith-studio plate, metres"),
         "sizes.csv": sizes_csv(dataset),
         NOTES: notes.encode("utf-8"),
@@ -45,7 +43,7 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
 
 
 def _case(dataset: Dataset, options: ExportOptions, keys: list[str]) -> dict[str, object]:
-    cylinder = options.cylinder
+    test = options.test
     shares = dataset.class_weights("volume")
     particles = []
     for key, one, share in zip(keys, dataset.representatives, shares, strict=True):
@@ -58,29 +56,29 @@ def _case(dataset: Dataset, options: ExportOptions, keys: list[str]) -> dict[str
                 "key": key,
                 "name": one.name,
                 "mesh": f"meshes/{key}.stl",
-                "mass": float(share * cylinder.total_mass),
+                "mass": float(share * test.mass),
                 "sizes": rows.tolist(),
             }
         )
-    inner = cylinder.diameter / np.sqrt(2.0)
-    reach = 3 * cylinder.diameter
+    inner = test.diameter / np.sqrt(2.0)
+    reach = 3 * test.diameter
     return case_settings(options) | {
         "project": "lifting_cylinder.rocky",
         "length_unit": "m",
-        "duration": cylinder.duration,
+        "duration": options.times.duration(test),
         "particles": particles,
         "filling_box": {
-            "seed": [0.0, 0.0, cylinder.height / 2],
-            "center": [0.0, 0.0, cylinder.height / 2],
-            "dimensions": [inner, inner, 0.98 * cylinder.height],
+            "seed": [0.0, 0.0, test.height / 2],
+            "center": [0.0, 0.0, test.height / 2],
+            "dimensions": [inner, inner, 0.98 * test.height],
         },
-        "domain": [[-reach, -reach, -0.1 * cylinder.height], [reach, reach, 2.2 * cylinder.height]],
+        "domain": [[-reach, -reach, -0.1 * test.height], [reach, reach, 2.2 * test.height]],
     }
 
 
 def _plate(options: ExportOptions) -> np.ndarray:
-    reach = 3 * options.cylinder.diameter
-    return np.array([[-reach, -reach, -0.05 * options.cylinder.height], [reach, reach, 0.0]])
+    reach = 3 * options.test.diameter
+    return np.array([[-reach, -reach, -0.05 * options.test.height], [reach, reach, 0.0]])
 
 
 EXPORTER = Exporter(
@@ -94,7 +92,7 @@ EXPORTER = Exporter(
         "contact parameters: damped Hertzian, Mindlin-Deresiewicz, JKR",
         "coarse graining, lifting cylinder",
     ),
-    loses=("continuous size distributions: at most 16 sizes a shape",),
+    loses=("continuous size distributions: at most 16 sizes a shape", "rolling resistance"),
     load_command="python {shell}/rocky_case.py",
     files=_files,
 )

@@ -28,14 +28,14 @@ COLUMNS = ("class", "scale", "diameter_m", "x", "y", "z", "qw", "qx", "qy", "qz"
 
 
 def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
-    options = replace(options, cylinder=fitting_tube(dataset, options))
-    bodies = lay_out(dataset, options, within=options.cylinder.diameter)
+    options = replace(options, test=fitting_tube(dataset, options))
+    bodies = lay_out(dataset, options, within=options.test.diameter)
     return {
         "yade_case.py": resource("exports", "yade_case.py").read_bytes(),
         "case.json": tidy_json(_case(dataset, options, bodies)).encode("utf-8"),
         "particles.csv": csv_bytes(COLUMNS, _rows(bodies)),
         "sizes.csv": sizes_csv(dataset),
-        NOTES: _NOTE.format(n=len(bodies), wide=options.cylinder.diameter * 1e3).encode("utf-8"),
+        NOTES: _NOTE.format(n=len(bodies), wide=options.test.diameter * 1e3).encode("utf-8"),
     }
 
 
@@ -47,7 +47,7 @@ def _rows(bodies: Bodies) -> list[tuple[object, ...]]:
 def _case(dataset: Dataset, options: ExportOptions, bodies: Bodies) -> dict[str, object]:
     masses = options.contact.density * bodies.scale**3
     largest, smallest = float(bodies.scale.max()), float(bodies.scale.min())
-    stiffness = float(masses.sum()) * 9.81 / (OVERLAP * largest**3)
+    stiffness = float(masses.sum()) * options.test.gravity / (OVERLAP * largest**3)
     top = float(bodies.position[:, 2].max()) + 2 * largest
     time_step = 0.1 * np.sqrt(options.contact.density * smallest**3 / (stiffness * largest**2))
     return case_settings(options) | {
@@ -55,9 +55,9 @@ def _case(dataset: Dataset, options: ExportOptions, bodies: Bodies) -> dict[str,
         "volumetric_stiffness": stiffness,
         "time_step": float(time_step),
         "damping": 0.4,
-        "duration": options.cylinder.duration,
+        "duration": options.times.duration(options.test),
         "largest_diameter": float(bodies.diameter.max()),
-        "tube_stretch": max(1.0, top / options.cylinder.height),
+        "tube_stretch": max(1.0, top / options.test.height),
         "shapes": [
             {"key": key, "name": one.name, "vertices": one.shape.vertices.tolist()}
             for key, one in zip(shape_names(dataset), dataset.representatives, strict=True)

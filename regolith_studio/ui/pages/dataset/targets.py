@@ -1,6 +1,7 @@
 """To which programs, with what settings; what is lost on the way; and what has been written."""
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from typing import Any
 
 from PySide6.QtCore import Qt, QUrl, Signal
@@ -18,12 +19,14 @@ from PySide6.QtWidgets import (
 )
 
 from regolith_studio.dataset.exporters import EXPORTERS
-from regolith_studio.dataset.exporting import Exported, ExportOptions
-from regolith_studio.dataset.simulation_case import ContactParameters, LiftingCylinder
+from regolith_studio.dataset.exporting import PARTS, Exported, ExportOptions
+from regolith_studio.dataset.parameters import NOT_GIVEN, ContactParameters, LiftingCylinderTest, ScriptTimes
+from regolith_studio.dataset.simulation_case import today_named
+from regolith_studio.errors import InputError
 from regolith_studio.ui.widgets.collapsible import Collapsible
 from regolith_studio.ui.widgets.labels import ElidedLabel, heading, remark
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
-from regolith_studio.ui.widgets.settings_form import SettingsForm
+from regolith_studio.ui.widgets.parameter_form import ParameterForm
 
 FIRST = ("rocky", "yade")
 NARROW = 84
@@ -46,7 +49,9 @@ class TargetsPanel(QWidget):
         self.coarse_graining, self.particles = NumberSlider(COARSE_GRAINING), NumberSlider(PARTICLES)
         self.coarse_graining.field.setObjectName("dataset_coarse_graining")
         self.particles.field.setObjectName("dataset_particles")
-        self.contact, self.cylinder = SettingsForm(ContactParameters), SettingsForm(LiftingCylinder)
+        self.contact = ParameterForm(ContactParameters, "export")
+        self.test = ParameterForm(LiftingCylinderTest, "export")
+        self.times = ParameterForm(ScriptTimes, "export")
         self.lossy = QCheckBox("Shapes may be changed")
         self.lossy.setObjectName("dataset_lossy")
         self.export = QPushButton("Export …")
@@ -60,7 +65,12 @@ class TargetsPanel(QWidget):
         for box in self.boxes.values():
             layout.addWidget(box)
         layout.addLayout(form)
-        layout.addWidget(Collapsible("Material and cylinder", _column((self.contact, self.cylinder))))
+        layout.addWidget(
+            Collapsible(
+                "Material and cylinder",
+                _column((self.contact, self.test, self.times, remark(f"* {NOT_GIVEN}"))),
+            )
+        )
         layout.addWidget(self.lossy)
         layout.addWidget(self.export)
         self.coarse_graining.setValue(10)
@@ -79,7 +89,10 @@ class TargetsPanel(QWidget):
         return ExportOptions(
             coarse_graining_factor=float(self.coarse_graining.value()),
             n_particles=int(self.particles.value()),
-        ).replaced(**self.contact.value(), **self.cylinder.value())
+            contact=self.contact.value(),
+            test=self.test.value(),
+            times=self.times.value(),
+        )
 
     def consent(self) -> bool:
         """Whether shapes may be changed."""
@@ -97,20 +110,23 @@ class TargetsPanel(QWidget):
             "coarse_graining": float(self.coarse_graining.value()),
             "particles": int(self.particles.value()),
             "lossy": self.consent(),
-            "contact": self.contact.value(),
-            "cylinder": self.cylinder.value(),
+            **{part: getattr(self, part).changes() for part in PARTS},
         }
 
     def setValue(self, value: Mapping[str, Any]) -> None:
-        """Tick these; names that are not known are left out."""
+        """Tick these; names that are not known are left out, those of earlier versions are understood."""
         wanted = set(value.get("targets", FIRST))
         for key, box in self.boxes.items():
             box.setChecked(key in wanted)
         self.coarse_graining.setValue(float(value.get("coarse_graining", 10.0)))
         self.particles.setValue(int(value.get("particles", 200)))
         self.lossy.setChecked(bool(value.get("lossy", False)))
-        self.contact.setValue(value.get("contact", {}))
-        self.cylinder.setValue(value.get("cylinder", {}))
+        changes: dict[str, Any] = {}
+        for part in (*PARTS, "cylinder"):
+            changes |= today_named(value.get(part, {}))
+        for part in PARTS:
+            with suppress(InputError):
+                getattr(self, part).restore(changes)
         self._show()
 
     def _box(self, key: str) -> QCheckBox:

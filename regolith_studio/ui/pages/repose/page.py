@@ -8,12 +8,12 @@ from platformdirs import user_data_path
 from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QFileDialog, QHBoxLayout, QWidget
 
+from regolith_studio.dataset.parameters import LiftingCylinderTest
 from regolith_studio.dem.case import Prepared
 from regolith_studio.dem.consequences import consequences
 from regolith_studio.dem.engine import Moment
 from regolith_studio.dem.engines import engine_named
 from regolith_studio.dem.evaluation.refusal import NoPile
-from regolith_studio.dem.parameters import LiftingCylinderTest
 from regolith_studio.dem.pile import Pile, read_pile
 from regolith_studio.dem.repose import ReposeMeasurement
 from regolith_studio.dem.run_folder import FINAL, RunSummary, find_runs, read_shapes, snapshot_files

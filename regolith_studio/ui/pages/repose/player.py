@@ -7,7 +7,7 @@ import numpy as np
 from PySide6.QtCore import QSignalBlocker, Qt, QTimer
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QSlider, QVBoxLayout, QWidget
 
-from regolith_studio.dem.parameters import LiftingCylinderTest
+from regolith_studio.dataset.parameters import LiftingCylinderTest
 from regolith_studio.dem.pile import Pile, read_pile
 from regolith_studio.errors import FileError
 from regolith_studio.geometry.arrays import FloatArray

@@ -15,15 +15,15 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from regolith_studio.dataset.parameters import GRAVITIES, ContactParameters, LiftingCylinderTest
 from regolith_studio.dem.case import ReposeCase
 from regolith_studio.dem.engines import ENGINES, engine_named
 from regolith_studio.dem.evaluation.settings import EvaluationSettings
-from regolith_studio.dem.parameters import GRAVITIES, ContactParameters, LiftingCylinderTest
 from regolith_studio.errors import InputError
 from regolith_studio.jobs.repose import ReposeOrder
-from regolith_studio.ui.pages.repose.parameter_form import ParameterForm
 from regolith_studio.ui.widgets.collapsible import Collapsible
 from regolith_studio.ui.widgets.labels import ElidedLabel, heading, remark
+from regolith_studio.ui.widgets.parameter_form import ParameterForm
 from regolith_studio.ui.widgets.settings_form import SettingsForm
 
 PRESETS = {"Teaching": 300, "Usual": 1000, "Fine": 5000}

@@ -7,7 +7,7 @@ from typing import Any
 from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import QDoubleSpinBox, QFormLayout, QLabel, QWidget
 
-from regolith_studio.dem.parameters import NOT_GIVEN
+from regolith_studio.dataset.parameters import NOT_GIVEN
 
 
 class ParameterForm(QWidget):

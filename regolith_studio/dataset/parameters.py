@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field, fields
 from typing import Any
 
-from regolith_studio.dem.limits import check_limits
+from regolith_studio.dataset.limits import check_limits
 
 NOT_GIVEN = "not given in the paper"
 
@@ -108,6 +108,34 @@ class LiftingCylinderTest:
     def area(self) -> float:
         """Cross-section of the cylinder in m^2."""
         return 3.141592653589793 / 4 * self.diameter**2
+
+
+@dataclass(frozen=True)
+class ScriptTimes:
+    """How long a script waits that cannot see whether the particles lie still. Seconds.
+
+    Parameters
+    ----------
+    settling_time
+        Before the cylinder is lifted.
+    resting_time
+        After the cylinder has risen by its own height.
+
+    Raises
+    ------
+    InputError
+        If a value is out of its range.
+    """
+
+    settling_time: float = _number(1.0, "Settling time", "s", 1e-4, 1e4)
+    resting_time: float = _number(1.0, "Resting time", "s", 1e-4, 1e4)
+
+    def __post_init__(self) -> None:
+        check_limits(self, "waiting time")
+
+    def duration(self, test: LiftingCylinderTest) -> float:
+        """Of the whole test: settle, lift the cylinder clear by its own height, come to rest."""
+        return self.settling_time + test.height / test.lift_speed + self.resting_time
 
 
 PAPER_FILL_HEIGHT = (0.025, 0.030)
