@@ -13,8 +13,11 @@ from regolith_studio.cli.options import (
     Meshes,
     Method,
     Preset,
+    RadiusRule,
+    Reference,
     Seed,
     Settings,
+    StarPoint,
     Target,
     Unit,
     Weights,
@@ -37,6 +40,9 @@ def coarsen(
     set_: Settings = None,
     target: Target = "fit",
     l_max: LMax = 10,
+    star_point: StarPoint = "",
+    rule: RadiusRule = "volume",
+    reference: Reference = "sphere",
     unit: Unit = "um",
     json: Json = False,
     jobs: Jobs = 1,
@@ -49,7 +55,7 @@ def coarsen(
     from regolith_studio.session.outputs.coarsening import coarsening_document, write_coarsening
     from regolith_studio.session.outputs.staging import staged_folder
 
-    wish = choices_from(faces, method, preset, weight, set_, target, l_max, seed)
+    wish = choices_from(faces, method, preset, weight, set_, target, l_max, seed, star_point, rule, reference)
     loaded = read_inputs(meshes, unit)
     done = follow(coarsen_sample(loaded.particles, wish.order, jobs))
     with staged_folder(output) as stage:
@@ -72,6 +78,9 @@ def choices_from(
     target: str,
     l_max: int,
     seed: int,
+    star_point: str,
+    rule: str,
+    reference: str,
 ) -> "Choices":
     """The choices that the options of a coarsening stand for; a bad one is bad use."""
     from regolith_studio.coarsening.weights import LossWeights
@@ -82,6 +91,9 @@ def choices_from(
         "settings": tuple(values(settings, "setting").items()),
         "target": target,
         "l_max": l_max,
+        "star_point": star_point,
+        "rule": rule,
+        "reference": reference,
         "seed": seed,
     }
     with as_bad_use():

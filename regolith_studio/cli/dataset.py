@@ -15,8 +15,11 @@ from regolith_studio.cli.options import (
     Meshes,
     Method,
     Preset,
+    RadiusRule,
+    Reference,
     Seed,
     Settings,
+    StarPoint,
     Target,
     Unit,
     Weights,
@@ -46,6 +49,9 @@ def build(
     set_: Settings = None,
     target: Target = "fit",
     l_max: LMax = 10,
+    star_point: StarPoint = "",
+    rule: RadiusRule = "volume",
+    reference: Reference = "sphere",
     representatives: Annotated[
         int,
         typer.Option(
@@ -88,7 +94,7 @@ def build(
     from regolith_studio.studies.representatives import quality_table
     from regolith_studio.studies.tables import csv_text
 
-    wish = choices_from(faces, method, preset, weight, set_, target, l_max, seed)
+    wish = choices_from(faces, method, preset, weight, set_, target, l_max, seed, star_point, rule, reference)
     with as_bad_use():
         parse_sizes(sizes)
         chosen = RepresentativesOrder.of(representatives or 10, weighting, size_importance, seed)
@@ -226,7 +232,7 @@ def export(
     set_: Annotated[
         list[str] | None,
         typer.Option(
-            "--set", help="Contact, cylinder or format: density, total_mass, ...", metavar="KEY=VALUE"
+            "--set", help="Contact, cylinder or format: density, mass, ...", metavar="KEY=VALUE"
         ),
     ] = None,
     lossy: Annotated[bool, typer.Option("--lossy", help="Allow formats that change the shapes.")] = False,

@@ -46,13 +46,14 @@ def fit(
     """Fit spherical harmonics to meshes; write coefficients and spectrum."""
     from regolith_studio.cli.inputs import exit_code, read_inputs
     from regolith_studio.cli.terminal import complain, follow, print_json
+    from regolith_studio.harmonics.expansion import Expansion
     from regolith_studio.jobs.fitting import FitOrder, fit_sample
     from regolith_studio.session.choices import Choices
     from regolith_studio.session.outputs.fits import FittedSample, fits_document, write_fits, write_surfaces
 
     with as_bad_use():
         Choices(l_max=l_max, seed=seed, level=level)
-        order = FitOrder(l_max, star_point, rule, reference)
+        order = FitOrder(l_max, Expansion(star_point, rule, reference))
     stem = output.with_suffix("") if output.suffix in (".json", ".npz") else output
     loaded = read_inputs(meshes, unit)
     sample = FittedSample.of(loaded.particles, follow(fit_sample(loaded.particles, order, jobs)))

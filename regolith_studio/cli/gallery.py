@@ -42,13 +42,14 @@ def gallery(
     from regolith_studio.cli.inputs import exit_code, read_inputs
     from regolith_studio.cli.picture import draw_apart
     from regolith_studio.cli.terminal import complain, follow, print_json
+    from regolith_studio.harmonics.expansion import Expansion
     from regolith_studio.harmonics.fit import HarmonicFit
     from regolith_studio.jobs.fitting import FIT_DEGREE, FitOrder, fit_sample
     from regolith_studio.session.outputs.staging import staged_folder
 
     wanted = whole_numbers(degrees, 0, FIT_DEGREE)
     with as_bad_use():
-        order = FitOrder(max(wanted), star_point, rule, reference)
+        order = FitOrder(max(wanted), Expansion(star_point, rule, reference))
     loaded = read_inputs(meshes, unit)
     fits = follow(fit_sample(loaded.particles, order))
     drawn: list[str] = []

@@ -27,13 +27,12 @@ def draw_three_views(
     EnvironmentProblem
         If this machine cannot draw.
     """
-    from regolith_studio.harmonics.fit import fit_harmonics
     from regolith_studio.harmonics.surface import reconstruct
 
     coarse = outcome.coarsened
     if coarse is None:
         raise ValueError("there is no polyhedron to draw")
-    fit = reconstruct(fit_harmonics(particle.mesh), choices.l_max, level=choices.level)
+    fit = reconstruct(choices.expansion.fit(particle.mesh, choices.l_max), choices.l_max, choices.level)
     draw_apart(_draw, (particle.mesh, fit, coarse, choices.l_max), path)
 
 

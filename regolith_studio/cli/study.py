@@ -16,9 +16,11 @@ from regolith_studio.cli.options import (
     LMax,
     Meshes,
     Method,
+    RadiusRule,
     Reference,
     Seed,
     Settings,
+    StarPoint,
     Target,
     Unit,
     as_bad_use,
@@ -77,6 +79,8 @@ def lmax(
     degrees: Degrees = "1-20",
     level: Level = 4,
     below: Below = 5.0,
+    star_point: StarPoint = "",
+    rule: RadiusRule = "volume",
     reference: Reference = "sphere",
     unit: Unit = "um",
     json: Json = False,
@@ -85,7 +89,7 @@ def lmax(
 ) -> None:
     """RMSRE of the descriptors against l_max (Fig. 3)."""
     from regolith_studio.cli.inputs import exit_code, read_inputs
-    from regolith_studio.jobs.fitting import FitOrder
+    from regolith_studio.harmonics.expansion import Expansion
     from regolith_studio.jobs.studying import study_lmax
     from regolith_studio.session.choices import L_MAX_LIMIT, Choices
     from regolith_studio.studies.lmax import enough_degrees
@@ -93,9 +97,9 @@ def lmax(
     wanted = whole_numbers(degrees, 0, L_MAX_LIMIT)
     with as_bad_use():
         Choices(level=level, seed=seed)
-        FitOrder(reference=reference)
+        expansion = Expansion(star_point, rule, reference)
     loaded = read_inputs(meshes, unit)
-    steps = study_lmax(loaded.particles, jobs, seed, degrees=wanted, level=level, reference=reference)
+    steps = study_lmax(loaded.particles, jobs, seed, degrees=wanted, level=level, expansion=expansion)
     study = _conclude("lmax_study", steps, output, json)
     if not json:
         typer.echo(enough_degrees(study, below / 100))
@@ -111,6 +115,9 @@ def coarsening(
     set_: Settings = None,
     target: Target = "fit",
     l_max: LMax = 10,
+    star_point: StarPoint = "",
+    rule: RadiusRule = "volume",
+    reference: Reference = "sphere",
     unit: Unit = "um",
     json: Json = False,
     jobs: Jobs = 1,
@@ -120,7 +127,7 @@ def coarsening(
     from regolith_studio.cli.inputs import exit_code, read_inputs
     from regolith_studio.jobs.studying import study_coarsening
 
-    wish = choices_from(faces, method, "", None, set_, target, l_max, seed)
+    wish = choices_from(faces, method, "", None, set_, target, l_max, seed, star_point, rule, reference)
     loaded = read_inputs(meshes, unit)
     _conclude("coarsening_study", study_coarsening(loaded.particles, wish.order, jobs), output, json)
     raise typer.Exit(exit_code(meshes, loaded))

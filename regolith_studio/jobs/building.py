@@ -1,7 +1,7 @@
 """Coarsens a sample and writes it as a dataset folder (section 2.5)."""
 
 from collections.abc import Generator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 from regolith_studio.dataset.build import ShapeClass, build_dataset, own_class
@@ -12,6 +12,7 @@ from regolith_studio.dataset.size_spec import Sizing, parse_sizes
 from regolith_studio.errors import DatasetError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.coefficients import ShCoefficients
+from regolith_studio.harmonics.expansion import USUAL, Expansion
 from regolith_studio.harmonics.sample_spectrum import sample_spectrum
 from regolith_studio.jobs.coarsening import CoarsenedParticle, CoarseningOrder, coarsen_sample
 from regolith_studio.jobs.events import Progress, Started, Step, Steps
@@ -196,7 +197,8 @@ def provenance(
 
 def story(fitted: Sequence[ShCoefficients], order: CoarseningOrder, preset: str | None) -> Provenance:
     """As :func:`provenance`, from the coefficients of the particles that were fitted and coarsened."""
-    fit = (f"Spherical-harmonics surface up to l = {order.l_max}.",) if order.target == "fit" else ()
+    fit = (f"Spherical-harmonics surface up to l = {order.l_max}{_unusual(order.expansion)}.",)
+    lengths = order.expansion.reference == USUAL.reference
     record = CoarseningRecord(
         method=order.method,
         n_faces=order.n_faces,
@@ -209,12 +211,24 @@ def story(fitted: Sequence[ShCoefficients], order: CoarseningOrder, preset: str 
     return Provenance(
         processing_steps=(
             "Meshes read and repaired.",
-            *fit,
+            *(fit if order.target == "fit" else ()),
             f"Coarsened to {order.n_faces} faces by the method {order.method}.",
             "Turned to principal axes and scaled to unit volume.",
         ),
         seed=order.seed,
         l_max=order.l_max if fitted else None,
-        angular_power_spectrum=tuple(sample_spectrum(fitted).values) if len(fitted) > 1 else None,
+        angular_power_spectrum=(
+            tuple(sample_spectrum(fitted).values) if len(fitted) > 1 and lengths else None
+        ),
         coarsening=record,
     )
+
+
+def _unusual(expansion: Expansion) -> str:
+    """What was not done as usual, to be put into a sentence."""
+    told = [
+        f"{name.replace('_', ' ')} {value}"
+        for name, value in asdict(expansion).items()
+        if value != getattr(USUAL, name)
+    ]
+    return f" ({', '.join(told)})" if told else ""

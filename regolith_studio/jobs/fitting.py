@@ -4,14 +4,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from regolith_studio.descriptors.describe import Descriptors, describe
-from regolith_studio.errors import InputError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.coefficients import checked_degree
-from regolith_studio.harmonics.fit import HarmonicFit, fit_harmonics
-from regolith_studio.harmonics.radius_function import DEFAULT_RULE, RULES
-from regolith_studio.harmonics.reference import REFERENCES
-from regolith_studio.harmonics.star_point import STAR_POINT_RULES
+from regolith_studio.harmonics.expansion import USUAL, Expansion
+from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.surface import reconstruct
 from regolith_studio.jobs.batch import value_of
 from regolith_studio.jobs.crew import Crew, hired
@@ -29,44 +26,26 @@ class FitOrder:
     ----------
     l_max
         Highest degree.
-    star_point
-        Key of ``STAR_POINT_RULES``; empty for the centre of mass and, where that lies outside, the
-        nearest good point.
-    rule
-        Key of ``radius_function.RULES``.
-    reference
-        Key of ``REFERENCES``.
+    expansion
+        Star point, radius rule and reference.
 
     Raises
     ------
     InputError
-        If a key is unknown or the degree out of range.
+        If the degree is out of range.
     """
 
     l_max: int = FIT_DEGREE
-    star_point: str = ""
-    rule: str = DEFAULT_RULE
-    reference: str = "sphere"
+    expansion: Expansion = USUAL
 
     def __post_init__(self) -> None:
         checked_degree(self.l_max, FIT_DEGREE)
-        known = {"star_point": ("", *STAR_POINT_RULES), "rule": RULES, "reference": REFERENCES}
-        for name, keys in known.items():
-            if (value := getattr(self, name)) not in keys:
-                choices = ", ".join(filter(None, keys))
-                raise InputError(f"The {name.replace('_', ' ')} must be one of {choices}, got {value!r}.")
 
 
 def fit_one(mesh: Mesh, order: FitOrder = FitOrder()) -> Steps:
     """Fit `mesh`; returns a ``HarmonicFit``."""
     yield Started("Fitting spherical harmonics")
-    return fit_harmonics(
-        mesh,
-        l_max=order.l_max,
-        star_point=order.star_point or None,
-        rule=order.rule,
-        reference=order.reference,
-    )
+    return order.expansion.fit(mesh, order.l_max)
 
 
 def draw_surface(fit: HarmonicFit, l_max: int, level: int) -> Steps:

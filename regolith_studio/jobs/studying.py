@@ -72,7 +72,7 @@ def study_coarsening(
             method=order.method,
             seed=order.seed,
             settings=dict(order.settings),
-            target=TargetChoice(order.target, order.l_max, order.level),
+            target=TargetChoice(order.target, order.l_max, order.level, order.expansion),
             mapper=crew.map,
             **options,
         )

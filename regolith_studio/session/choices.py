@@ -8,6 +8,7 @@ from regolith_studio.coarsening.coarsen import DEFAULT_METHOD, DEFAULT_PRESET, F
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.descriptors.facts import BOX_METRICS
 from regolith_studio.errors import InputError
+from regolith_studio.harmonics.expansion import USUAL, Expansion
 from regolith_studio.jobs.coarsening import CoarseningOrder
 from regolith_studio.readers.units import unit_factor
 
@@ -27,6 +28,9 @@ class Choices:
     ----------
     selected
         Id of the particle on screen; empty for none.
+    star_point, rule, reference
+        Of the :class:`~regolith_studio.harmonics.expansion.Expansion`: where radii begin, which crossing
+        of a ray counts, what they are divided by.
     l_max
         Degree at which the spherical-harmonics series is cut, 0 to 30.
     level
@@ -55,6 +59,9 @@ class Choices:
     """
 
     selected: str = ""
+    star_point: str = USUAL.star_point
+    rule: str = USUAL.rule
+    reference: str = USUAL.reference
     l_max: int = 10
     level: int = 4
     n_faces: int = 20
@@ -76,6 +83,7 @@ class Choices:
         _one_of("box metric", self.box_metric, tuple(BOX_METRICS))
         unit_factor(self.unit)
         settings_of(self.method, dict(self.settings))
+        Expansion(self.star_point, self.rule, self.reference)
         object.__setattr__(self, "settings", tuple(sorted(dict(self.settings).items())))
 
     def replaced(self, **changes: Any) -> Self:
@@ -96,6 +104,11 @@ class Choices:
         return dataclasses.replace(self, **changes)
 
     @property
+    def expansion(self) -> Expansion:
+        """How a radius function is taken and expanded."""
+        return Expansion(self.star_point, self.rule, self.reference)
+
+    @property
     def order(self) -> CoarseningOrder:
         """What is asked of a coarsening."""
         return CoarseningOrder(
@@ -107,6 +120,7 @@ class Choices:
             target=self.target,
             l_max=self.l_max,
             level=self.level,
+            expansion=self.expansion,
         )
 
     @property

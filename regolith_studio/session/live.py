@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 from regolith_studio.descriptors.comparison import relative_errors
 from regolith_studio.jobs.coarsening import coarsen_one
 from regolith_studio.jobs.events import Failed, Job
-from regolith_studio.jobs.fitting import describe_meshes, draw_surface, fit_one
+from regolith_studio.jobs.fitting import FitOrder, describe_meshes, draw_surface, fit_one
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.grown import Grown
 from regolith_studio.session.plan import LIVE, Kind, needs, plan
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from regolith_studio.coarsening.result import Coarsened
     from regolith_studio.descriptors.describe import Descriptors
     from regolith_studio.geometry.mesh import Mesh
+    from regolith_studio.harmonics.expansion import Expansion
     from regolith_studio.harmonics.fit import HarmonicFit
 
 _TITLES = {
@@ -55,7 +56,7 @@ class LiveResults:
     def __init__(self, owner: Owner, board: TaskBoard) -> None:
         self._owner, self._board = owner, board
         self._due: set[Kind] = set()
-        self._fits: dict[str, HarmonicFit] = {}
+        self._fits: dict[tuple[str, Expansion], HarmonicFit] = {}
         self._measured: dict[tuple[str, str], Descriptors] = {}
         self._losses: list[tuple[int, float]] = []
         self._has_shown = False
@@ -67,10 +68,10 @@ class LiveResults:
 
     def follow(self, before: Choices | None, after: Choices) -> None:
         """Start, or start anew, what the change makes necessary."""
-        requests = plan(before, after, self._fits.keys())
+        requests = plan(before, after, {id for id, way in self._fits if way == after.expansion})
         if before is None or before.selected != after.selected:
             self._show_nothing(*LIVE)
-            self._owner.update("fit", fit=self._fits.get(after.selected))
+        self._take_fit_at_hand(after)
         same = before is not None and before.selected == after.selected
         for request in requests:
             if not (same and self._may_finish(request.kind)):
@@ -79,6 +80,15 @@ class LiveResults:
         if self._owner.results.fit is None and not self._is_open(Kind.FIT):
             self._drop_dependents(Kind.FIT)
         self._advance()
+
+    def _take_fit_at_hand(self, choices: Choices) -> None:
+        fit = self._fits.get((choices.selected, choices.expansion))
+        if fit is None:
+            return
+        self._board.stop_lane(Kind.FIT)
+        self._due.discard(Kind.FIT)
+        if fit is not self._owner.results.fit:
+            self._owner.update("fit", fit=fit)
 
     def _may_finish(self, kind: Kind) -> bool:
         """Whether older work shall still be shown: else nothing would be seen while a slider is dragged."""
@@ -133,13 +143,13 @@ class LiveResults:
         return entry
 
     def _fit(self) -> "_Work":
-        entry = self._entry()
+        entry, expansion = self._entry(), self._owner.choices.expansion
 
         def keep(fit: "HarmonicFit") -> None:
-            self._fits[entry.id] = fit
+            self._fits[entry.id, expansion] = fit
             self._owner.update("fit", fit=fit)
 
-        return Job(fit_one, (entry.particle.mesh,)), keep, _ignore
+        return Job(fit_one, (entry.particle.mesh, FitOrder(expansion=expansion))), keep, _ignore
 
     def _surface(self) -> "_Work":
         choices = self._owner.choices

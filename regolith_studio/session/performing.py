@@ -175,6 +175,7 @@ def _worked(done: Performed, batch: Batch, crew: Crew) -> Part:
         order=done.choices.order if coarse else None,
         shapes=wish.dataset,
         box_metric=done.choices.box_metric,
+        expansion=done.choices.expansion,
     )
     members = done.items.members
     yield Started("Working on particles", len(members))
@@ -252,7 +253,9 @@ def _studied(done: Performed, crew: Crew) -> Part:
         return
     particles = yield from _read(done)
     if wish.lmax_study:
-        yield from _study(done, "lmax_study", study_lmax(particles, crew, choices.seed))
+        yield from _study(
+            done, "lmax_study", study_lmax(particles, crew, choices.seed, expansion=choices.expansion)
+        )
     if wish.coarsening_study:
         yield from _study(done, "coarsening_study", study_coarsening(particles, choices.order, crew))
 

@@ -23,16 +23,17 @@ LIVE = (Kind.FIT, Kind.SURFACE, Kind.DESCRIPTORS, Kind.COARSENING)
 STUDIES = (Kind.LMAX_STUDY, Kind.COARSENING_STUDY)
 """Kinds that wait until they are asked for."""
 
+_EXPANSION = ("star_point", "rule", "reference")
 DEPENDS_ON: Mapping[Kind, tuple[str, ...]] = {
-    Kind.FIT: ("selected",),
-    Kind.SURFACE: ("selected", "l_max", "level"),
-    Kind.DESCRIPTORS: ("selected", "l_max", "level", "box_metric"),
+    Kind.FIT: ("selected", *_EXPANSION),
+    Kind.SURFACE: ("selected", *_EXPANSION, "l_max", "level"),
+    Kind.DESCRIPTORS: ("selected", *_EXPANSION, "l_max", "level", "box_metric"),
     Kind.COARSENING: ("selected", "target", "n_faces", "method", "settings", "weights", "seed"),
-    Kind.LMAX_STUDY: ("level",),
+    Kind.LMAX_STUDY: (*_EXPANSION, "level"),
     Kind.COARSENING_STUDY: ("target", "n_faces", "method", "settings", "seed"),
 }
 """The choices that each kind of result depends on."""
-_COARSENING_OF_FIT = ("l_max", "level")
+_COARSENING_OF_FIT = (*_EXPANSION, "l_max", "level")
 
 _UPSTREAM: Mapping[Kind, tuple[Kind, ...]] = {
     Kind.SURFACE: (Kind.FIT,),
@@ -57,7 +58,8 @@ def plan(before: Choices | None, after: Choices, fitted: Collection[str] = ()) -
     before
         ``None`` when nothing has been computed yet.
     fitted
-        Ids of particles whose coefficients up to degree 30 are at hand; they are not fitted again.
+        Ids of particles whose coefficients by the expansion of `after`, up to degree 30, are at hand;
+        they are not fitted again.
     """
     if not after.selected:
         return ()

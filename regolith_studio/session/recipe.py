@@ -8,6 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 from regolith_studio.coarsening.coarsen import DEFAULT_METHOD, DEFAULT_PRESET
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.errors import FileError, InputError
+from regolith_studio.harmonics.expansion import USUAL
 from regolith_studio.session.choices import L_MAX_LIMIT, Choices, Scalar
 
 FORMAT: Literal["regolith-studio recipe"] = "regolith-studio recipe"
@@ -66,6 +67,9 @@ class Recipe(_Strict):
     inputs: list[str] = Field(default_factory=lambda: [SAMPLE])
     population: Population | None = None
     unit: str = "um"
+    star_point: str = USUAL.star_point
+    rule: str = USUAL.rule
+    reference: str = USUAL.reference
     l_max: int = 10
     level: int = 4
     target: str = "fit"
@@ -90,6 +94,9 @@ class Recipe(_Strict):
         return cls(
             inputs=inputs,
             unit=choices.unit,
+            star_point=choices.star_point,
+            rule=choices.rule,
+            reference=choices.reference,
             l_max=choices.l_max,
             level=choices.level,
             target=choices.target,
@@ -111,7 +118,10 @@ class Recipe(_Strict):
         InputError
             If a value is out of its range.
         """
-        names = ("unit", "l_max", "level", "target", "method", "preset", "n_faces", "seed", "box_metric")
+        names = (
+            *("unit", "star_point", "rule", "reference", "l_max", "level", "target"),
+            *("method", "preset", "n_faces", "seed", "box_metric"),
+        )
         changes: dict[str, Any] = {name: getattr(self, name) for name in names}
         changes["settings"] = tuple(self.settings.items())
         if self.weights is not None:

@@ -13,6 +13,8 @@ def as_command(choices: Choices, inputs: list[str]) -> str:
     words += ["--seed", str(choices.seed), "--target", choices.target]
     if choices.target == "fit":
         words += ["--l-max", str(choices.l_max)]
+        words += [f"--star-point={choices.star_point}"] if choices.star_point else []
+        words += ["--rule", choices.rule, "--reference", choices.reference]
     words += ["--preset", choices.preset]
     if choices.preset_modified:
         words += [word for key, value in choices.weights.items() for word in ("--weight", f"{key}={value:g}")]
@@ -36,7 +38,7 @@ def as_python(choices: Choices, inputs: list[str]) -> str:
         "",
         f"l_max, level = {choices.l_max}, {choices.level}",
         f"particle = {reading}",
-        "fit = fit_harmonics(particle.mesh, l_max=30)",
+        f"fit = {_expanding(choices)}",
         f"target = {body}",
         f"weights = LossWeights.of(**{dict(choices.weights)!r})",
         f"settings = settings_of({choices.method!r}, {dict(choices.settings)!r})",
@@ -47,3 +49,10 @@ def as_python(choices: Choices, inputs: list[str]) -> str:
         "print(done.n_faces, done.errors, done.jaccard_distance)",
     ]
     return "\n".join(lines) + "\n"
+
+
+def _expanding(choices: Choices) -> str:
+    ways = {"star_point": choices.star_point, "rule": choices.rule, "reference": choices.reference}
+    usual = Choices()
+    told = [f"{name}={value!r}" for name, value in ways.items() if value != getattr(usual, name)]
+    return f"fit_harmonics({', '.join(['particle.mesh', 'l_max=30', *told])})"

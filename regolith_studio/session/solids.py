@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from regolith_studio.coarsening.weights import presets
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.harmonics.fit import HarmonicFit, fit_harmonics
+from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.jobs.coarsening import CoarsenedParticle, CoarseningOrder, coarsen_particle
 from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
 from regolith_studio.session.choices import L_MAX_LIMIT
@@ -42,7 +42,7 @@ def draw_solids(particles: Sequence[Particle], order: CoarseningOrder) -> Steps:
     yield Started("Coarsening for the gallery", total)
     done: list[Solid] = []
     for column, particle in enumerate(particles):
-        fit = fit_harmonics(particle.mesh, L_MAX_LIMIT) if order.target == "fit" else None
+        fit = order.expansion.fit(particle.mesh, L_MAX_LIMIT) if order.target == "fit" else None
         for row, name in enumerate(PAPER_ROWS):
             outcome = yield from _outcome(
                 particle, _by_row(order, name), column, fit, Progress(len(done), total)

@@ -35,7 +35,14 @@ def study_job(
             return StudyJob(
                 "RMSRE against l_max",
                 Job(
-                    study_lmax, (tuple(particles),), {"seed": choices.seed, "level": choices.level, **options}
+                    study_lmax,
+                    (tuple(particles),),
+                    {
+                        "seed": choices.seed,
+                        "level": choices.level,
+                        "expansion": choices.expansion,
+                        **options,
+                    },
                 ),
             )
         case Kind.COARSENING_STUDY:

@@ -19,7 +19,7 @@ from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.harmonics.fit import fit_harmonics
+from regolith_studio.harmonics.expansion import USUAL, Expansion
 from regolith_studio.harmonics.surface import reconstruct
 from regolith_studio.studies.progress import StudyProgress
 from regolith_studio.studies.tables import Column, Table
@@ -79,14 +79,13 @@ class TargetChoice:
     kind: str = "particle"
     l_max: int = 10
     level: int = 4
+    expansion: Expansion = USUAL
 
     def mesh_of(self, mesh: Mesh) -> Mesh:
         """The mesh to be coarsened."""
-        return (
-            reconstruct(fit_harmonics(mesh, self.l_max), self.l_max, self.level)
-            if self.kind == "fit"
-            else mesh
-        )
+        if self.kind == "particle":
+            return mesh
+        return reconstruct(self.expansion.fit(mesh, self.l_max), self.l_max, self.level)
 
 
 @dataclass(frozen=True, eq=False)

@@ -200,6 +200,17 @@ def test_that_a_population_is_drawn_measured_coarsened_and_written(tmp_path: Pat
     assert same.items() <= digests(more.folder).items()
 
 
+def test_that_a_recipe_divides_radii_by_the_reference_that_it_names(tmp_path: Path, grains: Path) -> None:
+    """Coefficients of the ratio to an ellipsoid are no lengths, so there is no spectrum of lengths."""
+    wish = recipe(grains, reference="ellipsoid")
+    folder = done(wish, grains, tmp_path / "out").folder
+    (first, *_) = json.loads((folder / "fit.json").read_text())["particles"]
+    assert first["reference"]
+    told = json.loads((folder / "dataset" / "dataset.json").read_text())["metadata"]
+    assert told["angular_power_spectrum_um2"] is None
+    assert "reference ellipsoid" in " ".join(told["processing_steps"])
+
+
 def test_that_an_unknown_card_is_an_error_before_any_work(tmp_path: Path) -> None:
     wish = recipe_of(inputs=[], population={"card": "cheese", "n": 4})
     with pytest.raises(InputError, match=r"no material card 'cheese'"):

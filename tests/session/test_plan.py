@@ -39,6 +39,9 @@ def test_that_a_particle_is_not_fitted_twice() -> None:
     ("changes", "expected"),
     [
         ({"l_max": 4}, [SURFACE, DESCRIPTORS, COARSENING]),
+        ({"star_point": "kernel_centre"}, list(LIVE)),
+        ({"rule": "outermost"}, list(LIVE)),
+        ({"reference": "ellipsoid"}, list(LIVE)),
         ({"level": 3}, [SURFACE, DESCRIPTORS, COARSENING]),
         ({"box_metric": "trimesh"}, [DESCRIPTORS]),
         ({"n_faces": 30}, [COARSENING]),
@@ -49,7 +52,7 @@ def test_that_a_particle_is_not_fitted_twice() -> None:
     ],
 )
 def test_that_a_choice_remakes_what_depends_on_it(changes: dict[str, Any], expected: list[Kind]) -> None:
-    assert kinds(HERE, HERE.replaced(**changes)) == expected
+    assert kinds(HERE, HERE.replaced(**changes), ()) == expected
 
 
 def test_that_l_max_leaves_the_coarsening_of_the_particle_itself_alone() -> None:

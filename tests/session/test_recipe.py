@@ -23,6 +23,7 @@ def written(folder: Path, text: str) -> Path:
         Choices(),
         Choices(l_max=3, n_faces=12, seed=9, target="particle", unit="mm", level=2, box_metric="trimesh"),
         Choices().replaced(weights=LossWeights.of(volume=2.0, sphericity=0.1)),
+        Choices(star_point="kernel_centre", rule="outermost", reference="ellipsoid"),
         Choices().replaced(method="quadric", settings=(("restore_volume", True),)),
     ],
 )

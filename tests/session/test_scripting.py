@@ -33,6 +33,7 @@ def session(grain: Path) -> Session:
 
 
 def test_that_the_copied_script_finds_the_polyhedron_of_the_window(session: Session) -> None:
+    session.choose(star_point="kernel_centre", reference="ellipsoid")
     names: dict[str, object] = {}
     exec(as_python(session.choices, inputs_of(session)), names)
     done, shown = names["done"], session.results.coarsened
@@ -49,7 +50,7 @@ def test_that_the_script_of_the_sample_and_of_the_bare_particle_compile() -> Non
 def test_that_the_copied_command_is_understood_and_coarsens(
     session: Session, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    session.choose(weights=session.choices.weights.replaced(volume=0.5))
+    session.choose(weights=session.choices.weights.replaced(volume=0.5), star_point="kernel_centre")
     words = shlex.split(as_command(session.choices, inputs_of(session)))
     assert words[0] == "regolith-studio"
     monkeypatch.chdir(tmp_path)

@@ -121,6 +121,20 @@ def test_that_going_back_to_a_particle_finds_its_fit_again(opened: Session) -> N
     assert opened.results.fit is first
 
 
+def test_that_another_reference_makes_another_fit_and_going_back_finds_the_first(opened: Session) -> None:
+    first, loss = opened.results.fit, opened.results.coarsened.loss  # type: ignore[union-attr]
+    opened.choose(reference="ellipsoid")
+    other = opened.results.fit
+    assert other is not None
+    assert other.reference is not None
+    assert opened.results.coarsened.loss != loss  # type: ignore[union-attr]
+    opened.choose(reference="sphere")
+    assert opened.results.fit is first
+    assert opened.results.coarsened.loss == loss  # type: ignore[union-attr]
+    opened.choose(reference="ellipsoid")
+    assert opened.results.fit is other
+
+
 def test_that_undo_and_redo_bring_the_results_back(opened: Session) -> None:
     loss = opened.results.coarsened.loss  # type: ignore[union-attr]
     for faces in (12, 14, 16):
@@ -278,7 +292,7 @@ def test_that_a_fit_that_cannot_be_made_shows_nothing_and_is_told_once(
 
     failures: list[str] = []
     opened.topics.failed.connect(lambda failure: failures.append(failure.sentence))
-    monkeypatch.setattr("regolith_studio.jobs.fitting.fit_harmonics", refuse)
+    monkeypatch.setattr("regolith_studio.harmonics.expansion.fit_harmonics", refuse)
     opened.select("grain-1")
     results = opened.results
     assert failures == ["The grain is too shy."]

@@ -14,6 +14,10 @@ from regolith_studio.descriptors.describe import describe
 from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.health import inspect
 from regolith_studio.geometry.particle import Particle
+from regolith_studio.harmonics.expansion import AUTOMATIC
+from regolith_studio.harmonics.radius_function import RULES
+from regolith_studio.harmonics.reference import REFERENCES
+from regolith_studio.harmonics.star_point import STAR_POINT_RULES
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import health_word
@@ -30,7 +34,7 @@ from regolith_studio.ui.widgets.settings_form import SettingsForm
 
 WEIGHTS = LossWeights.of(volume=0.5, sphericity=1.25, jaccard_distance=7.0)
 VALUES = {
-    FitPanel: {"l_max": 17},
+    FitPanel: {"l_max": 17, "star_point": "kernel_centre", "rule": "first", "reference": "ellipsoid"},
     CoarseningPanel: {
         "n_faces": 33,
         "target": "particle",
@@ -61,6 +65,24 @@ def test_that_a_value_written_into_a_panel_is_read_back_and_not_announced(shown,
     assert panel.value() == VALUES[kind]
     assert set(panel.value()) == set(panel.FIELDS)
     assert heard == []
+
+
+def test_that_the_fit_panel_offers_every_way_to_take_a_radius(shown):
+    panel = shown(FitPanel())
+    known = {"star_point": {AUTOMATIC, *STAR_POINT_RULES}, "rule": set(RULES), "reference": set(REFERENCES)}
+    for name, keys in known.items():
+        box = panel.ways[name]
+        assert {box.itemData(row) for row in range(box.count())} == keys
+
+
+def test_that_another_reference_is_announced_as_one_step(shown):
+    panel, heard, ended = shown(FitPanel()), [], []
+    panel.valueChanged.connect(heard.append)
+    panel.editingFinished.connect(lambda: ended.append(True))
+    panel.more.button.click()
+    QTest.keyClick(panel.ways["reference"], Qt.Key.Key_Down)
+    assert heard == [{"reference": "ellipsoid"}]
+    assert ended == [True]
 
 
 @pytest.mark.parametrize("kind", [*VALUES, ParticleListPanel])

@@ -11,6 +11,7 @@ import numpy as np
 from regolith_studio.dataset.streaming import stored_shape
 from regolith_studio.errors import Cancelled
 from regolith_studio.geometry.particle import Particle
+from regolith_studio.harmonics.expansion import USUAL, Expansion
 from regolith_studio.harmonics.files import fits_document
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.imaging.stl import stl_bytes
@@ -18,7 +19,7 @@ from regolith_studio.jobs.batch import call
 from regolith_studio.jobs.coarsening import CoarsenedParticle, CoarseningOrder, coarsen_particle
 from regolith_studio.jobs.events import Ending, Failed, Finished, Job, Progress, Started, Step, Steps
 from regolith_studio.jobs.examining import Examined, examine
-from regolith_studio.jobs.fitting import fit_one
+from regolith_studio.jobs.fitting import FitOrder, fit_one
 from regolith_studio.jobs.runners.drive import told
 from regolith_studio.jobs.shards import Record
 from regolith_studio.session.batch.items import Item
@@ -43,6 +44,8 @@ class Wish:
         Of the coarsening; ``None`` for none.
     shapes
         Whether the polyhedra become a dataset.
+    expansion
+        How fits are made.
     """
 
     examine: bool
@@ -50,6 +53,7 @@ class Wish:
     order: CoarseningOrder | None
     shapes: bool
     box_metric: str
+    expansion: Expansion = USUAL
 
 
 @dataclass
@@ -106,7 +110,9 @@ def _results(entry: _Entry, particle: Particle, wish: Wish) -> Generator[Step, N
             entry.values["described"] = facts
     fit = None
     if wish.fit or (wish.order and wish.order.target == "fit"):
-        fit = yield from entry.attempt("fitting", Job(fit_one, (particle.mesh,)))
+        fit = yield from entry.attempt(
+            "fitting", Job(fit_one, (particle.mesh, FitOrder(expansion=wish.expansion)))
+        )
         if fit is not None and wish.fit:
             _keep_fit(entry, particle, fit)
         if fit is None and wish.order and wish.order.target == "fit":

@@ -5,7 +5,6 @@ from typing import Any
 
 from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import (
-    QComboBox,
     QFormLayout,
     QHBoxLayout,
     QSpinBox,
@@ -18,6 +17,7 @@ from regolith_studio.coarsening.coarsen import FACES_LIMITS
 from regolith_studio.coarsening.methods import METHODS
 from regolith_studio.ui.icons import icon
 from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.widgets.choice_box import ChoiceBox
 from regolith_studio.ui.widgets.collapsible import Collapsible
 from regolith_studio.ui.widgets.labels import heading, remark
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
@@ -48,8 +48,8 @@ class CoarseningPanel(QWidget):
         self.n_faces = NumberSlider(FACES)
         self.n_faces.slider.setObjectName("n_faces_slider")
         self.n_faces.field.setObjectName("n_faces")
-        self.target = _combo("target", "What is imitated", TARGET_LABELS)
-        self.method = _combo("method", "Coarsening method", {k: m.label for k, m in METHODS.items()})
+        self.target = ChoiceBox("target", "What is imitated", TARGET_LABELS)
+        self.method = ChoiceBox("method", "Coarsening method", {k: m.label for k, m in METHODS.items()})
         self.seed = _seed_field()
         self.dice = QToolButton()
         self.dice.setObjectName("next_seed")
@@ -70,12 +70,12 @@ class CoarseningPanel(QWidget):
 
     def value(self) -> dict[str, Any]:
         """All of it."""
-        form = self._forms.get(self.method.currentData())
+        form = self._forms.get(self.method.value())
         settings = form.value() if form else {}
         return {
             "n_faces": int(self.n_faces.value()),
-            "target": self.target.currentData(),
-            "method": self.method.currentData(),
+            "target": self.target.value(),
+            "method": self.method.value(),
             "settings": tuple(sorted(settings.items())),
             "seed": self.seed.value(),
         }
@@ -83,9 +83,8 @@ class CoarseningPanel(QWidget):
     def setValue(self, value: Mapping[str, Any]) -> None:
         """Show other choices."""
         self.n_faces.setValue(value["n_faces"])
-        for combo, name in ((self.target, "target"), (self.method, "method")):
-            with QSignalBlocker(combo):
-                combo.setCurrentIndex(combo.findData(value[name]))
+        self.target.setValue(value["target"])
+        self.method.setValue(value["method"])
         with QSignalBlocker(self.seed):
             self.seed.setValue(value["seed"])
         self._show_settings()
@@ -136,7 +135,7 @@ class CoarseningPanel(QWidget):
         self._announce("method", "settings")
 
     def _show_settings(self) -> None:
-        key = self.method.currentData()
+        key = self.method.value()
         if key and key not in self._forms:
             form = self._forms[key] = SettingsForm(METHODS[key].Settings)
             form.valueChanged.connect(lambda _: self._announce("settings"))
@@ -144,17 +143,6 @@ class CoarseningPanel(QWidget):
         for name, form in self._forms.items():
             form.setVisible(name == key)
         self.more.setVisible(bool(key) and not self._forms[key].is_empty())
-
-
-def _combo(name: str, accessible: str, entries: Mapping[str, str]) -> QComboBox:
-    combo = QComboBox()
-    combo.setObjectName(name)
-    combo.setAccessibleName(accessible)
-    combo.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
-    combo.setMinimumContentsLength(12)
-    for key, label in entries.items():
-        combo.addItem(label[:1].upper() + label[1:], key)
-    return combo
 
 
 def _seed_field() -> QSpinBox:

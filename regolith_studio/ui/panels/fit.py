@@ -1,12 +1,16 @@
 """The degree at which the spherical-harmonics series is cut, and what the fit cannot show."""
 
 from collections.abc import Mapping
+from functools import partial
 from typing import Any
 
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFormLayout, QVBoxLayout, QWidget
 
+from regolith_studio.harmonics.expansion import AUTOMATIC
 from regolith_studio.session.choices import L_MAX_LIMIT
+from regolith_studio.ui.widgets.choice_box import ChoiceBox
+from regolith_studio.ui.widgets.collapsible import Collapsible
 from regolith_studio.ui.widgets.labels import heading, remark
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
 
@@ -17,12 +21,28 @@ L_MAX = NumberSpec(
     L_MAX_LIMIT,
     tip="Degree at which the series of Eq. 4 is cut: 0 is a sphere; the paper uses 10.",
 )
+STAR_POINTS = {
+    AUTOMATIC: "Automatic",
+    "centre_of_mass": "Centre of mass",
+    "kernel_centre": "Centre of the kernel",
+    "least_hidden_volume": "Least hidden volume",
+}
+RULES = {"volume": "Keep the volume", "outermost": "Last crossing", "first": "First crossing"}
+REFERENCES = {"sphere": "Sphere", "ellipsoid": "Best-fit ellipsoid"}
+TIPS = {
+    "star_point": "Where radii begin. Automatic: the centre of mass or, where that is not inside, "
+    "the point that hides the least volume.",
+    "rule": "Which radius counts where a ray crosses the surface more than once. Keep the volume: the cube "
+    "root of the signed sum of r³ over all crossings.",
+    "reference": "What radii are divided by before they are expanded. An ellipsoid lowers the oscillation on "
+    "flat and elongated grains.",
+}
 
 
 class FitPanel(QWidget):
-    """Edits l_max."""
+    """Edits l_max and how radii are taken."""
 
-    FIELDS = ("l_max",)
+    FIELDS = ("l_max", "star_point", "rule", "reference")
     valueChanged = Signal(dict)  # noqa: N815
     editingFinished = Signal()  # noqa: N815
 
@@ -32,24 +52,33 @@ class FitPanel(QWidget):
         self.l_max = NumberSlider(L_MAX)
         self.l_max.slider.setObjectName("l_max_slider")
         self.l_max.field.setObjectName("l_max")
+        self.ways = {
+            "star_point": ChoiceBox("star_point", "Star point", STAR_POINTS),
+            "rule": ChoiceBox("rule", "Radius rule", RULES),
+            "reference": ChoiceBox("reference", "Reference of the radius", REFERENCES),
+        }
+        self.more = Collapsible("How radii are taken", self._form())
+        self.more.button.setObjectName("radius_settings")
         self.findings = remark()
         self.warnings = remark(role="warning")
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(heading("Spherical-harmonics fit"))
-        for widget in (self.l_max, self.findings, self.warnings):
+        for widget in (self.l_max, self.more, self.findings, self.warnings):
             layout.addWidget(widget)
         self.set_findings(None)
-        self.l_max.valueChanged.connect(lambda _: self.valueChanged.emit(self.value()))
+        self.l_max.valueChanged.connect(lambda degree: self.valueChanged.emit({"l_max": int(degree)}))
         self.l_max.editingFinished.connect(self.editingFinished)
 
-    def value(self) -> dict[str, int]:
-        """The degree."""
-        return {"l_max": int(self.l_max.value())}
+    def value(self) -> dict[str, Any]:
+        """All of it."""
+        return {"l_max": int(self.l_max.value()), **{name: box.value() for name, box in self.ways.items()}}
 
     def setValue(self, value: Mapping[str, Any]) -> None:
-        """Show another degree."""
+        """Show other choices."""
         self.l_max.setValue(value["l_max"])
+        for name, box in self.ways.items():
+            box.setValue(value[name])
 
     def set_findings(self, fit: Any | None) -> None:
         """Say what the radius function of a ``HarmonicFit`` cannot represent."""
@@ -68,3 +97,17 @@ class FitPanel(QWidget):
             )
         self.warnings.setText(" ".join(fit.warnings))
         self.warnings.setVisible(bool(fit.warnings))
+
+    def _form(self) -> QWidget:
+        form = QFormLayout(content := QWidget())
+        form.setContentsMargins(14, 0, 0, 0)
+        for label, name in (("Star point", "star_point"), ("Radius", "rule"), ("Divide by", "reference")):
+            box = self.ways[name]
+            box.setToolTip(TIPS[name])
+            box.activated.connect(partial(self._announce, name))
+            form.addRow(label, box)
+        return content
+
+    def _announce(self, name: str, _index: int) -> None:
+        self.valueChanged.emit({name: self.ways[name].value()})
+        self.editingFinished.emit()
