@@ -10,6 +10,7 @@ from regolith_studio.cli.options import Folder, Jobs, Json, as_bad_use
 
 if TYPE_CHECKING:
     from regolith_studio.jobs.crew import Crew
+    from regolith_studio.jobs.hiring import Hiring
 
 
 def run(
@@ -60,13 +61,16 @@ def run(
 ) -> None:
     """Do all that a recipe asks for: descriptors, fits, meshes, dataset, studies, summary."""
     from regolith_studio.cli.terminal import complain, follow, print_json
+    from regolith_studio.jobs.hiring import Hiring
     from regolith_studio.session.performing import perform
     from regolith_studio.session.recipe import read_recipe
 
     wish = read_recipe(recipe)
     if seed is not None:
         wish = wish.model_copy(update={"seed": seed})
-    with contextlib.closing(_crew(runner, jobs, address, tls)) as crew:
+    with as_bad_use():
+        hiring = Hiring(runner, jobs, address, tls)
+    with contextlib.closing(_crew(hiring)) as crew:
         done = follow(perform(wish, recipe.parent, output, crew, resume, chunk), logged=True)
     complain(done.problems)
     if json:
@@ -76,20 +80,11 @@ def run(
     raise typer.Exit(1 if done.problems else 0)
 
 
-def _crew(runner: str, jobs: int, address: str, tls: Path | None) -> "Crew":
-    """Who is to work, as the options say it."""
+def _crew(hiring: "Hiring") -> "Crew":
+    """Who is to work."""
     from regolith_studio.cli.terminal import complain
-    from regolith_studio.jobs.crew import Crew
-    from regolith_studio.jobs.runners.dask_cluster import TlsFiles
 
-    if runner == "processes":
-        if address or tls:
-            raise typer.BadParameter("--address and --tls go with --runner dask.")
-        return Crew(jobs)
-    if runner != "dask":
-        raise typer.BadParameter(f"There is no runner {runner!r}; there are processes and dask.")
-    files = TlsFiles(tls / "ca.pem", tls / "cert.pem", tls / "key.pem") if tls else None
     with as_bad_use():
-        crew = Crew.on_cluster(address, jobs, files)
+        crew = hiring.crew()
     complain([f"{crew.workers} workers; dashboard {crew.dashboard}"] if crew.dashboard else [])
     return crew

@@ -16,7 +16,7 @@ import pytest
 from regolith_studio.errors import EnvironmentProblem, InputError
 from regolith_studio.jobs.crew import Crew
 from regolith_studio.jobs.events import Progress
-from regolith_studio.jobs.runners import dask_cluster
+from regolith_studio.jobs.runners import dask_cluster, scheduler_address
 from regolith_studio.jobs.runners.dask_cluster import TlsFiles
 from regolith_studio.session.performing import perform
 from regolith_studio.session.recipe import Recipe, recipe_of
@@ -177,7 +177,7 @@ def test_that_an_encrypted_address_needs_files_that_are_there(tmp_path: Path) ->
 
 
 def test_that_a_silent_address_is_one_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(dask_cluster, "CONNECT_SECONDS", 0.3)
+    monkeypatch.setattr(scheduler_address, "PATIENCE", 0.3)
     with pytest.raises(EnvironmentProblem, match="No cluster answers at tcp://127"):
         dask_cluster.DaskRunner(f"tcp://127.0.0.1:{free_port()}")
 

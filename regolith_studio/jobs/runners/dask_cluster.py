@@ -11,8 +11,11 @@ from regolith_studio.errors import EnvironmentProblem, InputError
 from regolith_studio.jobs.events import Ending, Event, Failed, Job, Listener, Stopped
 from regolith_studio.jobs.runners.drive import drive
 from regolith_studio.jobs.runners.process_pool import cores, memory_limit
+from regolith_studio.jobs.runners.scheduler_address import SchedulerAddress
 
-CONNECT_SECONDS = 20.0
+CONNECT_SECONDS = 8.0
+WORKER_SECONDS = 20.0
+"""How long the scheduler, once it answers, and its first worker are waited for."""
 NEEDED = 'This needs Dask, which is an extra: pip install "regolith-studio[cluster]".'
 
 
@@ -103,12 +106,13 @@ class DaskRunner:
     def __init__(self, address: str = "", workers: int = 0, tls: TlsFiles | None = None) -> None:
         if address.startswith("tls://") and tls is None:
             raise InputError(f"The address {address} is encrypted: give certificate, key and authority.")
-        self.address = address
+        _distributed()
+        self.address = _checked(address, tls) if address else ""
         self._open: set[_DaskHandle] = set()
         self._lock = threading.Lock()
-        self._cluster = None if address else _local_cluster(workers or cores())
+        self._cluster = None if self.address else _local_cluster(workers or cores())
         try:
-            self._client = _connected(self._cluster if self._cluster is not None else address, tls)
+            self._client = _connected(self._cluster if self._cluster is not None else self.address, tls)
         except BaseException:
             self._close_cluster()
             raise
@@ -172,7 +176,12 @@ class DaskRunner:
     def _check_versions(self) -> None:
         from regolith_studio.dataset.build import software_versions
 
-        self._client.wait_for_workers(1, timeout=CONNECT_SECONDS)
+        try:
+            self._client.wait_for_workers(1, timeout=WORKER_SECONDS)
+        except TimeoutError as error:
+            raise EnvironmentProblem(
+                f"The scheduler at {self.address} has no worker; start one with: dask worker {self.address}"
+            ) from error
         mine = software_versions()
         for worker, theirs in self._client.run(software_versions).items():
             for package, version in mine.items():
@@ -206,12 +215,21 @@ def _local_cluster(workers: int) -> Any:
     )
 
 
+def _checked(address: str, tls: TlsFiles | None) -> str:
+    """The address in full, where a scheduler answers."""
+    if tls:
+        tls.security()
+    place = SchedulerAddress.parsed(address)
+    place.check()
+    return str(place)
+
+
 def _connected(place: Any, tls: TlsFiles | None) -> Any:
     distributed = _distributed()
     security = tls.security() if tls else None
     try:
         return distributed.Client(place, security=security, timeout=CONNECT_SECONDS, set_as_default=False)
-    except (OSError, TimeoutError, ValueError, TypeError) as error:
+    except (OSError, TimeoutError, ValueError, TypeError, MemoryError) as error:
         raise EnvironmentProblem(f"No cluster answers at {place} ({error}).") from error
 
 
