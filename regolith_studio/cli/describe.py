@@ -1,26 +1,96 @@
 """``describe``: descriptors and health of meshes."""
 
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
 import typer
 
 from regolith_studio.cli.options import Jobs, Json, Meshes, Seed, Unit
 
+if TYPE_CHECKING:
+    from regolith_studio.session.results import ParticleEntry
+    from regolith_studio.studies.tables import Table
 
-def describe(meshes: Meshes, unit: Unit = "um", json: Json = False, jobs: Jobs = 1, seed: Seed = 0) -> None:
-    """Measure meshes: volume, area, sphericity, diameters ..., and what is wrong with them."""
+Statistics = Annotated[
+    bool,
+    typer.Option("--statistics", help="Also mean, standard deviation and quantiles of each group."),
+]
+Weighting = Annotated[
+    str,
+    typer.Option("--weighting", help="Of the statistics: number or volume.", metavar="HOW"),
+]
+BorderWeights = Annotated[
+    bool,
+    typer.Option(
+        "--border-weights/--no-border-weights",
+        help="Undo in the statistics that large grains were lost at the border of a scan.",
+    ),
+]
+Csv = Annotated[
+    Path | None,
+    typer.Option("--csv", help="Write all descriptors with their units to this table.", metavar="FILE"),
+]
+
+
+def describe(
+    meshes: Meshes,
+    statistics: Statistics = False,
+    weighting: Weighting = "number",
+    border_weights: BorderWeights = True,
+    csv: Csv = None,
+    unit: Unit = "um",
+    json: Json = False,
+    jobs: Jobs = 1,
+    seed: Seed = 0,
+) -> None:
+    """Measure particles: volume, area, sphericity, diameters ..., and what is wrong with their meshes."""
     from regolith_studio.cli.inputs import exit_code, read_inputs, start_reader
 
+    if weighting not in ("number", "volume"):
+        raise typer.BadParameter(f"Particles weigh by number or by volume, not by {weighting!r}.")
     start_reader()
     from regolith_studio.cli.terminal import complain, follow, print_json, print_table
     from regolith_studio.jobs.examining import examine_sample
     from regolith_studio.session.outputs.descriptors import described, short_table
+    from regolith_studio.session.results import ParticleEntry
 
     del seed  # taken by every command; nothing here is random
     loaded = read_inputs(meshes, unit)
     facts = follow(examine_sample(loaded.particles, workers=jobs))
+    pairs = list(zip(loaded.particles, facts, strict=True))
+    entries = [ParticleEntry(p.name, p, each.health, each.descriptors) for p, each in pairs]
+    if csv is not None:
+        _write_csv(csv, entries)
+    spread = _statistics(entries, weighting, border_weights) if statistics else None
     if json:
-        print_json([described(p, each) for p, each in zip(loaded.particles, facts, strict=True)])
+        rows = [described(particle, each) for particle, each in pairs]
+        print_json(rows if spread is None else {"particles": rows, "statistics": _as_rows(spread)})
     else:
         print_table(short_table(loaded.particles, facts))
-        for particle, each in zip(loaded.particles, facts, strict=True):
+        if spread is not None:
+            typer.echo()
+            print_table(spread)
+        for particle, each in pairs:
             complain(f"{particle.name}: {note}" for note in (*particle.notes, each.problem) if note)
     raise typer.Exit(exit_code(meshes, loaded, sum(bool(each.problem) for each in facts)))
+
+
+def _statistics(entries: "list[ParticleEntry]", weighting: str, border_weights: bool) -> "Table":
+    from regolith_studio.descriptors.catalogue import LOSS_KEYS
+    from regolith_studio.session.sample_table import statistics_of_keys
+
+    keys = ["equivalent_radius", "surface_area", *LOSS_KEYS]
+    return statistics_of_keys(entries, keys, weighting, border_weights)
+
+
+def _as_rows(table: "Table") -> list[dict[str, Any]]:
+    names = [column.name for column in table.columns]
+    return [dict(zip(names, row, strict=True)) for row in table.rows]
+
+
+def _write_csv(path: Path, entries: "list[ParticleEntry]") -> None:
+    from regolith_studio.session.outputs.staging import write_bytes
+    from regolith_studio.session.sample_table import sample_table
+    from regolith_studio.studies.tables import csv_text
+
+    write_bytes(path, csv_text(sample_table(entries)).encode("utf-8"))

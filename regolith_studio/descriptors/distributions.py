@@ -82,8 +82,20 @@ class Distribution:
         return shares, edges
 
 
-def distribution(sample: Sequence[Mapping[str, float]], key: str, weighting: str = "number") -> Distribution:
+def distribution(
+    sample: Sequence[Mapping[str, float]],
+    key: str,
+    weighting: str = "number",
+    multiplicity: Sequence[float] | None = None,
+) -> Distribution:
     """How the descriptor `key` is distributed over a sample of descriptors.
+
+    Parameters
+    ----------
+    weighting
+        ``number`` or ``volume``.
+    multiplicity
+        How many particles each of the sample stands for (Miles and Lantuejoul's weights); by default one.
 
     Raises
     ------
@@ -92,8 +104,10 @@ def distribution(sample: Sequence[Mapping[str, float]], key: str, weighting: str
     """
     if weighting not in WEIGHTINGS:
         raise ValueError(f"weighting must be one of {WEIGHTINGS}, got {weighting!r}")
-    weights = [row["volume"] if weighting == "volume" else 1.0 for row in sample]
-    return Distribution(np.array([row[key] for row in sample]), np.array(weights))
+    weights = np.array([row["volume"] if weighting == "volume" else 1.0 for row in sample])
+    if multiplicity is not None:
+        weights = weights * np.asarray(multiplicity, dtype=np.float64)
+    return Distribution(np.array([row[key] for row in sample]), weights)
 
 
 def wasserstein_1(one: Distribution, other: Distribution) -> float:

@@ -40,6 +40,9 @@ class Particle:
         Where it was read, or ``None`` for virtual particles.
     notes
         One sentence for each thing that was wrong with the input and each repair made.
+    weight
+        How many grains of its population it stands for: above 1 where larger grains were more often
+        left out because the border of a scan cut them (Miles and Lantuejoul).
     """
 
     name: str
@@ -47,3 +50,4 @@ class Particle:
     group: str = ""
     source: Source | None = None
     notes: tuple[str, ...] = field(default=())
+    weight: float = 1.0

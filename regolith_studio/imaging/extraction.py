@@ -185,8 +185,8 @@ def extraction_steps(
     found: list[Extracted] = []
     for done, (label, mask) in enumerate(label_masks(volume, wanted), start=1):
         mesh, notes = mask_surface(mask, boxes[label], np.asarray(volume.voxel_size, float), settings)
-        particle = Particle(f"particle_{label:0{width}d}", mesh, group, source, notes)
         weight = border_weight(boxes[label], volume.shape) if settings.exclude_border else 1.0
+        particle = Particle(f"particle_{label:0{width}d}", mesh, group, source, notes, weight)
         extracted = Extracted(particle, label, sizes[label], weight)
         if collect:
             found.append(extracted)

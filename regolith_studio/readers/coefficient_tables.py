@@ -70,7 +70,10 @@ def read_coefficients(
     rows = answer.arrays[0]
     try:
         if rows.shape[1] < 4:
-            raise InputError(f"has {rows.shape[1]} columns; a table of coefficients has four: l m Re Im.")
+            points = " Points alone enclose no particle." if rows.shape[1] == 3 else ""
+            raise InputError(
+                f"has {rows.shape[1]} columns; a table of coefficients has four: l m Re Im.{points}"
+            )
         notes: tuple[str, ...] = ()
         if convention == "auto":
             convention = _convention(rows, bool(answer.header["commas"]))
@@ -89,7 +92,10 @@ def _convention(rows: np.ndarray, commas: bool) -> TableConvention:
         return "complex"
     if commas:
         return "shtools-4pi"
-    raise InputError("does not show its convention: it has no rows of m < 0; say complex or shtools.")
+    raise InputError(
+        "does not show its convention: rows of m < 0 would say complex, commas between the columns SHTOOLS; "
+        "add either, or name the convention to read_coefficients."
+    )
 
 
 def _coefficients(rows: np.ndarray, convention: TableConvention) -> ShCoefficients:

@@ -1,9 +1,9 @@
-"""Files and folders to particles: the front door for meshes."""
+"""Files and folders to particles: the front door for meshes and for tables of coefficients."""
 
 import logging
 import os
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from regolith_studio.errors import FileError, GeometryError
@@ -12,9 +12,11 @@ from regolith_studio.geometry.health import inspect
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle, Source
 from regolith_studio.geometry.welding import welded
+from regolith_studio.readers.border_weights import weights_in
 from regolith_studio.readers.formats import mesh_suffixes
 from regolith_studio.readers.guard import Guard, shared_guard
 from regolith_studio.readers.sentences import sentence_about, shown_name
+from regolith_studio.readers.table_particles import TABLE_SUFFIXES, TEXT_SUFFIXES, particle_of_table
 from regolith_studio.readers.units import UNITS, unit_factor
 
 __all__ = ["UNITS", "MeshFile", "ProblemListener", "mesh_files", "read_file", "read_mesh", "read_particles"]
@@ -27,21 +29,23 @@ _log = logging.getLogger(__name__)
 
 @dataclass(frozen=True)
 class MeshFile:
-    """A file to be read, and the group that its place in a folder puts it in."""
+    """A file to be read, the group that its place in a folder puts it in, and its particle's weight."""
 
     path: Path
     group: str = ""
+    weight: float = 1.0
 
 
 def read_mesh(
     path: str | Path, unit: str = "um", *, repair: bool = True, guard: Guard | None = None
 ) -> Particle:
-    """The particle in one mesh file.
+    """The particle in one file.
 
     Parameters
     ----------
     path
-        STL, PLY, OBJ, OFF, GLB, glTF or 3MF.
+        STL, PLY, OBJ, OFF, GLB, glTF or 3MF, or a table of coefficients (``l m Re Im``), of which the
+        surface is made.
     unit
         Unit of the file's numbers, a key of `UNITS`, or ``voxel:SIZE`` in micrometres.
     repair
@@ -98,7 +102,29 @@ def read_particles(
 
 
 def read_file(file: MeshFile, unit: str = "um", repair: bool = True, guard: Guard | None = None) -> Particle:
-    """As `read_mesh`, for one of `mesh_files`: the particle gets its group."""
+    """As `read_mesh`, for one of `mesh_files`: the particle gets its group and its weight."""
+    suffix = file.path.suffix.lower()
+    if suffix in TABLE_SUFFIXES:
+        return replace(particle_of_table(file.path, unit, file.group, guard), weight=file.weight)
+    if suffix in TEXT_SUFFIXES:
+        return _mesh_or_table(file, unit, repair, guard)
+    return _read_mesh(file, unit, repair, guard)
+
+
+def _mesh_or_table(file: MeshFile, unit: str, repair: bool, guard: Guard | None) -> Particle:
+    """The particle in a text file that says by its content what it is."""
+    try:
+        return replace(particle_of_table(file.path, unit, file.group, guard), weight=file.weight)
+    except FileError as no_table:
+        try:
+            return _read_mesh(file, unit, repair, guard)
+        except FileError:
+            said = str(no_table).removeprefix(f"{shown_name(file.path)} ")
+            sentence = f"is no mesh, and as a table of coefficients it {said}"
+            raise FileError(sentence_about(file.path, sentence)) from None
+
+
+def _read_mesh(file: MeshFile, unit: str, repair: bool, guard: Guard | None) -> Particle:
     factor = unit_factor(unit)
     path = file.path
     answer = (guard or shared_guard()).request("mesh", path)
@@ -116,11 +142,13 @@ def read_file(file: MeshFile, unit: str = "um", repair: bool = True, guard: Guar
     except GeometryError as error:
         raise GeometryError(sentence_about(path, f"holds no particle: {_lower(str(error))}")) from None
     source = Source(str(path), answer.header["sha256"], unit)
-    return Particle(path.stem, mesh, file.group, source, notes)
+    return Particle(path.stem, mesh, file.group, source, notes, file.weight)
 
 
 def mesh_files(paths: Sequence[str | Path]) -> list[MeshFile]:
     """The files that `read_particles` would read, in its order: those given, and those in folders.
+
+    Weights come from the ``particles.csv`` that ``extract`` writes beside its meshes.
 
     Raises
     ------
@@ -135,15 +163,17 @@ def mesh_files(paths: Sequence[str | Path]) -> list[MeshFile]:
         if not found:
             raise FileError(
                 f"The folder {shown_name(path)} holds no mesh file; "
-                f"meshes end in {', '.join(sorted(mesh_suffixes()))}."
+                f"meshes end in {', '.join(sorted(mesh_suffixes()))}, tables of coefficients in "
+                f"{', '.join(TABLE_SUFFIXES)}."
             )
         files += found
-    return files
+    weights = {folder: weights_in(folder) for folder in {file.path.parent for file in files}}
+    return [replace(file, weight=weights[file.path.parent].get(file.path.stem, 1.0)) for file in files]
 
 
 def _in_folder(folder: Path, several: bool) -> Iterator[MeshFile]:
     name = folder.name or folder.resolve().name
-    suffixes = mesh_suffixes()
+    suffixes = mesh_suffixes() | set(TABLE_SUFFIXES)
     for where, folders, files in os.walk(folder):
         folders[:] = sorted(inner for inner in folders if not inner.startswith("."))
         inside = Path(where).relative_to(folder).as_posix()
@@ -165,7 +195,7 @@ def _uniquely_named(read: Sequence[tuple[MeshFile, Particle]]) -> list[Particle]
         while name in taken:
             name, number = f"{base}_{number}", number + 1
         taken.add(name)
-        particles.append(Particle(name, particle.mesh, particle.group, particle.source, particle.notes))
+        particles.append(replace(particle, name=name))
     return particles
 
 

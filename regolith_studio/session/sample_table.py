@@ -3,13 +3,12 @@
 import operator
 import re
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.descriptors.distributions import distribution
 from regolith_studio.descriptors.zingg import zingg_class
 from regolith_studio.errors import InputError
-from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.examining import Examined
 from regolith_studio.session.outputs.descriptors import descriptor_table
 from regolith_studio.session.results import ParticleEntry
@@ -69,13 +68,23 @@ def filter_of(text: str) -> Filter:
     return lambda entry: all(test(entry) for test in tests)
 
 
-def statistics_table(entries: Sequence[ParticleEntry], key: str, weighting: str = "number") -> Table:
+def has_weights(entries: Iterable[ParticleEntry]) -> bool:
+    """Whether some particle stands for more than itself."""
+    return any(entry.particle.weight != 1.0 for entry in entries)
+
+
+def statistics_table(
+    entries: Sequence[ParticleEntry], key: str, weighting: str = "number", border_weights: bool = True
+) -> Table:
     """One row a group and one for all: count, mean, standard deviation and quantiles of a descriptor.
 
     Parameters
     ----------
     weighting
         ``number`` or ``volume``.
+    border_weights
+        Let each particle count as often as its weight says, which undoes the loss of large grains at the
+        border of a scan.
     """
     measured = [entry for entry in entries if entry.descriptors and key in entry.descriptors]
     groups = list(dict.fromkeys(entry.particle.group for entry in measured))
@@ -89,18 +98,43 @@ def statistics_table(entries: Sequence[ParticleEntry], key: str, weighting: str 
         *(Column(name, unit) for name in ("mean", "standard deviation")),
         *(Column(f"{share:.0%} quantile", unit) for share in QUANTILES),
     )
-    rows = tuple(_statistics(name, members, key, weighting) for name, members in named if members)
+    rows = tuple(
+        _statistics(name, members, key, weighting, border_weights) for name, members in named if members
+    )
     title = f"{CATALOGUE[key].label}, each particle weighing by {weighting}"
     return Table(title, columns, rows)
 
 
+def statistics_of_keys(
+    entries: Sequence[ParticleEntry],
+    keys: Sequence[str],
+    weighting: str = "number",
+    border_weights: bool = True,
+) -> Table:
+    """:func:`statistics_table` of several descriptors, one under the other, each with its unit."""
+    tables = {key: statistics_table(entries, key, weighting, border_weights) for key in keys}
+    first = next(iter(tables.values()))
+    columns = (Column("descriptor"), *(Column(column.name) for column in first.columns))
+    rows = tuple(
+        (Column(key, UNITS[CATALOGUE[key].dimension]).header, *row)
+        for key, table in tables.items()
+        for row in table.rows
+    )
+    return Table(f"Statistics, each particle weighing by {weighting}", columns, rows)
+
+
 def sample_table(entries: Iterable[ParticleEntry]) -> Table:
-    """Every descriptor of the particles that have been measured, with units, as the CSV file has it."""
+    """Every descriptor of the particles that have been measured, with units, as the CSV file has it.
+
+    Where particles have weights, these are the last column.
+    """
     measured = [(entry, entry.health) for entry in entries if entry.health is not None]
-    named = [
-        Particle(entry.id, entry.particle.mesh, group=entry.particle.group) for entry, _health in measured
-    ]
-    return descriptor_table(named, [Examined(health, entry.descriptors) for entry, health in measured])
+    named = [replace(entry.particle, name=entry.id) for entry, _health in measured]
+    table = descriptor_table(named, [Examined(health, entry.descriptors) for entry, health in measured])
+    if not has_weights(entry for entry, _health in measured):
+        return table
+    rows = tuple((*row, each.weight) for row, each in zip(table.rows, named, strict=True))
+    return Table(table.title, (*table.columns, Column("weight")), rows)
 
 
 @dataclass(frozen=True)
@@ -139,8 +173,9 @@ def _key_of(name: str) -> str:
 
 
 def _statistics(
-    name: str, members: Sequence[ParticleEntry], key: str, weighting: str
+    name: str, members: Sequence[ParticleEntry], key: str, weighting: str, border_weights: bool
 ) -> tuple[str | int | float, ...]:
-    spread = distribution([entry.descriptors or {} for entry in members], key, weighting)
+    weights = [entry.particle.weight for entry in members] if border_weights else None
+    spread = distribution([entry.descriptors or {} for entry in members], key, weighting, weights)
     quantiles = (float(value) for value in spread.quantile(QUANTILES))
     return (name, len(members), spread.mean, spread.standard_deviation, *quantiles)

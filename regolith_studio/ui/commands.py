@@ -23,7 +23,8 @@ from regolith_studio.ui.widgets.toast import Toast
 
 MESH_FILTER = ";;".join(
     (
-        "Meshes (*.stl *.ply *.obj *.off *.glb *.gltf *.3mf)",
+        "Particles (*.stl *.ply *.obj *.off *.glb *.gltf *.3mf *.anm *.sh *.shc)",
+        "Tables of coefficients (*.anm *.sh *.shc *.txt *.dat *.csv)",
         "Projects (*.regolith)",
         "Recipes (*.json)",
         "All files (*)",
@@ -56,7 +57,7 @@ class Commands(QObject):
 
     def open(self) -> None:
         """Ask for files and open them."""
-        names, _ = QFileDialog.getOpenFileNames(self._window, "Open meshes", self._folder(), MESH_FILTER)
+        names, _ = QFileDialog.getOpenFileNames(self._window, "Open particles", self._folder(), MESH_FILTER)
         self.open_paths([Path(name) for name in names])
 
     def open_folder(self) -> None:

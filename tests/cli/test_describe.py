@@ -73,3 +73,27 @@ def test_that_bad_use_is_exit_code_2(command, arguments: tuple[str, ...]) -> Non
     assert said.code == 2
     assert said.out == ""
     assert "Traceback" not in said.err
+
+
+def test_that_statistics_and_a_table_are_written_where_they_are_asked_for(
+    command, grains: Path, tmp_path: Path
+) -> None:
+    plain = command("describe", grains, "--json").json
+    said = command("describe", grains, "--json", "--statistics", "--csv", tmp_path / "t.csv")
+    assert said.json["particles"] == plain
+    rows = {row["descriptor"]: row for row in said.json["statistics"]}
+    volumes = [entry["volume"] for entry in plain]
+    assert rows["volume [um^3]"]["mean"] == pytest.approx(sum(volumes) / 3)
+    assert rows["volume [um^3]"]["count"] == 3
+    heavy = command("describe", grains, "--json", "--statistics", "--weighting", "volume").json["statistics"]
+    square = sum(volume**2 for volume in volumes) / sum(volumes)
+    assert next(row for row in heavy if row["descriptor"] == "volume [um^3]")["mean"] == pytest.approx(square)
+    lines = (tmp_path / "t.csv").read_text().splitlines()
+    assert len(lines) == 4
+    assert lines[0].startswith("name,group,volume [um^3],equivalent_radius [um],surface_area [um^2]")
+
+
+def test_that_an_unknown_weighting_is_bad_use(command, grains: Path) -> None:
+    said = command("describe", grains, "--statistics", "--weighting", "mass")
+    assert said.code == 2
+    assert "not by 'mass'" in said.err

@@ -1,5 +1,7 @@
 """A sample as a table: filters, words on health, statistics against numpy."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -17,6 +19,7 @@ from regolith_studio.session.sample_table import (
     health_sentences,
     health_word,
     sample_table,
+    statistics_of_keys,
     statistics_table,
 )
 
@@ -112,3 +115,29 @@ def test_that_the_table_has_units_and_a_row_a_particle(sample: tuple[ParticleEnt
     assert [row[0] for row in table.rows] == ["ball", "plate", "needle", "lath"]
     unmeasured = ParticleEntry("bare", Particle("bare", icosphere(1)))
     assert len(sample_table((*sample, unmeasured)).rows) == 4
+
+
+def test_that_weights_count_a_particle_as_often_as_it_stands_for(sample: tuple[ParticleEntry, ...]) -> None:
+    weights = (1.0, 3.0, 1.0, 2.0)
+    heavy = [
+        replace(each, particle=replace(each.particle, weight=weight))
+        for each, weight in zip(sample, weights, strict=True)
+    ]
+    repeated = [each for each, weight in zip(sample, weights, strict=True) for _ in range(int(weight))]
+    for weighting in ("number", "volume"):
+        found = statistics_table(heavy, "max_diameter", weighting).rows[-1]
+        expected = statistics_table(repeated, "max_diameter", weighting).rows[-1]
+        assert found[2:] == pytest.approx(expected[2:])
+        assert found[1] == 4
+    assert statistics_table(heavy, "volume", "number", False).rows == statistics_table(sample, "volume").rows
+    table = sample_table(heavy)
+    assert table.column("weight") == weights
+    assert "weight" not in [column.name for column in sample_table(sample).columns]
+
+
+def test_that_statistics_of_several_descriptors_name_them_with_their_units(
+    sample: tuple[ParticleEntry, ...],
+) -> None:
+    table = statistics_of_keys(sample, ["volume", "sphericity"])
+    assert table.column("descriptor") == ("volume [um^3]",) * 3 + ("sphericity",) * 3
+    assert table.rows[2][1:] == statistics_table(sample, "volume").rows[2]

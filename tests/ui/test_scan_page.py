@@ -92,8 +92,7 @@ def test_that_a_new_user_gets_from_the_sample_scan_to_particles(page, wait):
     wait(lambda: page.steps.show_them.isVisible(), SECONDS)
     assert len(page.adopted) == 46
     assert {particle.group for particle in page.adopted} == {"synthetic-grey"}
-    weights = page.context.session.shelf.get("grain_weights")
-    assert min(weights[particle.name] for particle in page.adopted) > 1.0
+    assert min(particle.weight for particle in page.adopted) > 1.0
     press(page.steps.show_them)
     assert page.visited == ["sample"]
 

@@ -17,6 +17,8 @@ def described(particle: Particle, facts: Examined) -> dict[str, Any]:
     entry |= dict(facts.descriptors or {})
     entry["health"] = facts.health.as_dict()
     entry["notes"] = list(particle.notes)
+    if particle.weight != 1.0:
+        entry["weight"] = particle.weight
     if facts.problem:
         entry["problem"] = facts.problem
     if particle.source:

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import (
     QAbstractItemView,
+    QCheckBox,
     QComboBox,
     QHBoxLayout,
     QHeaderView,
@@ -18,7 +19,7 @@ from PySide6.QtWidgets import (
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.descriptors.distributions import WEIGHTINGS
 from regolith_studio.session.results import ParticleEntry
-from regolith_studio.session.sample_table import UNITS, statistics_table
+from regolith_studio.session.sample_table import UNITS, has_weights, statistics_table
 from regolith_studio.studies.tables import Column, Table
 
 _WEIGHTING_LABELS = {"number": "each counts once", "volume": "weighted by volume"}
@@ -42,6 +43,14 @@ class StatisticsPanel(QWidget):
         self.weighting.setAccessibleName("Weighting of the statistics")
         for weighting in WEIGHTINGS:
             self.weighting.addItem(_WEIGHTING_LABELS[weighting], weighting)
+        self.border = QCheckBox("undo the loss at the border")
+        self.border.setObjectName("statistics_border")
+        self.border.setToolTip(
+            "Grains that the border of the scan cuts were left out, large ones more often than small ones. "
+            "Each of the others counts a little more for it (weights of Miles and Lantuéjoul)."
+        )
+        self.border.setChecked(True)
+        self.border.hide()
         self.table = QTableWidget()
         self.table.setAccessibleName("Statistics of groups")
         self.table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
@@ -53,6 +62,7 @@ class StatisticsPanel(QWidget):
         row_.addWidget(QLabel("Statistics of"))
         row_.addWidget(self.key)
         row_.addWidget(self.weighting)
+        row_.addWidget(self.border)
         row_.addStretch(1)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
@@ -60,15 +70,19 @@ class StatisticsPanel(QWidget):
         layout.addWidget(self.table, 1)
         self.key.currentIndexChanged.connect(lambda _at: self._fill())
         self.weighting.currentIndexChanged.connect(lambda _at: self._fill())
+        self.border.toggled.connect(lambda _on: self._fill())
 
     def show_entries(self, entries: Sequence[ParticleEntry]) -> None:
         """Count these particles."""
         self._entries = tuple(entries)
+        self.border.setVisible(has_weights(entries))
         self._fill()
 
     def value(self) -> Table:
         """What is shown."""
-        return statistics_table(self._entries, self.key.currentData(), self.weighting.currentData())
+        return statistics_table(
+            self._entries, self.key.currentData(), self.weighting.currentData(), self.border.isChecked()
+        )
 
     def _fill(self) -> None:
         shown = self.value()

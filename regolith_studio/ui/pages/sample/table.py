@@ -18,7 +18,7 @@ from PySide6.QtWidgets import QAbstractItemView, QWidget
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.session.results import ParticleEntry
-from regolith_studio.session.sample_table import Filter, form_of, health_sentences, health_word
+from regolith_studio.session.sample_table import Filter, form_of, has_weights, health_sentences, health_word
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.widgets.health_icons import health_pixmaps
 from regolith_studio.ui.widgets.labels import plain_symbol
@@ -29,6 +29,7 @@ NOWHERE = QModelIndex()
 SORT_ROLE = Qt.ItemDataRole.UserRole + 1
 _UNITS = {0: "", 1: " [µm]", 2: " [µm²]", 3: " [µm³]", 5: " [µm⁵]"}
 HEALTH = "health"
+WEIGHT = "weight"
 WORDS = 4
 """Columns of words; those of numbers follow."""
 RIGHT = int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
@@ -46,7 +47,7 @@ class Column:
 
 
 def columns() -> tuple[Column, ...]:
-    """Name, health, group and form, then the descriptors of the catalogue that are at hand."""
+    """Name, health, group and form, the descriptors of the catalogue that are at hand, and the weight."""
     words: tuple[tuple[str, str, str, Callable[[ParticleEntry], str]], ...] = (
         ("name", "Particle", "Name of the file or of the grain", lambda entry: entry.id),
         (HEALTH, "Health", "Of the mesh; the tool tip of a cell says what was found and mended", health_word),
@@ -65,6 +66,13 @@ def columns() -> tuple[Column, ...]:
                 _Formatted(row.key),
             )
             for row in numbers
+        ),
+        Column(
+            WEIGHT,
+            "weight",
+            "How many grains it stands for, since large ones were lost at the border of the scan",
+            lambda entry: entry.particle.weight,
+            lambda entry: f"{entry.particle.weight:.3g}",
         ),
     )
 
@@ -184,6 +192,7 @@ class SampleTable(ListTable):
         self._quiet = True
         self.model_.set_entries(entries)
         self.setColumnHidden(2, len({entry.particle.group for entry in entries}) < 2)
+        self.setColumnHidden(len(self.model_.columns) - 1, not has_weights(entries))
         self._quiet = False
         self.choose(chosen)
         self.fit_columns()

@@ -200,8 +200,6 @@ class ScanPage(PageWidget):
                 f"{len(extraction.small)} are too small."
             )
             return
-        weights = {each.particle.name: each.weight for each in extraction.found}
-        self._context.session.shelf.put("grain_weights", weights)
         self._context.session.adopt(extraction.particles)
         self._context.toast.note(extraction.summary)
         self.steps.set_particles(extraction.summary)
