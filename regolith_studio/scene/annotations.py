@@ -2,8 +2,7 @@
 
 import math
 import weakref
-from collections.abc import Callable
-from typing import Any
+from typing import Any, Protocol
 
 import pyvista as pv
 from vtkmodules.vtkRenderingCore import vtkActor2D, vtkCoordinate, vtkPolyDataMapper2D, vtkTextActor
@@ -62,14 +61,7 @@ class ScaleBar:
         self._renderer = plotter.renderer
         self._unit = unit
         self._line = pv.PolyData()
-        self._bar = vtkActor2D()
-        mapper = vtkPolyDataMapper2D()
-        mapper.SetInputData(self._line)
-        coordinate = vtkCoordinate()
-        coordinate.SetCoordinateSystemToViewport()
-        mapper.SetTransformCoordinate(coordinate)
-        self._bar.SetMapper(mapper)
-        self._bar.GetProperty().SetLineWidth(2.0)
+        self._bar = flat_actor(self._line)
         self._label = vtkTextActor()
         self._label.GetTextProperty().SetFontSize(12)
         self._label.GetTextProperty().SetFontFamilyToArial()
@@ -78,7 +70,7 @@ class ScaleBar:
         self._renderer.AddViewProp(self._bar)
         self._renderer.AddViewProp(self._label)
         self._shown: tuple[float, ...] = ()
-        self._tag = self._renderer.AddObserver("StartEvent", _updater(weakref.ref(self)))
+        self._tag = before_each_picture(self._renderer, self)
 
     def set_ink(self, surroundings: Surroundings) -> None:
         """Draw with another ink."""
@@ -120,15 +112,31 @@ class ScaleBar:
         self._label.SetPosition((x + end) / 2, y + 7)
 
 
-def _updater(bar: "weakref.ref[ScaleBar]") -> Callable[..., None]:
-    """An observer that does not keep the bar alive."""
+class _Updated(Protocol):
+    def update(self) -> None: ...
+
+
+def before_each_picture(renderer: Any, part: _Updated) -> int:
+    """Call ``part.update()`` before every picture, without keeping it alive; returns the observer's tag."""
+    known = weakref.ref(part)
 
     def update(*_: Any) -> None:
-        alive = bar()
+        alive = known()
         if alive is not None:
             alive.update()
 
-    return update
+    return int(renderer.AddObserver("StartEvent", update))
+
+
+def flat_actor(data: pv.PolyData, line_width: float = 2.0) -> vtkActor2D:
+    """Lines and polygons in pixels of the view, from the lower left."""
+    actor, mapper, coordinate = vtkActor2D(), vtkPolyDataMapper2D(), vtkCoordinate()
+    mapper.SetInputData(data)
+    coordinate.SetCoordinateSystemToViewport()
+    mapper.SetTransformCoordinate(coordinate)
+    actor.SetMapper(mapper)
+    actor.GetProperty().SetLineWidth(line_width)
+    return actor
 
 
 def show_title(plotter: Any, title: str, surroundings: Surroundings = palette.PAPER, size: int = 11) -> None:

@@ -1,4 +1,4 @@
-"""What may be drawn about a surface: its bounding box, its star point, another surface shining through.
+"""What may be drawn about a surface: its bounding box, its star point, the faces that it cannot see.
 
 Like the surfaces, each may be drawn again and again on one plotter; ``None`` takes it away.
 """
@@ -17,8 +17,6 @@ from regolith_studio.scene.palette import Surroundings
 BOX = "bounding_box"
 STAR_POINT = "star_point"
 HIDDEN = "hidden"
-GHOST = "ghost"
-GHOST_OPACITY = 0.28
 SEEN_THROUGH = 0.45
 """Opacity of a surface about its star point."""
 STAR_SHARE = 0.02
@@ -35,11 +33,11 @@ def show_box(plotter: Any, corners: FloatArray | None, surroundings: Surrounding
         the last axis runs fastest.
     """
     if corners is None:
-        _hide(plotter, BOX)
+        hide_named(plotter, BOX)
         return
     pairs = [(a, a | bit) for a in range(8) for bit in (1, 2, 4) if not a & bit]
     lines = np.array([item for pair in pairs for item in (2, *pair)], dtype=np.int64)
-    _show(plotter, BOX, pv.PolyData(np.array(corners), lines=lines), surroundings.ink, 1.0, line_width=1.2)
+    show_named(plotter, BOX, pv.PolyData(np.array(corners), lines=lines), surroundings.ink, line_width=1.2)
 
 
 def show_star_point(
@@ -56,10 +54,10 @@ def show_star_point(
     if surface is not None:
         surface.prop.opacity = 1.0 if point is None else SEEN_THROUGH
     if point is None:
-        _hide(plotter, STAR_POINT)
+        hide_named(plotter, STAR_POINT)
         return
     ball = pv.Sphere(radius=STAR_SHARE * size, center=tuple(np.asarray(point, dtype=float)))
-    actor = _show(plotter, STAR_POINT, ball, surroundings.ink, 1.0)
+    actor = show_named(plotter, STAR_POINT, ball, surroundings.ink, 1.0)
     actor.prop.lighting = False
 
 
@@ -72,43 +70,34 @@ def show_hidden(plotter: Any, mesh: Mesh | None, hidden: BoolArray | None) -> No
         Shape (m,), one for each face of `mesh`.
     """
     if mesh is None or hidden is None or not hidden.any():
-        _hide(plotter, HIDDEN)
+        hide_named(plotter, HIDDEN)
         return
     faces = mesh.faces[hidden]
     cells = np.column_stack([np.full(len(faces), 3), faces]).ravel()
-    _show(plotter, HIDDEN, pv.PolyData(np.array(mesh.vertices), faces=cells), palette.HIDDEN_COLOUR, 1.0)
+    show_named(plotter, HIDDEN, pv.PolyData(np.array(mesh.vertices), faces=cells), palette.HIDDEN_COLOUR, 1.0)
 
 
-def show_ghost(plotter: Any, mesh: Mesh | None, colour: str = palette.PARTICLE_MATERIAL.colour) -> None:
-    """Another surface, translucent, over the one that is shown."""
-    if mesh is None:
-        _hide(plotter, GHOST)
-        return
-    cells = np.column_stack([np.full(len(mesh.faces), 3), mesh.faces]).ravel()
-    _show(plotter, GHOST, pv.PolyData(np.array(mesh.vertices), faces=cells), colour, GHOST_OPACITY)
-
-
-def _show(
-    plotter: Any, name: str, data: pv.PolyData, colour: str, opacity: float, line_width: float = 1.0
+def show_named(
+    plotter: Any, name: str, data: pv.PolyData, colour: str, opacity: float = 1.0, line_width: float = 1.0
 ) -> Any:
+    """Give the actor of this name other data and show it; made at the first time."""
     actor = plotter.actors.get(name)
     if actor is None:
         actor = plotter.add_mesh(
             data,
             name=name,
-            opacity=opacity,
-            line_width=line_width,
             show_scalar_bar=False,
             copy_mesh=False,
             reset_camera=False,
             render=False,
         )
     actor.mapper.dataset = data
-    actor.prop.color = colour
+    actor.prop.color, actor.prop.opacity, actor.prop.line_width = colour, opacity, line_width
     actor.SetVisibility(True)
     return actor
 
 
-def _hide(plotter: Any, name: str) -> None:
+def hide_named(plotter: Any, name: str) -> None:
+    """Take something away, if it is there."""
     if name in plotter.actors:
         plotter.actors[name].SetVisibility(False)

@@ -22,7 +22,12 @@ OUTLINE = "outline"
 
 def show_particle(plotter: Any, mesh: Mesh) -> None:
     """The particle as measured, smoothly shaded."""
-    _show_surface(plotter, smooth_surface(mesh), palette.PARTICLE_MATERIAL, smooth=True)
+    show_smooth(plotter, mesh, palette.PARTICLE_MATERIAL)
+
+
+def show_smooth(plotter: Any, mesh: Mesh, material: Material, layer: str = "") -> None:
+    """Any mesh, smoothly shaded; surfaces of different layers stand beside each other."""
+    _show_surface(plotter, smooth_surface(mesh), material, smooth=True, layer=layer)
 
 
 def show_fit(
@@ -68,6 +73,7 @@ def show_polyhedron(
     polyhedron: ConvexPolyhedron,
     centre: ArrayLike = (0.0, 0.0, 0.0),
     surroundings: Surroundings = palette.LIGHT,
+    layer: str = "",
 ) -> None:
     """The coarsened polyhedron: flat facets, each outlined (facets, not triangles).
 
@@ -81,18 +87,34 @@ def show_polyhedron(
         Where that origin lies in the particle's frame.
     surroundings
         Whose outline colour is used.
+    layer
+        Surfaces of different layers stand beside each other.
     """
     corners = polyhedron.vertices + np.asarray(centre, dtype=np.float64)
-    _show_surface(plotter, _polygons(corners, polyhedron.facets), palette.POLYHEDRON_MATERIAL, smooth=False)
-    _show_lines(plotter, pv.PolyData(corners.copy(), lines=_facet_edges(polyhedron)), surroundings.outline)
+    polygons = _polygons(corners, polyhedron.facets)
+    _show_surface(plotter, polygons, palette.POLYHEDRON_MATERIAL, smooth=False, layer=layer)
+    edges = pv.PolyData(corners.copy(), lines=_facet_edges(polyhedron))
+    _show_lines(plotter, edges, surroundings.outline, layer)
 
 
 def clear(plotter: Any) -> None:
     """Show no surface."""
     annotations.hide_colour_scale(plotter)
+    hide(plotter)
+
+
+def hide(plotter: Any, layer: str = "") -> None:
+    """Show no surface of a layer."""
     for name in (SURFACE, OUTLINE):
-        if name in plotter.actors:
-            plotter.actors[name].SetVisibility(False)
+        if layer + name in plotter.actors:
+            plotter.actors[layer + name].SetVisibility(False)
+
+
+def set_opacity(plotter: Any, opacity: float, layer: str = "") -> None:
+    """Let light through a surface, or none."""
+    actor = plotter.actors.get(layer + SURFACE)
+    if actor is not None:
+        actor.prop.opacity = opacity
 
 
 def set_wireframe(plotter: Any, wireframe: bool) -> None:
@@ -103,33 +125,33 @@ def set_wireframe(plotter: Any, wireframe: bool) -> None:
         actor.prop.lighting = not wireframe
 
 
-def _show_surface(plotter: Any, data: pv.PolyData, material: Material, smooth: bool) -> Any:
-    actor = _replaced(plotter, SURFACE, data)
+def _show_surface(plotter: Any, data: pv.PolyData, material: Material, smooth: bool, layer: str = "") -> Any:
+    actor = _replaced(plotter, layer + SURFACE, data)
     if actor is None:
         actor = plotter.add_mesh(
             data,
-            name=SURFACE,
+            name=layer + SURFACE,
             color=material.colour,
-            ambient=material.ambient,
-            diffuse=material.diffuse,
-            specular=material.specular,
-            specular_power=material.specular_power,
             show_scalar_bar=False,
             copy_mesh=False,
             reset_camera=False,
             render=False,
         )
-        actor.prop.interpolation = "Phong" if smooth else "Flat"
         actor.mapper.resolve = "polygon_offset"
+    prop = actor.prop
+    prop.color = material.colour
+    prop.ambient, prop.diffuse = material.ambient, material.diffuse
+    prop.specular, prop.specular_power = material.specular, material.specular_power
+    prop.interpolation = "Phong" if smooth else "Flat"
     return actor
 
 
-def _show_lines(plotter: Any, data: pv.PolyData, colour: str) -> None:
-    actor = _replaced(plotter, OUTLINE, data)
+def _show_lines(plotter: Any, data: pv.PolyData, colour: str, layer: str = "") -> None:
+    actor = _replaced(plotter, layer + OUTLINE, data)
     if actor is None:
         actor = plotter.add_mesh(
             data,
-            name=OUTLINE,
+            name=layer + OUTLINE,
             line_width=1.6,
             lighting=False,
             copy_mesh=False,

@@ -1,4 +1,4 @@
-"""Box, star point and ghost: drawn once, moved afterwards, taken away."""
+"""Box and star point: drawn once, moved afterwards, taken away."""
 
 import numpy as np
 import pytest
@@ -26,14 +26,11 @@ def test_that_the_edges_of_a_box_are_as_long_as_its_extents(plotter) -> None:
 
 
 def test_that_extras_come_once_and_go(plotter) -> None:
-    ball = icosphere(1)
     for shift in (0.0, 1.0):
-        extras.show_ghost(plotter, ball.moved(shift=[shift, 0, 0]))
         extras.show_star_point(plotter, (shift, 0, 0), 2.0)
         extras.show_box(plotter, np.eye(8, 3))
-    assert set(plotter.actors) == {extras.GHOST, extras.STAR_POINT, extras.BOX}
-    assert plotter.actors[extras.GHOST].mapper.dataset.center[0] == pytest.approx(1.0, abs=1e-6)
-    extras.show_ghost(plotter, None)
+    assert set(plotter.actors) == {extras.STAR_POINT, extras.BOX}
+    assert plotter.actors[extras.STAR_POINT].mapper.dataset.center[0] == pytest.approx(1.0, abs=1e-6)
     extras.show_star_point(plotter, None)
     extras.show_box(plotter, None)
     assert not any(actor.GetVisibility() for actor in plotter.actors.values())

@@ -8,10 +8,13 @@ from PySide6.QtWidgets import QApplication
 
 from regolith_studio.geometry.oriented_box import minimum_volume_box
 from regolith_studio.scene import extras
+from regolith_studio.scene.comparing import OTHER
+from regolith_studio.scene.surfaces import SURFACE
 from regolith_studio.ui.app import open_window
 from regolith_studio.ui.pages.explore.pictures import PictureDialog
 
 SECONDS = 120.0
+VEIL = OTHER + SURFACE
 ASKED = "regolith_studio.ui.pages.explore.pictures.QFileDialog.getSaveFileName"
 
 
@@ -43,12 +46,12 @@ def test_that_box_star_point_and_overlay_come_and_go(window):
     star = seen(window, "fit", extras.STAR_POINT).mapper.dataset.center
     assert np.allclose(star, results.fit.star_point, rtol=1e-3, atol=1e-2)
     assert seen(window, "polyhedron", extras.STAR_POINT) is None
-    assert seen(window, "particle", extras.GHOST) is None
-    assert seen(window, "polyhedron", extras.GHOST) is not None
+    assert seen(window, "particle", VEIL) is None
+    assert seen(window, "polyhedron", VEIL) is not None
     for name in ("box", "star_point", "overlay"):
         window.menus.by_name[f"explore.{name}"].trigger()
     for view in ("particle", "fit", "polyhedron"):
-        assert not any(seen(window, view, each) for each in (extras.BOX, extras.STAR_POINT, extras.GHOST))
+        assert not any(seen(window, view, each) for each in (extras.BOX, extras.STAR_POINT, VEIL))
 
 
 def test_that_the_picture_is_written_at_its_scale_and_without_background(window, tmp_path, monkeypatch, wait):

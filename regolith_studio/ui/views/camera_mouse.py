@@ -1,15 +1,38 @@
-"""Mouse and wheel on a view: turn with the left button, shift with the middle or right one, zoom."""
+"""Mouse and wheel on a view: turn with the left button, shift with the middle or right one, zoom.
+
+What can be taken hold of in the picture, such as the line of a wipe, comes before the camera.
+"""
 
 from collections.abc import Callable
+from typing import Protocol
 
 from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QMouseEvent, QWheelEvent
+from PySide6.QtWidgets import QWidget
 
 from regolith_studio.scene.cameras import CameraPose
 from regolith_studio.scene.motions import orbited, panned, rolled, zoomed
+from regolith_studio.scene.sight import Sight
 
 WHEEL_ZOOM = 1.12
 """Factor of one notch of the wheel."""
+
+
+class Grip(Protocol):
+    """Something in the picture that can be dragged; pixels count from the upper left."""
+
+    cursor: Qt.CursorShape
+
+    def holds(self, sight: Sight, x: float, y: float) -> bool:
+        """Whether it is under the mouse."""
+        ...
+
+    def pull(self, sight: Sight, right: float, down: float) -> None:
+        """Follow the mouse by so many pixels."""
+        ...
+
+
+Pointed = Callable[[Sight, float, float], None]
 
 
 class CameraMouse:
@@ -21,36 +44,48 @@ class CameraMouse:
         Reads the present pose.
     move
         Receives the new one.
-    height
-        Reads the height of the view in the units of the events.
+    widget
+        Whose size the picture has, and which gets the cursor.
     """
 
     def __init__(
-        self, pose: Callable[[], CameraPose], move: Callable[[CameraPose], None], height: Callable[[], int]
+        self, pose: Callable[[], CameraPose], move: Callable[[CameraPose], None], widget: QWidget
     ) -> None:
-        self._pose, self._move, self._height = pose, move, height
+        self._pose, self._move, self._widget = pose, move, widget
         self._last: QPointF | None = None
+        self._held: Grip | None = None
+        self.grips: list[Grip] = []
+        self.pointed: list[Pointed] = []
+        self.left: list[Callable[[], None]] = []
 
     def press(self, event: QMouseEvent) -> None:
         """A drag begins."""
         self._last = event.position()
+        self._held = self._under(event.position()) if event.button() == Qt.MouseButton.LeftButton else None
+        self.leave()
         event.accept()
 
     def release(self, event: QMouseEvent) -> None:
         """The drag has ended."""
-        self._last = None
+        self._last = self._held = None
         event.accept()
 
     def drag(self, event: QMouseEvent) -> None:
-        """The mouse moved; with a button down the camera follows."""
+        """The mouse moved; with a button down the camera follows, or what was taken hold of."""
         buttons, last = event.buttons(), self._last
-        if last is None or buttons == Qt.MouseButton.NoButton:
+        if buttons == Qt.MouseButton.NoButton:
+            self._hover(event.position())
+            return
+        if last is None:
             return
         here = event.position()
-        height = max(self._height(), 1)
-        right, up = (here.x() - last.x()) / height, (last.y() - here.y()) / height
         self._last = here
-        self._move(self._moved(buttons, event.modifiers(), right, up))
+        if self._held is not None:
+            self._held.pull(self._sight(), here.x() - last.x(), here.y() - last.y())
+        else:
+            height = max(self._widget.height(), 1)
+            right, up = (here.x() - last.x()) / height, (last.y() - here.y()) / height
+            self._move(self._moved(buttons, event.modifiers(), right, up))
         event.accept()
 
     def wheel(self, event: QWheelEvent) -> None:
@@ -59,6 +94,33 @@ class CameraMouse:
         if notches:
             self._move(zoomed(self._pose(), WHEEL_ZOOM**notches))
         event.accept()
+
+    def leave(self) -> None:
+        """The mouse is elsewhere, or busy."""
+        for callback in self.left:
+            callback()
+
+    def forget(self) -> None:
+        """Tell nobody any more, and hold nothing."""
+        for each in (self.grips, self.pointed, self.left):
+            each.clear()
+        self._held = None
+
+    def _hover(self, place: QPointF) -> None:
+        grip = self._under(place)
+        self._widget.setCursor(grip.cursor if grip is not None else Qt.CursorShape.ArrowCursor)
+        if grip is None:
+            for callback in self.pointed:
+                callback(self._sight(), place.x(), place.y())
+        else:
+            self.leave()
+
+    def _under(self, place: QPointF) -> Grip | None:
+        sight = self._sight()
+        return next((grip for grip in self.grips if grip.holds(sight, place.x(), place.y())), None)
+
+    def _sight(self) -> Sight:
+        return Sight(self._pose(), self._widget.width(), self._widget.height())
 
     def _moved(
         self, buttons: Qt.MouseButton, keys: Qt.KeyboardModifier, right: float, up: float

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pyvista as pv
-from PySide6.QtCore import QRect, Qt
+from PySide6.QtCore import QEvent, QRect, Qt
 from PySide6.QtGui import QImage, QMouseEvent, QPainter, QPaintEvent, QWheelEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
@@ -28,7 +28,8 @@ class ImageView(QWidget):
         self._image = QImage()
         self._stale = True
         self._moved: list[Callable[[CameraPose], None]] = []
-        self._mouse = CameraMouse(lambda: self.pose, self._move, self.height)
+        self.mouse = CameraMouse(lambda: self.pose, self._move, self)
+        self.setMouseTracking(True)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
 
@@ -65,6 +66,7 @@ class ImageView(QWidget):
 
     def release(self) -> None:
         self._moved.clear()
+        self.mouse.forget()
         if self._plotter is not None:
             self._scale_bar.remove()
             self._plotter.close()
@@ -77,16 +79,19 @@ class ImageView(QWidget):
         painter.end()
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
-        self._mouse.press(event)
+        self.mouse.press(event)
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
-        self._mouse.drag(event)
+        self.mouse.drag(event)
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
-        self._mouse.release(event)
+        self.mouse.release(event)
+
+    def leaveEvent(self, event: QEvent) -> None:  # noqa: ARG002
+        self.mouse.leave()
 
     def wheelEvent(self, event: QWheelEvent) -> None:
-        self._mouse.wheel(event)
+        self.mouse.wheel(event)
 
     def _move(self, pose: CameraPose) -> None:
         self.set_pose(pose)

@@ -5,7 +5,7 @@ from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
-from PySide6.QtCore import QMessageLogContext, QtMsgType, qInstallMessageHandler
+from PySide6.QtCore import QEvent, QMessageLogContext, QtMsgType, qInstallMessageHandler
 from PySide6.QtGui import QKeyEvent, QMouseEvent, QWheelEvent
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 from pyvistaqt import QtInteractor
@@ -46,6 +46,10 @@ class _Canvas(QtInteractor):
         if self.mouse:
             self.mouse.wheel(event)
 
+    def leaveEvent(self, event: QEvent) -> None:  # noqa: ARG002
+        if self.mouse:
+            self.mouse.leave()
+
     def keyPressEvent(self, event: QKeyEvent) -> None:
         event.ignore()
 
@@ -74,7 +78,9 @@ class LiveView(QWidget):
     def __init__(self, surroundings: Surroundings = LIGHT, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._canvas: Any = _Canvas(self)
-        self._canvas.mouse = CameraMouse(lambda: self.pose, self._move, self.height)
+        self.mouse = CameraMouse(lambda: self.pose, self._move, self)
+        self._canvas.mouse = self.mouse
+        self._canvas.setMouseTracking(True)
         stage.set_stage(self._canvas, surroundings)
         self._scale_bar = annotations.ScaleBar(self._canvas, surroundings)
         self._moved: list[Callable[[CameraPose], None]] = []
@@ -115,6 +121,7 @@ class LiveView(QWidget):
 
     def release(self) -> None:
         self._moved.clear()
+        self.mouse.forget()
         if self._canvas is not None:
             self._scale_bar.remove()
             self._canvas.mouse = None

@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QWidget
 
 from regolith_studio.scene.cameras import CameraPose
 from regolith_studio.scene.palette import Surroundings
+from regolith_studio.ui.views.camera_mouse import CameraMouse
 
 Picture = NDArray[np.uint8]
 
@@ -36,6 +37,11 @@ class SceneView(Protocol):
 
     def when_moved(self, callback: Callable[[CameraPose], None]) -> None:
         """Call `callback` with the new pose whenever the user moves the camera."""
+        ...
+
+    @property
+    def mouse(self) -> CameraMouse:
+        """Its ``grips`` can be dragged; ``pointed`` are told where the mouse rests, ``left`` when it left."""
         ...
 
     def set_surroundings(self, surroundings: Surroundings) -> None:

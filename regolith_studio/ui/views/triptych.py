@@ -5,27 +5,29 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from PySide6.QtCore import Qt
+from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QSplitter, QWidget
 
 from regolith_studio.geometry.arrays import BoolArray, FloatArray
-from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.oriented_box import minimum_volume_box
 from regolith_studio.harmonics.visibility import hidden_faces
 from regolith_studio.scene import extras, surfaces
 from regolith_studio.scene.distance import signed_distances
+from regolith_studio.scene.shapes import FIT, NAMES, PARTICLE, POLYHEDRON, Shape
+from regolith_studio.scene.sight import Sight
 from regolith_studio.session.results import ParticleEntry, Results
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.views.camera_link import CameraLink
+from regolith_studio.ui.views.comparison import Comparison, partners_of
+from regolith_studio.ui.views.facet_pointer import FacetPointer
 from regolith_studio.ui.views.factory import make_view
+from regolith_studio.ui.views.sections import Sections
 from regolith_studio.ui.views.view_frame import ViewFrame
-
-NAMES = ("particle", "fit", "polyhedron")
 
 
 class Triptych(QSplitter):
-    """Three framed views under linked cameras.
+    """Three framed views under linked cameras; ``whispered`` tells what the mouse points at.
 
     Parameters
     ----------
@@ -33,71 +35,88 @@ class Triptych(QSplitter):
         ``live`` or ``image``.
     """
 
+    whispered = Signal(str)
+
     def __init__(self, kind: str, parent: QWidget | None = None) -> None:
         super().__init__(Qt.Orientation.Horizontal, parent)
         self.setObjectName("triptych")
         self.setChildrenCollapsible(False)
         self._theme = current_theme()
-        self.frames = {name: ViewFrame(make_view(kind, self._theme.surroundings), name) for name in NAMES}
+        ink = self._theme.surroundings
+        self.frames = {name: ViewFrame(make_view(kind, ink), name, partners_of(name)) for name in NAMES}
         self.views = {name: frame.view for name, frame in self.frames.items()}
         self.link = CameraLink(list(self.views.values()))
-        for frame in self.frames.values():
+        for name, frame in self.frames.items():
             self.addWidget(frame)
             frame.setMinimumWidth(150)
+            frame.enlargeRequested.connect(partial(self.enlarge, name))
         self.setSizes([1000, 1000, 1000])
-        self._shown: Mesh | None = None
-        self._fit: Mesh | None = None
+        self._shapes: dict[str, Shape] = {}
         self._heat = False
         self._extras: dict[str, bool] = {}
         self._star_point: FloatArray | None = None
         self._hidden: BoolArray | None = None
-        self._solid: tuple[ConvexPolyhedron, FloatArray] | None = None
+        self.sections = Sections(self)
+        self.comparison = Comparison(self.frames, self.sections)
+        self.pointer = FacetPointer(
+            self.views[POLYHEDRON],
+            lambda: self._shapes.get(POLYHEDRON),
+            lambda: self._theme.surroundings,
+            partial(self.comparison.is_seen, POLYHEDRON),
+            self._whisper,
+        )
         self.set_theme(self._theme)
         self._empty_titles()
 
     def show_particle(self, entry: ParticleEntry | None) -> None:
         """Put a particle on screen; the other views wait for what belongs to it."""
-        if entry is None or entry.particle.mesh is self._shown:
+        if entry is None or entry.particle.mesh is self._surface(PARTICLE):
             return
-        mesh = self._shown = entry.particle.mesh
-        self._fit = self._solid = self._star_point = self._hidden = None
+        mesh = entry.particle.mesh
+        self._shapes = {PARTICLE: Shape(PARTICLE, mesh)}
+        self._star_point = self._hidden = None
+        self.pointer.forget()
         for name in NAMES[1:]:
             self.views[name].draw(surfaces.clear)
         self._draw_extras(*NAMES)
         self._empty_titles()
-        self.views["particle"].draw(lambda plotter: surfaces.show_particle(plotter, mesh))
-        self.frames["particle"].set_texts(
+        self.views[PARTICLE].draw(lambda plotter: surfaces.show_particle(plotter, mesh))
+        self.comparison.set_shapes(self._shapes, *NAMES)
+        self.frames[PARTICLE].set_texts(
             f"CT particle, {html.escape(entry.id)}", f"{_lengths(mesh.bounds)}, {len(mesh.faces):,} triangles"
         )
         self.link.frame(mesh.vertices)
 
     def show_fit(self, mesh: Mesh | None, l_max: int) -> None:
         """Show the surface of the fit."""
-        if mesh is None or self._shown is None:
+        if mesh is None or PARTICLE not in self._shapes:
             return
-        self._fit = mesh
+        self._shapes[FIT] = Shape(FIT, mesh)
         degree = f"l<sub>max</sub>&nbsp;=&nbsp;{l_max}"
-        self.frames["fit"].set_texts(
+        self.frames[FIT].set_texts(
             f"Spherical-harmonics fit, {degree}",
             f"{(l_max + 1) ** 2:,} coefficients, {len(mesh.faces):,} triangles",
             f"Harmonics fit, {degree}",
         )
         self._draw_fit()
+        self.comparison.set_shapes(self._shapes, FIT)
 
     def show_polyhedron(self, results: Results) -> None:
         """Show the newest polyhedron of the coarsening."""
         found = results.coarsened or results.coarsening_progress
         if found is None or found.polyhedron is None:
             return
-        solid, centre = found.polyhedron, found.centre
-        self._solid = (solid, np.asarray(centre, dtype=np.float64))
+        solid, centre = found.polyhedron, np.asarray(found.centre, dtype=np.float64)
+        self._shapes[POLYHEDRON] = Shape(POLYHEDRON, solid, centre)
         ink = self._theme.surroundings
-        self.views["polyhedron"].draw(lambda plotter: surfaces.show_polyhedron(plotter, solid, centre, ink))
-        self.frames["polyhedron"].set_texts(
+        self.pointer.forget()
+        self.views[POLYHEDRON].draw(lambda plotter: surfaces.show_polyhedron(plotter, solid, centre, ink))
+        self.frames[POLYHEDRON].set_texts(
             f"Polyhedron, {solid.n_faces} facets",
             f"{solid.n_vertices} vertices, {solid.n_triangles} triangles{_shortfall(results)}",
         )
-        self._draw_extras("polyhedron")
+        self._draw_extras(POLYHEDRON)
+        self.comparison.set_shapes(self._shapes, POLYHEDRON)
 
     def set_heat(self, heat: bool) -> None:
         """Colour the fit by its distance from the particle, or in its own colour."""
@@ -105,14 +124,14 @@ class Triptych(QSplitter):
         self._draw_fit()
 
     def set_extra(self, name: str, shown: bool) -> None:
-        """Show or hide ``box``, ``star_point`` or ``overlay`` (the particle over fit and polyhedron)."""
+        """Show or hide ``box`` or ``star_point``."""
         self._extras[name] = shown
         self._draw_extras(*NAMES)
 
     def show_star_point(self, point: FloatArray | None) -> None:
         """Where the radius function begins; what it cannot see of the particle is shown with it."""
         self._star_point, self._hidden = point, None
-        self._draw_extras("particle", "fit")
+        self._draw_extras(PARTICLE, FIT)
 
     def set_wireframe(self, wireframe: bool) -> None:
         """Draw particle and fit as triangle meshes."""
@@ -121,8 +140,34 @@ class Triptych(QSplitter):
 
     def reset_cameras(self) -> None:
         """Show the particle whole again."""
-        if self._shown is not None:
-            self.link.frame(self._shown.vertices)
+        mesh = self._surface(PARTICLE)
+        if mesh is not None:
+            self.link.frame(mesh.vertices)
+
+    def cut_across(self, direction: str) -> None:
+        """Cut the bodies across a direction and take the half away that is nearer to the eye."""
+        view = self.views[PARTICLE]
+        towards = -Sight(view.pose, 1, 1).axes[2]
+        self.sections.set_direction(direction, towards)
+
+    def enlarge(self, name: str) -> None:
+        """Give one view all the room, or all of them theirs again."""
+        alone = all(frame.isHidden() for other, frame in self.frames.items() if other != name)
+        for other, frame in self.frames.items():
+            frame.setVisible(alone or other == name)
+        self.reset_cameras()
+
+    def enlarge_next(self) -> None:
+        """One view after the other, then all."""
+        seen = [name for name in NAMES if not self.frames[name].isHidden()]
+        if len(seen) == len(NAMES):
+            self.enlarge(PARTICLE)
+        elif seen[0] == NAMES[-1]:
+            self.enlarge(seen[0])
+        else:
+            self.frames[seen[0]].hide()
+            self.frames[NAMES[NAMES.index(seen[0]) + 1]].show()
+            self.reset_cameras()
 
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
@@ -130,60 +175,65 @@ class Triptych(QSplitter):
         for name, frame in self.frames.items():
             frame.view.set_surroundings(theme.surroundings)
             frame.set_colour(getattr(theme, name))
+        self.comparison.set_theme(theme)
 
     def release(self) -> None:
         """Give the graphics memory back."""
+        self.comparison.release()
         for view in self.views.values():
             view.release()
 
+    def _whisper(self, words: str) -> None:
+        self.frames[POLYHEDRON].whisper(words)
+        self.whispered.emit(words)
+
+    def _surface(self, name: str) -> Mesh | None:
+        shape = self._shapes.get(name)
+        return shape.mesh if shape is not None else None
+
     def _draw_fit(self) -> None:
-        mesh, particle = self._fit, self._shown
+        mesh, particle = self._surface(FIT), self._surface(PARTICLE)
         if mesh is None or particle is None:
             return
         ink = self._theme.surroundings
         distances: FloatArray | None = signed_distances(mesh.vertices, particle) if self._heat else None
-        self.views["fit"].draw(lambda plotter: surfaces.show_fit(plotter, mesh, distances, None, ink))
+        self.views[FIT].draw(lambda plotter: surfaces.show_fit(plotter, mesh, distances, None, ink))
         if distances is not None:
             reach = float(np.abs(distances).max(initial=0.0))
-            self.frames["fit"].detail.setText(f"at most {reach:.3g} µm from the particle")
-        self._draw_extras("fit")
+            self.frames[FIT].set_detail(f"at most {reach:.3g} µm from the particle")
+        self._draw_extras(FIT)
 
     def _draw_extras(self, *names: str) -> None:
         for name in names:
             self.views[name].draw(partial(self._fill_extras, name))
 
     def _fill_extras(self, name: str, plotter: Any) -> None:
-        """Box, star point and overlay of one view, or none of them."""
-        ink = self._theme.surroundings
-        solid = self._solid if name == "polyhedron" else None
-        mesh = {"particle": self._shown, "fit": self._fit}.get(name)
-        corners = _box_corners(mesh, solid) if self._extras.get("box") else None
+        """Box and star point of one view, or none of them."""
+        ink, shape = self._theme.surroundings, self._shapes.get(name)
+        boxed = shape is not None and bool(self._extras.get("box"))
+        body = (shape.polyhedron or shape.mesh) if shape is not None else None
+        corners = minimum_volume_box(body).corners if boxed and body is not None else None
+        if corners is not None and shape is not None:
+            corners = corners + shape.origin
         extras.show_box(plotter, corners, ink)
-        seen = self._extras.get("star_point") and mesh is not None and name != "polyhedron"
-        size = float(np.ptp(self._shown.vertices, axis=0).max()) if self._shown is not None else 1.0
+        seen = self._extras.get("star_point") and shape is not None and name != POLYHEDRON
+        particle = self._surface(PARTICLE)
+        size = float(np.ptp(particle.vertices, axis=0).max()) if particle is not None else 1.0
         extras.show_star_point(plotter, self._star_point if seen else None, size, ink)
-        if name == "particle":
-            extras.show_hidden(plotter, mesh, self._hidden_faces() if seen else None)
-        over = self._extras.get("overlay") and name != "particle" and (mesh is not None or solid is not None)
-        extras.show_ghost(plotter, self._shown if over else None)
+        if name == PARTICLE:
+            extras.show_hidden(plotter, particle, self._hidden_faces() if seen else None)
 
     def _hidden_faces(self) -> BoolArray | None:
         """Faces of the particle that the star point cannot see; looked for once a fit."""
-        if self._hidden is None and self._shown is not None and self._star_point is not None:
-            self._hidden = hidden_faces(self._shown, self._star_point)
+        particle = self._surface(PARTICLE)
+        if self._hidden is None and particle is not None and self._star_point is not None:
+            self._hidden = hidden_faces(particle, self._star_point)
         return self._hidden
 
     def _empty_titles(self) -> None:
-        self.frames["particle"].set_texts("CT particle")
-        self.frames["fit"].set_texts("Spherical-harmonics fit", "waiting for the coefficients …")
-        self.frames["polyhedron"].set_texts("Polyhedron", "on its way; the very first one takes longer …")
-
-
-def _box_corners(mesh: Mesh | None, solid: tuple[ConvexPolyhedron, FloatArray] | None) -> FloatArray | None:
-    """Corners of the minimum-volume box of what one view shows."""
-    if solid is not None:
-        return minimum_volume_box(solid[0]).corners + solid[1]
-    return minimum_volume_box(mesh).corners if mesh is not None else None
+        self.frames[PARTICLE].set_texts("CT particle")
+        self.frames[FIT].set_texts("Spherical-harmonics fit", "waiting for the coefficients …")
+        self.frames[POLYHEDRON].set_texts("Polyhedron", "on its way; the very first one takes longer …")
 
 
 def _lengths(bounds: FloatArray) -> str:

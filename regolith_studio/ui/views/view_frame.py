@@ -1,17 +1,20 @@
 """A view with its title above it."""
 
-from PySide6.QtCore import Qt
-from PySide6.QtGui import QResizeEvent
+from collections.abc import Mapping
+
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtGui import QMouseEvent, QResizeEvent
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
 from regolith_studio.ui.views.protocol import SceneView
+from regolith_studio.ui.widgets.choice_box import ChoiceBox
 from regolith_studio.ui.widgets.labels import ElidedLabel
 
 _PADDING = 9
 
 
 class ViewFrame(QFrame):
-    """Title, one quiet line, the view.
+    """Title, one quiet line, the view; a double click on the title asks for more room.
 
     Parameters
     ----------
@@ -19,35 +22,39 @@ class ViewFrame(QFrame):
         What is framed.
     name
         Object name, and plain name for screen readers.
+    partners
+        What it can be compared with, by key; the box is shown when :meth:`set_comparing` says so.
     """
 
-    def __init__(self, view: SceneView, name: str, parent: QWidget | None = None) -> None:
+    partnerChanged = Signal(str)  # noqa: N815
+    enlargeRequested = Signal()  # noqa: N815
+
+    def __init__(
+        self,
+        view: SceneView,
+        name: str,
+        partners: Mapping[str, str] | None = None,
+        parent: QWidget | None = None,
+    ) -> None:
         super().__init__(parent)
         self.setObjectName(f"view_{name}")
         self.setProperty("role", "card")
         self.view = view
         self._titles = ("", "")
+        self._detail = ""
         self._mark = QLabel()
         self._title = QLabel()
         self._title.setTextFormat(Qt.TextFormat.RichText)
         self._title.setProperty("role", "heading")
         self._title.setMinimumWidth(10)
         self.detail = ElidedLabel(role="remark")
+        self.partner = ChoiceBox(f"partner_{name}", f"Compare the {name} with", partners or {})
+        self.partner.setMinimumContentsLength(7)
+        self.partner.setToolTip("What is laid over it, or shown to the right of the line")
+        self.partner.currentIndexChanged.connect(lambda _: self.partnerChanged.emit(self.partner.value()))
+        self.partner.hide()
         view.widget.setObjectName(f"scene_{name}")
-        row = QHBoxLayout()
-        row.setContentsMargins(_PADDING, 6, _PADDING, 0)
-        row.setSpacing(5)
-        row.addWidget(self._mark)
-        row.addWidget(self._title, 1)
-        under = QHBoxLayout()
-        under.setContentsMargins(_PADDING, 0, _PADDING, 4)
-        under.addWidget(self.detail)
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(1, 1, 1, 1)
-        layout.setSpacing(0)
-        layout.addLayout(row)
-        layout.addLayout(under)
-        layout.addWidget(view.widget, 1)
+        self._arrange()
 
     def set_colour(self, colour: str) -> None:
         """Colour of the mark before the title: the same as in the plots."""
@@ -57,12 +64,49 @@ class ViewFrame(QFrame):
         """Title as rich text, the quiet line, and a title for views too narrow for the first one."""
         self._titles = (title, short or title)
         self._choose_title()
-        self.detail.setText(detail)
+        self.set_detail(detail)
         self.view.widget.setAccessibleName(f"{title}. {detail}")
+
+    def set_detail(self, detail: str) -> None:
+        """Another quiet line."""
+        self._detail = detail
+        self.detail.setText(detail)
+
+    def whisper(self, words: str) -> None:
+        """Words in place of the quiet line while they last; none bring it back."""
+        self.detail.setText(words or self._detail)
+
+    def set_comparing(self, comparing: bool) -> None:
+        """Offer the box of partners, or not."""
+        self.partner.setVisible(comparing and self.partner.count() > 1)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
         self._choose_title()
+
+    def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
+        if event.position().y() < self.view.widget.y():
+            self.enlargeRequested.emit()
+            event.accept()
+        else:
+            super().mouseDoubleClickEvent(event)
+
+    def _arrange(self) -> None:
+        row = QHBoxLayout()
+        row.setContentsMargins(_PADDING, 6, _PADDING, 0)
+        row.setSpacing(5)
+        row.addWidget(self._mark)
+        row.addWidget(self._title, 1)
+        under = QHBoxLayout()
+        under.setContentsMargins(_PADDING, 0, _PADDING, 4)
+        under.addWidget(self.detail, 1)
+        under.addWidget(self.partner)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(1, 1, 1, 1)
+        layout.setSpacing(0)
+        layout.addLayout(row)
+        layout.addLayout(under)
+        layout.addWidget(self.view.widget, 1)
 
     def _choose_title(self) -> None:
         room = self.width() - 2 * _PADDING - 8 - self._mark.sizeHint().width()

@@ -7,6 +7,7 @@ from PySide6.QtCore import QSize, Qt
 from PySide6.QtGui import QPainter, QPaintEvent
 from PySide6.QtWidgets import QLabel, QSizePolicy, QWidget
 
+_TAG = re.compile(r"(<[^<>]*>)")
 _SUBSCRIPT = re.compile(r"([A-Za-zΨ])_([A-Za-z0-9]+)")
 
 
@@ -18,6 +19,11 @@ def rich_symbol(text: str) -> str:
 def plain_symbol(text: str) -> str:
     """A symbol such as ``D_min`` where no subscript can be set: ``Dmin``."""
     return _SUBSCRIPT.sub(r"\1\2", text)
+
+
+def unbroken(rich: str) -> str:
+    """Rich text in which no line breaks between words."""
+    return "".join(part if part.startswith("<") else part.replace(" ", "&nbsp;") for part in _TAG.split(rich))
 
 
 def heading(text: str) -> QLabel:

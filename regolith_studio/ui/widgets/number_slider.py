@@ -96,6 +96,13 @@ class NumberSlider(QWidget):
             self.slider.setValue(self._ticks(self.field.value()))
         self._announced = self.field.value()
 
+    def set_range(self, minimum: float, maximum: float) -> None:
+        """Other ends of the slider and of the field; announces nothing."""
+        with QSignalBlocker(self.field), QSignalBlocker(self.slider):
+            self.field.setRange(minimum, maximum)  # type: ignore[arg-type]
+            self.slider.setRange(self._ticks(minimum), self._ticks(maximum))
+            self.slider.setPageStep(max(1, (self.slider.maximum() - self.slider.minimum()) // 10))
+
     def _configure(self) -> None:
         spec, field = self.spec, self.field
         limit = spec.maximum if spec.limit is None else spec.limit

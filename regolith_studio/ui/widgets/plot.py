@@ -19,7 +19,8 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.errors import RegolithError
 from regolith_studio.ui.theme import Theme, current_theme
-from regolith_studio.ui.widgets.plot_files import DRAWN, save_figure, save_numbers
+from regolith_studio.ui.widgets.labels import unbroken
+from regolith_studio.ui.widgets.plot_files import DRAWN, plain_text, save_figure, save_numbers
 
 Numbers = tuple[tuple[str, ...], list[tuple[str | float, ...]]]
 """Names of columns, and rows."""
@@ -52,6 +53,7 @@ class Plot(QWidget):
         self.canvas.setContextMenuPolicy(Qt.ContextMenuPolicy.NoContextMenu)
         self.legend = QLabel()
         self.legend.setTextFormat(Qt.TextFormat.RichText)
+        self.legend.setWordWrap(True)
         self.remark = QLabel()
         self.remark.setProperty("role", "remark")
         self._placeholder = QLabel(placeholder)
@@ -66,8 +68,7 @@ class Plot(QWidget):
         top = QHBoxLayout()
         top.setContentsMargins(8, 4, 8, 0)
         top.setSpacing(16)
-        top.addWidget(self.legend)
-        top.addStretch(1)
+        top.addWidget(self.legend, 1)
         top.addWidget(self.remark)
         page = QWidget()
         self._page = page
@@ -96,8 +97,14 @@ class Plot(QWidget):
         self._make_room()
 
     def _make_room(self) -> None:
-        needed = self.legend.sizeHint().width() + self.remark.sizeHint().width() + 40
+        needed = self._legend_width() + self.remark.sizeHint().width() + 40
         self.remark.setVisible(needed <= self.width())
+
+    def _legend_width(self) -> int:
+        """Of the legend on one line; it wraps between entries where there is less."""
+        metrics = self.legend.fontMetrics()
+        words = [plain_text(text) for _, text in self._legend_entries]
+        return sum(metrics.horizontalAdvance(f"MM {text}") for text in words)
 
     def is_empty(self) -> bool:
         """Whether the placeholder is shown."""
@@ -107,8 +114,9 @@ class Plot(QWidget):
         """Pairs of colour and rich text."""
         self._legend_entries = entries
         self.legend.setText(
-            "&nbsp;&nbsp;&nbsp;".join(
-                f'<span style="color:{colour}">&#9632;</span>&nbsp;{text}' for colour, text in entries
+            "&nbsp;&nbsp; ".join(
+                f'<span style="color:{colour}">&#9632;</span>&nbsp;{unbroken(text)}'
+                for colour, text in entries
             )
         )
         self._make_room()

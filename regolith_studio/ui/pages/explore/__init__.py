@@ -37,9 +37,14 @@ PAGE = Page(
             "&View", "wireframe", "&Wireframe", "wireframe", "Ctrl+M", "Show triangles", False, "icon"
         ),
         ActionSpec("&View", "heat", "&Distance map", "heat", "Ctrl+D", "Show fitting errors", False, "icon"),
-        ActionSpec("&View", "overlay", "&Overlay the particle", "overlay", "", "In all", False, "icon"),
+        ActionSpec("&View", "overlay", "&Overlay", "overlay", "", "One body over another", False, "icon"),
+        ActionSpec("&View", "wipe", "Wi&pe", "wipe", "Ctrl+I", "Two bodies beside a line", False, "icon"),
+        ActionSpec("&View", "section", "Cross-s&ection", "section", "Ctrl+K", "Cut all views", False, "icon"),
         ActionSpec("&View", "box", "&Bounding box", "box", "Ctrl+B", "Smallest in volume", False, "icon"),
         ActionSpec("&View", "star_point", "Star &point", "star", "", "And what it cannot see", False, "icon"),
+        ActionSpec(
+            "&View", "enlarge", "&Enlarge one view", "", "Ctrl+Shift+M", "One after the other, then all"
+        ),
         ActionSpec(PAGE_MENU, "save_picture", "Save &picture …", "camera", "Ctrl+P", "PNG", bar="icon"),
         ActionSpec(PAGE_MENU, "save_animation", "Save &animation of l_max …", tip="GIF of l_max 0 to 30"),
     ),

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 from functools import partial
 
-from PySide6.QtWidgets import QHBoxLayout
+from PySide6.QtWidgets import QHBoxLayout, QMainWindow
 
 from regolith_studio.scene.cameras import DIRECTIONS
 from regolith_studio.ui.layout import CONTROLS_WIDTH, padded, scrolled_column, side_by_side, stacked
@@ -28,7 +28,8 @@ class ExplorePage(PageWidget):
         self.particles, self.fit = ParticleListPanel(), FitPanel()
         self.coarsening, self.loss = CoarseningPanel(), LossPanel()
         self.triptych = Triptych(context.views)
-        self.plots = PlotArea()
+        self.plots = PlotArea(self.triptych)
+        self.triptych.whispered.connect(self._whisper)
         self.pictures = Pictures(context, self.triptych, self)
         self._themed = (self.particles, self.coarsening, self.plots, self.triptych)
         self._place()
@@ -46,7 +47,11 @@ class ExplorePage(PageWidget):
             "reset": views.reset_cameras,
             "wireframe": views.set_wireframe,
             "heat": views.set_heat,
-            **{name: partial(views.set_extra, name) for name in ("overlay", "box", "star_point")},
+            **{name: partial(views.set_extra, name) for name in ("box", "star_point")},
+            "overlay": lambda on: views.comparison.set_mode(overlay=on),
+            "wipe": lambda on: views.comparison.set_mode(wipe=on),
+            "section": self._set_section,
+            "enlarge": views.enlarge_next,
             "save_picture": self.pictures.save_picture,
             "save_animation": self.pictures.save_animation,
         }
@@ -76,6 +81,17 @@ class ExplorePage(PageWidget):
         wiring.refresh("surface", self._show_fit)
         wiring.refresh("coarsening", self._show_coarsening)
         self.plots.wire(session, wiring)
+
+    def _set_section(self, shown: bool) -> None:
+        self.triptych.sections.set_shown(shown)
+        if shown:
+            self.triptych.cut_across(self.triptych.sections.direction)
+            self.plots.show_section()
+
+    def _whisper(self, words: str) -> None:
+        window = self.window()
+        if isinstance(window, QMainWindow):
+            window.statusBar().showMessage(words)
 
     def _show_findings(self) -> None:
         fit = self._session.results.fit

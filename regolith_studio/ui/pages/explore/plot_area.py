@@ -5,24 +5,30 @@ from PySide6.QtWidgets import QSplitter, QWidget
 
 from regolith_studio.session.session import Session
 from regolith_studio.ui.layout import tabs
+from regolith_studio.ui.pages.explore.section_panel import SectionPanel
 from regolith_studio.ui.panels.descriptor_table import DescriptorTablePanel
 from regolith_studio.ui.panels.error_bars import ErrorBarsPanel
 from regolith_studio.ui.panels.loss_curve import LossCurvePanel
 from regolith_studio.ui.panels.spectrum import SpectrumPanel
 from regolith_studio.ui.theme import Theme
+from regolith_studio.ui.views.triptych import Triptych
 from regolith_studio.ui.wiring import Wiring
 
 
 class PlotArea(QSplitter):
     """Two groups of pages side by side."""
 
-    def __init__(self, parent: QWidget | None = None) -> None:
+    def __init__(self, triptych: Triptych, parent: QWidget | None = None) -> None:
         super().__init__(Qt.Orientation.Horizontal, parent)
         self.setChildrenCollapsible(False)
         self.setHandleWidth(7)
         self.error_bars, self.table = ErrorBarsPanel(), DescriptorTablePanel()
         self.loss_curve, self.spectrum = LossCurvePanel(), SpectrumPanel()
-        self.left = tabs("plots_left", [(self.error_bars, "Errors"), (self.table, "Descriptors")])
+        self.section = SectionPanel(triptych)
+        self.left = tabs(
+            "plots_left",
+            [(self.error_bars, "Errors"), (self.table, "Descriptors"), (self.section, "Section")],
+        )
         self.right = tabs("plots_right", [(self.loss_curve, "Loss"), (self.spectrum, "Spectrum")])
         for number, group in enumerate((self.left, self.right)):
             self.addWidget(group)
@@ -31,8 +37,12 @@ class PlotArea(QSplitter):
 
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
-        for panel in (self.error_bars, self.loss_curve, self.spectrum):
+        for panel in (self.error_bars, self.loss_curve, self.spectrum, self.section):
             panel.set_theme(theme)
+
+    def show_section(self) -> None:
+        """Bring the drawing of the section to the front."""
+        self.left.setCurrentWidget(self.section)
 
     def wire(self, session: Session, wiring: Wiring) -> None:
         """Show what the session computes, from now on."""

@@ -1,0 +1,96 @@
+"""The wipe: a line across the picture, one body to its left and another to its right."""
+
+from typing import Any
+
+import numpy as np
+import pyvista as pv
+from vtkmodules.vtkCommonDataModel import vtkPlane
+
+from regolith_studio.scene import palette
+from regolith_studio.scene.annotations import before_each_picture, flat_actor
+from regolith_studio.scene.cameras import pose_of
+from regolith_studio.scene.palette import Surroundings
+from regolith_studio.scene.sight import Sight
+
+HANDLE = 9.0
+"""Half the height of the handle in pixels."""
+
+
+class Divider:
+    """Two planes that follow the camera, seen edge on: what they clip ends at a line in the picture.
+
+    Parameters
+    ----------
+    plotter
+        Any pyvista plotter; the line belongs to its active renderer.
+    surroundings
+        Whose ink it is drawn with.
+    """
+
+    def __init__(self, plotter: Any, surroundings: Surroundings = palette.LIGHT) -> None:
+        self._plotter, self._renderer = plotter, plotter.renderer
+        self.share = 0.5
+        self.left, self.right = vtkPlane(), vtkPlane()
+        self._line, self._knob = pv.PolyData(), pv.PolyData()
+        self._actors = (flat_actor(self._line, 1.6), flat_actor(self._knob))
+        for actor in self._actors:
+            self._renderer.AddViewProp(actor)
+        self.set_ink(surroundings)
+        self.set_shown(False)
+        self._tag = before_each_picture(self._renderer, self)
+
+    def set_ink(self, surroundings: Surroundings) -> None:
+        """Draw with another ink."""
+        for actor in self._actors:
+            actor.GetProperty().SetColor(*pv.Color(surroundings.ink).float_rgb)
+
+    def set_shown(self, shown: bool) -> None:
+        """Draw the line, or not."""
+        for actor in self._actors:
+            actor.SetVisibility(shown)
+
+    @property
+    def shown(self) -> bool:
+        """Whether the line is drawn."""
+        return bool(self._actors[0].GetVisibility())
+
+    def update(self) -> None:
+        """Put planes and line where camera and share say; called by itself before every picture."""
+        width, height = self._renderer.GetSize()
+        if not (width and height and self.shown):
+            return
+        sight = Sight(pose_of(self._plotter), width, height)
+        x = self.share * width
+        place, _ = sight.ray(x, height / 2)
+        right = sight.axes[0]
+        for plane, normal in ((self.left, -right), (self.right, right)):
+            plane.SetOrigin(*place)
+            plane.SetNormal(*normal)
+        self._line.copy_from(pv.PolyData([(x, 0, 0), (x, height, 0)], lines=[2, 0, 1]))
+        middle, across = height / 2, 0.6 * HANDLE
+        corners = [
+            (x - 3 - across, middle),
+            (x - 3, middle - HANDLE),
+            (x - 3, middle + HANDLE),
+            (x + 3 + across, middle),
+            (x + 3, middle + HANDLE),
+            (x + 3, middle - HANDLE),
+        ]
+        points = np.array([(a, b, 0.0) for a, b in corners])
+        self._knob.copy_from(pv.PolyData(points, faces=[3, 0, 1, 2, 3, 3, 4, 5]))
+
+    def remove(self) -> None:
+        """Take it out of the picture and stop listening to the renderer."""
+        self._renderer.RemoveObserver(self._tag)
+        for actor in self._actors:
+            self._renderer.RemoveViewProp(actor)
+
+
+def clip(plotter: Any, names: tuple[str, ...], *planes: vtkPlane) -> None:
+    """Show of these actors only what lies on the side of the normals of all `planes`."""
+    for name in names:
+        actor = plotter.actors.get(name)
+        if actor is not None:
+            actor.mapper.RemoveAllClippingPlanes()
+            for plane in planes:
+                actor.mapper.AddClippingPlane(plane)

@@ -1,0 +1,80 @@
+"""What can be shown in a view: one of the three bodies, as a value."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from regolith_studio.coarsening.progress import placed
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.scene import palette, surfaces
+from regolith_studio.scene.palette import Material, Surroundings
+
+PARTICLE, FIT, POLYHEDRON = "particle", "fit", "polyhedron"
+NAMES = (PARTICLE, FIT, POLYHEDRON)
+LABELS = {PARTICLE: "CT particle", FIT: "Fit", POLYHEDRON: "Polyhedron"}
+MATERIALS: dict[str, Material] = {
+    PARTICLE: palette.PARTICLE_MATERIAL,
+    FIT: palette.FIT_MATERIAL,
+    POLYHEDRON: palette.POLYHEDRON_MATERIAL,
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """A body in the particle's frame.
+
+    Parameters
+    ----------
+    name
+        One of :data:`NAMES`.
+    surface
+        Its triangles, or a polyhedron about `centre`.
+    """
+
+    name: str
+    surface: Mesh | ConvexPolyhedron
+    centre: FloatArray | None = None
+
+    @property
+    def polyhedron(self) -> ConvexPolyhedron | None:
+        """The polyhedron, if it is one."""
+        return self.surface if isinstance(self.surface, ConvexPolyhedron) else None
+
+    @property
+    def origin(self) -> FloatArray:
+        """Where the polyhedron's own origin lies, shape (3,)."""
+        return np.zeros(3) if self.centre is None else np.asarray(self.centre, dtype=np.float64)
+
+    @cached_property
+    def mesh(self) -> Mesh:
+        """Triangles in the particle's frame."""
+        return self.surface if isinstance(self.surface, Mesh) else placed(self.surface, self.origin)
+
+
+def show_shape(
+    plotter: Any,
+    shape: Shape | None,
+    surroundings: Surroundings = palette.LIGHT,
+    layer: str = "",
+    opacity: float = 1.0,
+) -> None:
+    """Draw a body, or nothing.
+
+    Parameters
+    ----------
+    layer
+        Bodies of different layers stand in one plotter together.
+    """
+    if shape is None:
+        surfaces.hide(plotter, layer)
+        return
+    if shape.polyhedron is not None:
+        surfaces.show_polyhedron(plotter, shape.polyhedron, shape.origin, surroundings, layer)
+    else:
+        surfaces.hide(plotter, layer)
+        surfaces.show_smooth(plotter, shape.mesh, MATERIALS[shape.name], layer)
+    surfaces.set_opacity(plotter, opacity, layer)

@@ -1,0 +1,120 @@
+"""The cross-section as a drawing: outlines of particle, fit and polyhedron over each other, with areas."""
+
+import numpy as np
+from PySide6.QtWidgets import QCheckBox, QHBoxLayout, QVBoxLayout, QWidget
+
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.plane_cut import PlaneCut
+from regolith_studio.scene.sectioning import DIRECTIONS
+from regolith_studio.scene.shapes import LABELS, NAMES, PARTICLE
+from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.views.triptych import Triptych
+from regolith_studio.ui.widgets.choice_box import ChoiceBox
+from regolith_studio.ui.widgets.curve_plot import Curve, CurvePlot
+from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
+
+AXES = {"x": ("y", "z"), "y": ("x", "z"), "z": ("x", "y")}
+"""What runs to the right and up in a drawing, by the direction of the cut."""
+PLACE = NumberSpec(
+    "",
+    "Place of the section",
+    -100,
+    100,
+    0.1,
+    suffix=" µm",
+    tip="Distance from the middle of the particle; the frame in the views can be dragged as well.",
+)
+
+
+class SectionPanel(QWidget):
+    """Direction and place of the plane above, the outlines below."""
+
+    def __init__(self, triptych: Triptych, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("section")
+        self._triptych, self._sections = triptych, triptych.sections
+        self._theme = current_theme()
+        self.direction = ChoiceBox("section_direction", "Direction of the section", DIRECTIONS)
+        self.direction.setMinimumContentsLength(7)
+        self.flipped = QCheckBox("Flip")
+        self.flipped.setObjectName("section_flipped")
+        self.flipped.setToolTip("Take the other half away")
+        self.place = NumberSlider(PLACE)
+        self.place.setObjectName("section_place")
+        self.plot = CurvePlot("y [µm]", "z [µm]", "Turn the cross-section on in the tool bar.")
+        self.plot.setAccessibleName("Cross-section")
+        self.plot.canvas.setAspectLocked(True)
+        self._place()
+        self.direction.currentIndexChanged.connect(lambda _: triptych.cut_across(self.direction.value()))
+        self.flipped.toggled.connect(self._sections.set_flipped)
+        self.place.valueChanged.connect(self._sections.set_place)
+        self._sections.changed.connect(self.refresh)
+        self.refresh()
+
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        self._theme = theme
+        self.plot.set_theme(theme)
+        self.refresh()
+
+    def refresh(self) -> None:
+        """Show plane and cuts as they are."""
+        sections = self._sections
+        for part in (self.direction, self.flipped, self.place):
+            part.setEnabled(sections.shown)
+        self.direction.setValue(sections.direction)
+        self.flipped.blockSignals(True)
+        self.flipped.setChecked(sections.flipped)
+        self.flipped.blockSignals(False)
+        self.place.set_range(-sections.half_length, sections.half_length)
+        if not self.place.slider.isSliderDown():
+            self.place.setValue(sections.place)
+        self._draw(sections.cuts())
+
+    def _draw(self, cuts: dict[str, PlaneCut]) -> None:
+        right, up = AXES.get(self._sections.direction, ("across", "up"))
+        mirrored = bool(cuts) and _mirrored(next(iter(cuts.values())), self._sections.direction)
+        self.plot.set_labels(f"{'-' if mirrored else ''}{right} [µm]", f"{up} [µm]")
+        whole = cuts[PARTICLE].area if PARTICLE in cuts else 0.0
+        curves = []
+        for name in NAMES:
+            if name in cuts:
+                x, y = _outline(cuts[name])
+                label = f"{LABELS[name]} {_area_words(cuts[name].area, whole, name)}"
+                curves.append(Curve(label, getattr(self._theme, name), tuple(x), tuple(y)))
+        self.plot.set_curves(curves)
+
+    def _place(self) -> None:
+        row = QHBoxLayout()
+        row.setContentsMargins(8, 6, 8, 0)
+        row.setSpacing(10)
+        row.addWidget(self.direction)
+        row.addWidget(self.place, 1)
+        row.addWidget(self.flipped)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.addLayout(row)
+        column.addWidget(self.plot, 1)
+
+
+def _outline(cut: PlaneCut) -> tuple[FloatArray, FloatArray]:
+    """The loops one after the other, with a gap between them."""
+    flat, gap = cut.flat(), np.full((1, 2), np.nan)
+    pieces = [part for loop in cut.loops() for part in (flat[loop], gap)][:-1]
+    if not pieces:
+        return np.empty(0), np.empty(0)
+    whole = np.vstack(pieces)
+    return whole[:, 0], whole[:, 1]
+
+
+def _mirrored(cut: PlaneCut, direction: str) -> bool:
+    """Whether the axis of the drawing that runs to the right is the negative of its name."""
+    if direction not in AXES:
+        return False
+    return bool(cut.normal["xyz".index(direction)] * (-1.0 if direction == "y" else 1.0) < 0.0)
+
+
+def _area_words(area: float, whole: float, name: str) -> str:
+    if name == PARTICLE or not whole:
+        return f"{area:,.4g} µm²"
+    return f"{area:,.4g} µm² ({area / whole - 1:+.1%})"

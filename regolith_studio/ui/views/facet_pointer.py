@@ -1,0 +1,67 @@
+"""Points out the facet of a polyhedron that is under the mouse."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.scene import facets
+from regolith_studio.scene.palette import Surroundings
+from regolith_studio.scene.shapes import Shape
+from regolith_studio.scene.sight import Sight
+from regolith_studio.ui.views.protocol import SceneView
+
+
+class FacetPointer:
+    """Outlines and numbers the facet, and tells its numbers in a line.
+
+    Parameters
+    ----------
+    view
+        That shows the polyhedron.
+    shape
+        Reads what it shows.
+    ink
+        Reads the inks.
+    seen
+        Whether a point of the body, shape (3,), at a share of the picture's width is seen.
+    tell
+        Receives the line, or nothing when the mouse is elsewhere.
+    """
+
+    def __init__(
+        self,
+        view: SceneView,
+        shape: Callable[[], Shape | None],
+        ink: Callable[[], Surroundings],
+        seen: Callable[[FloatArray, float], bool],
+        tell: Callable[[str], None],
+    ) -> None:
+        self._view, self._shape, self._ink, self._tell = view, shape, ink, tell
+        self._seen = seen
+        self._known: tuple[Shape, int] | None = None
+        view.mouse.pointed.append(self._point)
+        view.mouse.left.append(self.forget)
+
+    def forget(self) -> None:
+        """Point out nothing."""
+        if self._known is not None:
+            self._known = None
+            self._view.draw(lambda plotter: facets.show_facet(plotter, None))
+            self._tell("")
+
+    def _point(self, sight: Sight, x: float, y: float) -> None:
+        shape = self._shape()
+        if shape is None or shape.polyhedron is None:
+            return
+        start, direction = sight.ray(x, y)
+        outside = start - shape.origin - 1e3 * float(np.linalg.norm(start - shape.origin)) * direction
+        hit = facets.facet_met(shape.polyhedron, outside, direction)
+        met, reach = hit if hit is not None else (-1, 0.0)
+        if hit is None or not self._seen(outside + reach * direction + shape.origin, x / sight.width):
+            self.forget()
+        elif self._known is None or self._known[0] is not shape or self._known[1] != met:
+            self._known = (shape, met)
+            facet, ink = facets.facet_of(shape.polyhedron, met), self._ink()
+            self._view.draw(lambda plotter: facets.show_facet(plotter, facet, shape.origin, ink))
+            self._tell(facet.words)

@@ -1,0 +1,174 @@
+"""Veil, wipe and section in one picture; facets under the mouse."""
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+from regolith_studio.geometry.directions import icosphere
+from regolith_studio.geometry.plane_cut import plane_cut
+from regolith_studio.geometry.ray_casting import radial_hits
+from regolith_studio.scene import facets, sectioning, stage, surfaces
+from regolith_studio.scene.cameras import apply_pose, framing_pose, pose_of
+from regolith_studio.scene.comparing import OTHER, arrange, show_cuts, show_other
+from regolith_studio.scene.divider import Divider
+from regolith_studio.scene.palette import PAPER
+from regolith_studio.scene.sectioning import SectionPlane
+from regolith_studio.scene.shapes import FIT, PARTICLE, POLYHEDRON, Shape
+from regolith_studio.scene.sight import Sight
+
+SIZE = 160
+
+
+@pytest.fixture
+def plotter():
+    stage.choose_off_screen_window()
+    made = pv.Plotter(off_screen=True, window_size=[SIZE, SIZE])
+    stage.set_stage(made, PAPER)
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def divider(plotter):
+    made = Divider(plotter, PAPER)
+    yield made
+    made.remove()
+
+
+def picture(plotter):
+    plotter.render()
+    return plotter.screenshot(return_img=True)[..., :3].astype(int)
+
+
+def yellowness(part):
+    """Of the polyhedron: red above blue."""
+    return float((part[..., 0] - part[..., 2]).mean())
+
+
+def show_two(plotter, ball, cube, direction="isometric"):
+    surfaces.show_polyhedron(plotter, cube)
+    show_other(plotter, Shape(FIT, ball), False)
+    apply_pose(plotter, framing_pose(cube.vertices, direction))
+
+
+@pytest.mark.parametrize("direction", ["isometric", "front", "top"])
+def test_that_the_wipe_shows_one_body_left_and_the_other_right_of_the_line(
+    plotter, divider, ball, cube, direction
+):
+    show_two(plotter, ball, cube, direction)
+    for share in (0.5, 0.35):
+        divider.share = share
+        arrange(plotter, divider, wipe=True, overlay=False, section=None)
+        seen, middle = picture(plotter), round(share * SIZE)
+        assert yellowness(seen[60:100, middle - 14 : middle - 6]) > 40
+        assert yellowness(seen[60:100, middle + 6 : middle + 14]) < -40
+    arrange(plotter, divider, wipe=False, overlay=False, section=None)
+    show_other(plotter, None, False)
+    assert yellowness(picture(plotter)[60:100, 60:100]) > 40
+
+
+def test_that_a_section_is_as_large_as_the_cut_and_hides_the_half_before_it(plotter, divider, ball):
+    surfaces.show_particle(plotter, ball)
+    apply_pose(plotter, framing_pose(ball.vertices, "front"))
+    plane = SectionPlane((0.0, -1.0, 0.0), 10.0)
+    cut = plane_cut(ball, plane.normal, plane.offset)
+    show_cuts(plotter, PARTICLE, "", {PARTICLE: cut}, {PARTICLE: "#000000"})
+    arrange(plotter, divider, wipe=False, overlay=False, section=plane)
+    cap = plotter.actors[sectioning.CAP].mapper.dataset
+    assert cap.area == pytest.approx(cut.area, rel=1e-5)
+    assert np.allclose(cap.points[:, 1], -10.0, atol=1e-5)
+    seen = picture(plotter)
+    assert np.ptp(seen[70:90, 70:90].reshape(-1, 3), axis=0).max() <= 2  # flat: the cut, not the ball
+    show_cuts(plotter, PARTICLE, "", {}, {PARTICLE: "#000000"})
+    arrange(plotter, divider, wipe=False, overlay=False, section=None)
+    assert not plotter.actors[sectioning.CAP].GetVisibility()
+    assert np.abs(picture(plotter) - seen).max() > 20
+
+
+def test_that_the_frame_of_a_section_lies_in_its_plane_and_holds_the_particle(ball):
+    corners = sectioning.frame_corners(ball, SectionPlane((0.6, 0.0, 0.8), 12.0))
+    assert np.allclose(corners @ [0.6, 0.0, 0.8], 12.0)
+    assert np.linalg.norm(corners[0] - corners[1]) >= 60.0
+
+
+def test_that_a_veil_begins_at_the_line_where_both_are_asked_for(plotter, divider, ball, cube):
+    show_two(plotter, ball, cube, "front")
+    show_other(plotter, Shape(FIT, ball), True)
+    arrange(plotter, divider, wipe=True, overlay=True, section=None)
+    assert plotter.actors[OTHER + surfaces.SURFACE].prop.opacity < 0.5
+    assert not plotter.actors[surfaces.SURFACE].mapper.GetClippingPlanes()
+    assert plotter.actors[OTHER + surfaces.SURFACE].mapper.GetClippingPlanes().GetNumberOfItems() == 1
+
+
+@pytest.mark.parametrize("direction", ["isometric", "left", "bottom"])
+def test_that_a_point_is_seen_where_its_ray_passes(direction, ball):
+    sight = Sight(framing_pose(ball.vertices, direction), 320, 200)
+    place = np.array([3.0, -7.0, 11.0])
+    x, y = sight.seen(place)[0]
+    start, towards = sight.ray(x, y)
+    assert np.allclose(np.cross(place - start, towards), 0.0, atol=1e-9)
+
+
+def test_that_a_drag_moves_a_plane_with_the_mouse(ball):
+    sight = Sight(framing_pose(ball.vertices, "front"), 200, 200)
+    for direction, drag in (((1, 0, 0), (30, 5)), ((0, 0, 1), (5, -30)), ((0, 0, -1), (5, 30))):
+        before, after = sight.seen([np.zeros(3), sight.along(direction, *drag) * np.array(direction)])
+        wanted = np.array(drag) * (np.abs(np.array(direction)[[0, 2]]) > 0)
+        assert np.allclose(after - before, wanted)
+    assert sight.along((0, -1, 0), 0, -30) == pytest.approx(-30 * sight.per_pixel)  # end on: up is inwards
+
+
+def test_that_the_facet_under_the_mouse_is_the_one_that_a_ray_meets_first(cube):
+    rng = np.random.default_rng(3)
+    solid, met = cube, 0
+    for direction in rng.normal(size=(200, 3)):
+        towards = direction / np.linalg.norm(direction)
+        start = -200 * towards + np.cross(towards, rng.normal(size=3)) * 12
+        hits = radial_hits(solid.mesh, start, towards[None, :])
+        entering = hits.face[hits.sign < 0]
+        found = facets.facet_met(solid, start, towards)
+        assert (found is None) == (not len(entering))
+        if found is not None:
+            met += 1
+            assert found[0] == solid.triangle_facets[entering[0]]
+            assert found[1] == pytest.approx(hits.distance[0])
+    assert met > 100
+
+
+def test_that_a_facet_tells_its_numbers_and_is_outlined(plotter, cube):
+    facet = facets.facet_of(cube, 2)
+    assert facet.area == pytest.approx(1600.0)
+    assert facet.share == pytest.approx(1 / 6)
+    assert facet.offset == pytest.approx(20.0)
+    assert "facet 3 of 6: 1,600 µm² (16.7%)" in facet.words
+    facets.show_facet(plotter, facet, (1.0, 2.0, 3.0))
+    outline = plotter.actors[facets.FACET].mapper.dataset
+    assert outline.length == pytest.approx(40 * np.sqrt(2), rel=0.01)
+    assert plotter.actors[facets.NUMBER].GetInput() == "3"
+    facets.show_facet(plotter, None)
+    assert not plotter.actors[facets.FACET].GetVisibility()
+    assert not plotter.actors[facets.NUMBER].GetVisibility()
+
+
+def test_that_a_polyhedron_is_a_shape_where_its_centre_says(cube):
+    shape = Shape(POLYHEDRON, cube, np.array([5.0, 0.0, 0.0]))
+    assert np.allclose(shape.mesh.bounds.mean(axis=0), [5.0, 0.0, 0.0])
+    assert shape.mesh.volume == pytest.approx(64000.0)
+
+
+def test_that_the_pose_of_a_plotter_is_what_the_divider_follows(plotter, divider, cube):
+    surfaces.show_polyhedron(plotter, cube)
+    apply_pose(plotter, framing_pose(cube.vertices, "right"))
+    divider.set_shown(True)
+    divider.share = 0.25
+    picture(plotter)
+    sight = Sight(pose_of(plotter), SIZE, SIZE)
+    assert np.allclose(divider.right.GetNormal(), sight.axes[0])
+    assert sight.seen(divider.right.GetOrigin())[0, 0] == pytest.approx(SIZE / 4)
+
+
+def test_that_the_same_actor_takes_the_colours_of_another_body(plotter, ball):
+    show_other(plotter, Shape(FIT, ball), False)
+    one = plotter.actors[OTHER + surfaces.SURFACE].prop.color
+    show_other(plotter, Shape(PARTICLE, icosphere(1)), False)
+    assert plotter.actors[OTHER + surfaces.SURFACE].prop.color != one

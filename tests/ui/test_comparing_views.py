@@ -1,0 +1,136 @@
+"""Wipe, overlay, section and facets as a user meets them: by command, by mouse, in the drawing."""
+
+import numpy as np
+import pytest
+from PySide6.QtCore import QPoint, Qt
+from PySide6.QtTest import QTest
+
+from regolith_studio.geometry.plane_cut import plane_cut
+from regolith_studio.scene import facets, sectioning
+from regolith_studio.scene.comparing import OTHER
+from regolith_studio.scene.sight import Sight
+from regolith_studio.scene.surfaces import SURFACE
+from regolith_studio.ui.app import open_window
+
+SECONDS = 120.0
+
+
+@pytest.fixture
+def window(shown, preferences, wait):
+    made = open_window(views="image", preferences=preferences)
+    made.resize(1100, 720)
+    shown(made)
+    wait(lambda: made.session.results.coarsened is not None and not made.session.tasks, SECONDS)
+    QTest.qWait(80)
+    return made
+
+
+def actor(window, view, name):
+    found = window.page.triptych.views[view]._plotter.actors.get(name)
+    return found if found is not None and found.GetVisibility() else None
+
+
+def switch(window, name):
+    window.menus.by_name[f"explore.{name}"].trigger()
+
+
+def pull(widget, start, end):
+    QTest.mousePress(widget, Qt.MouseButton.LeftButton, pos=QPoint(*start))
+    QTest.mouseMove(widget, QPoint(*end))
+    QTest.mouseRelease(widget, Qt.MouseButton.LeftButton, pos=QPoint(*end))
+
+
+def test_that_any_two_bodies_are_wiped_along_one_line_that_is_dragged(window):
+    views = window.page.triptych
+    switch(window, "wipe")
+    pose = views.views["fit"].pose
+    for name, frame in views.frames.items():
+        others = [key for key in ("particle", "fit", "polyhedron") if key != name]
+        for other in others:
+            frame.partner.setCurrentIndex(frame.partner.findData(other))
+            shape = views._shapes[other].mesh
+            drawn = actor(window, name, OTHER + SURFACE).mapper.dataset.points
+            assert np.allclose(np.ptp(drawn, axis=0), np.ptp(shape.vertices, axis=0), rtol=1e-4)
+    widget = views.views["fit"].widget
+    middle = widget.width() // 2
+    pull(widget, (middle, 40), (middle - 60, 50))
+    shares = [divider.share for divider in views.comparison.dividers.values()]
+    assert shares == [pytest.approx(0.5 - 60 / widget.width(), abs=0.01)] * 3
+    assert views.views["fit"].pose == pose  # the line moved, not the camera
+    pull(widget, (middle - 60, 40), (-500, 40))
+    assert views.comparison.dividers["fit"].share == pytest.approx(0.02)
+    switch(window, "wipe")
+    assert actor(window, "fit", OTHER + SURFACE) is None
+    assert views.frames["fit"].partner.isHidden()
+
+
+def test_that_the_section_draws_and_measures_what_the_plane_cuts(window):
+    views, panel = window.page.triptych, window.page.plots.section
+    switch(window, "section")
+    assert window.page.plots.left.currentWidget() is panel
+    panel.direction.setCurrentIndex(panel.direction.findData("z"))
+    panel.place.field.setValue(5.0)
+    plane = views.sections.plane
+    mesh = window.session.selected.particle.mesh
+    middle = mesh.bounds[:, 2].mean()
+    assert plane.normal == (0.0, 0.0, 1.0)  # the eye is above: the upper half is taken away
+    assert plane.offset == pytest.approx(middle + 5.0, abs=0.05)
+    labels = [curve.label for curve in panel.plot.curves]
+    area = plane_cut(mesh, (0, 0, 1), plane.offset).area
+    assert labels[0] == f"CT particle {area:,.4g} µm²"
+    assert [label.split()[0] for label in labels] == ["CT", "Fit", "Polyhedron"]
+    for name in ("particle", "fit", "polyhedron"):
+        assert actor(window, name, sectioning.CAP) is not None
+        assert actor(window, name, sectioning.CUT + "polyhedron") is not None
+    switch(window, "section")
+    assert actor(window, "fit", sectioning.CAP) is None
+    assert panel.plot.is_empty()
+
+
+def test_that_the_frame_of_the_section_is_dragged_in_a_view(window):
+    views = window.page.triptych
+    switch(window, "section")
+    views.sections.set_direction("z", np.array([0.0, 0.0, 1.0]))
+    view = views.views["particle"]
+    sight = Sight(view.pose, view.widget.width(), view.widget.height())
+    corners = sight.seen(views.sections.framed[1])
+    edges = (corners + np.roll(corners, -1, axis=0)) / 2
+    inside = [(x, y) for x, y in edges if 12 < x < sight.width - 12 and 12 < y < sight.height - 12]
+    x, y = (round(float(each)) for each in inside[0])
+    before, pose = views.sections.place, view.pose
+    pull(view.widget, (x, y), (x, y - 10))
+    steepness = np.linalg.norm(sight.seen([np.zeros(3), [0.0, 0.0, 1.0]])[0] - sight.seen([[0, 0, 1.0]])[0])
+    assert views.sections.place - before == pytest.approx(10 / steepness, rel=0.15)
+    assert window.page.plots.section.place.value() == pytest.approx(views.sections.place, abs=0.06)
+    assert view.pose == pose
+    pull(view.widget, (3, 3), (40, 30))
+    assert view.pose != pose
+
+
+def test_that_the_facet_under_the_mouse_is_outlined_numbered_and_told(window):
+    views = window.page.triptych
+    widget = views.views["polyhedron"].widget
+    QTest.mouseMove(widget, QPoint(widget.width() // 2, widget.height() // 2))
+    solid = window.session.results.coarsened.polyhedron
+    number = int(actor(window, "polyhedron", facets.NUMBER).GetInput())
+    words = facets.facet_of(solid, number - 1).words
+    assert views.frames["polyhedron"].detail.text() == words
+    assert window.statusBar().currentMessage() == words
+    towards = -Sight(views.views["polyhedron"].pose, 1, 1).axes[2]
+    assert solid.half_spaces.normals[number - 1] @ towards > 0.0
+    QTest.mouseMove(widget, QPoint(2, 2))
+    assert actor(window, "polyhedron", facets.FACET) is None
+    assert "vertices" in views.frames["polyhedron"].detail.text()
+    assert window.statusBar().currentMessage() == ""
+
+
+def test_that_one_view_after_the_other_gets_all_the_room(window):
+    frames = window.page.triptych.frames
+    for seen in (["particle"], ["fit"], ["polyhedron"], ["particle", "fit", "polyhedron"]):
+        switch(window, "enlarge")
+        assert [name for name, frame in frames.items() if not frame.isHidden()] == seen
+    title = QPoint(40, 12)
+    QTest.mouseDClick(frames["fit"], Qt.MouseButton.LeftButton, pos=title)
+    assert [name for name, frame in frames.items() if not frame.isHidden()] == ["fit"]
+    QTest.mouseDClick(frames["fit"], Qt.MouseButton.LeftButton, pos=title)
+    assert not any(frame.isHidden() for frame in frames.values())
