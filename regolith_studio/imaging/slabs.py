@@ -7,6 +7,7 @@ what is written slab by slab lies in a :class:`Scratch`, in memory or in files t
 import math
 import shutil
 import tempfile
+import weakref
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Protocol
@@ -64,6 +65,8 @@ def read_with_margin(source: SlabSource, first: int, stop: int, margin: int) -> 
 class Scratch:
     """Arrays for the time of one calculation: in memory, or in files of a temporary folder.
 
+    The folder vanishes when the scratch is closed, is forgotten, or the program ends.
+
     Parameters
     ----------
     folder
@@ -71,8 +74,11 @@ class Scratch:
     """
 
     def __init__(self, folder: Path | None = None) -> None:
-        self._folder = None if folder is None else Path(tempfile.mkdtemp(dir=folder, prefix="regolith-"))
         self._count = 0
+        self._folder, self._clear = None, None
+        if folder is not None:
+            self._folder = Path(tempfile.mkdtemp(dir=folder, prefix="regolith-"))
+            self._clear = weakref.finalize(self, _removed, self._folder)
 
     def __enter__(self) -> "Scratch":
         return self
@@ -109,5 +115,9 @@ class Scratch:
 
     def close(self) -> None:
         """Remove the files; arrays that are still in use keep what they show where the system allows it."""
-        if self._folder is not None:
-            shutil.rmtree(self._folder, ignore_errors=True)
+        if self._clear is not None:
+            self._clear()
+
+
+def _removed(folder: Path) -> None:
+    shutil.rmtree(folder, ignore_errors=True)

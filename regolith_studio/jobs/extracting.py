@@ -32,6 +32,7 @@ from regolith_studio.jobs.grain_recipe import GrainRecipe
 from regolith_studio.readers.hashing import sha256_of
 from regolith_studio.readers.volume_files import slice_names
 from regolith_studio.readers.volume_header import RawLayout
+from regolith_studio.readers.volumes import SlabSource as FileSource
 from regolith_studio.readers.volumes import open_slabs
 
 IN_MEMORY = 2**30
@@ -68,7 +69,7 @@ class VolumeInput:
     dataset: str | None = None
     raw: RawLayout | None = None
 
-    def opened(self) -> SlabSource:
+    def opened(self) -> FileSource:
         """The volume, read slab by slab.
 
         Raises
@@ -198,7 +199,8 @@ def _extracted(
     sizes = tuple(float(edge) for edge in np.ravel(np.asarray(volume.voxel_size)))
     source = Source(str(given.path), fingerprint(given.path), f"voxel:{'x'.join(f'{e:g}' for e in sizes)}")
     with Scratch(folder if _working_bytes(volume) > IN_MEMORY else None) as scratch:
-        facts, labels = None, volume
+        facts: SegmentationFacts | None = None
+        labels: SlabSource = volume
         if volume.kind == "grey":
             segmentation: Segmentation = yield from segment_volume(volume, recipe.segmentation, scratch)
             facts, labels = _facts(segmentation), segmentation.labels

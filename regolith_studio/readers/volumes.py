@@ -88,6 +88,13 @@ class SlabSource:
             voxels = _whole_numbers(self._file.path, voxels)
         return voxels.T
 
+    def mapped(self) -> NDArray[Any] | None:
+        """The voxels where they lie in the file, shape (nx, ny, nz), or ``None`` where they are packed."""
+        plain = self._file.straight
+        if plain is None or plain.slices_last or plain.stored != self.dtype:
+            return None
+        return np.memmap(plain.path, plain.stored, "r", plain.offset, self.shape[::-1]).T
+
     def slabs(self, depth: int, overlap: int = 0) -> Iterator[tuple[int, NDArray[Any]]]:
         """The volume from below: the first slice's index, and up to `depth` + `overlap` slices.
 

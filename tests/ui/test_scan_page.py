@@ -2,15 +2,20 @@
 
 import numpy as np
 import pytest
+import tifffile
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QDialogButtonBox, QFileDialog, QVBoxLayout, QWidget
 
+from regolith_studio.imaging import sections
 from regolith_studio.imaging.sample_volumes import sample_volume
 from regolith_studio.imaging.segmentation.segment import segment
+from regolith_studio.imaging.volume import Volume
+from regolith_studio.jobs import scanning
 from regolith_studio.jobs.extracting import VolumeInput
 from regolith_studio.jobs.grain_recipe import GrainRecipe, read_grain_recipe
 from regolith_studio.jobs.runners.thread import ThreadRunner
+from regolith_studio.readers.volume_header import RawLayout
 from regolith_studio.session.session import Session
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.page import PageContext
@@ -200,6 +205,62 @@ def test_that_a_raw_file_is_asked_for_its_layout(page, tmp_path, wait):
     wait(lambda: page.scan is not None, SECONDS)
     assert np.array_equal(page.scan.volume.array, array.T)
     wait(lambda: page.preview is not None, SECONDS)
+
+
+def test_that_the_name_of_a_raw_file_fills_the_form_in_and_its_size_is_checked(page, tmp_path):
+    path = tmp_path / "scan_30x20x10_uint16_be.raw"
+    path.write_bytes(bytes(30 * 20 * 10 * 2 + 64))
+    page.open(path)
+    dialog = page.findChild(VolumeDialog)
+    opens = dialog.findChild(QDialogButtonBox).button(QDialogButtonBox.StandardButton.Open)
+    assert dialog.value().raw == RawLayout((30, 20, 10), "uint16", "big", 64)
+    assert "its size agrees" in dialog.facts.text()
+    assert "all of the file" in dialog.verdict.text()
+    dialog.shape[2].setValue(9)
+    assert "1,200 bytes more" in dialog.verdict.text()
+    assert opens.isEnabled()
+    dialog.shape[2].setValue(11)
+    assert "1,200 bytes too short" in dialog.verdict.text()
+    assert not opens.isEnabled()
+    dialog.reject()
+
+
+def test_that_a_raw_file_that_is_gone_costs_one_sentence(page, tmp_path, wait):
+    page.open(tmp_path / "gone.raw")
+    wait(lambda: page.context.toast.isVisible(), SECONDS)
+    assert page.findChild(VolumeDialog) is None
+
+
+@pytest.mark.parametrize("suffix", ["npy", "tif"])
+def test_that_a_large_volume_stays_on_the_disk_and_gives_the_same_grains(
+    suffix, page, tmp_path, monkeypatch, wait
+):
+    monkeypatch.setattr(scanning, "IN_MEMORY", 100_000)
+    monkeypatch.setattr(scanning, "roomy_folder", lambda: tmp_path)
+    monkeypatch.setattr(sections, "COARSE_BYTES", 100_000)
+    array = sample_volume("grey").array[:90, :80, :70]
+    if suffix == "npy":
+        np.save(tmp_path / "big.npy", np.ascontiguousarray(array.T))
+    else:
+        tifffile.imwrite(tmp_path / "big.tif", array.T, compression="zlib")
+    page.read(VolumeInput(tmp_path / f"big.{suffix}", 2.3, kind="grey"))
+    wait(lambda: page.preview is not None, SECONDS)
+    assert isinstance(page.scan.volume.array.base, np.memmap)
+    assert bool(list(tmp_path.glob("regolith-*"))) == (suffix == "tif")
+    along_x = page.scan.sections.picture(0, 45)
+    assert np.array_equal(along_x, array[44, ::2, ::2])
+    assert np.array_equal(page.scan.sections.picture(2, 35), array[:, :, 35])
+    page.find_grains()
+    wait(lambda: page.grains is not None, SECONDS)
+    expected = segment(Volume(array, (2.3,) * 3, "grey", "big"), page.controls.value().segmentation)
+    assert np.array_equal(page.grains.labels.array, expected.labels.array)
+    assert grains_seen(page.overview.slices[2]) > 0.03
+    press(page.steps.convert)
+    wait(lambda: page.steps.show_them.isVisible(), SECONDS)
+    page.controls.split.click()
+    page.open_sample()
+    wait(lambda: page.scan.volume.name.startswith("sample"), SECONDS)
+    assert not list(tmp_path.glob("regolith-*"))
 
 
 def test_that_a_probability_map_is_thresholded_by_its_share(page, tmp_path, wait):

@@ -1,13 +1,11 @@
 """Three slices through one voxel, the histogram beside them, and the box of the preview."""
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import NDArray
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QGridLayout, QStackedLayout, QVBoxLayout, QWidget
 
 from regolith_studio.imaging.boxes import Box, box_between
+from regolith_studio.imaging.sections import Sections
 from regolith_studio.imaging.segmentation.segment import Segmentation
 from regolith_studio.jobs.scanning import Scan
 from regolith_studio.ui.pages.scan.histogram_plot import HistogramPlot
@@ -32,7 +30,7 @@ class Overview(QWidget):
         self.place = (0, 0, 0)
         self.box: Box = box_between((0, 0, 0), (1, 1, 1))
         self._scan: Scan | None = None
-        self._labels: NDArray[Any] | None = None
+        self._labels: Sections | None = None
         self._part: Box = self.box
         self._arrange()
         for view in self.slices:
@@ -49,7 +47,7 @@ class Overview(QWidget):
         """Show another volume, through its middle."""
         self._scan, self._labels = scan, None
         for view in self.slices:
-            view.set_volume(scan.volume, scan.contrast)
+            view.set_volume(scan.volume, scan.sections, scan.contrast)
             view.set_box_shown(scan.volume.kind == "grey")
         self.histogram.set_scanned(scan.seen)
         self._stack.setCurrentIndex(1)
@@ -72,16 +70,16 @@ class Overview(QWidget):
 
     def show_preview(self, found: Segmentation | None, box: Box) -> None:
         """Lay the grains of the preview over the slices."""
-        self._labels = None if found is None else found.labels.array
+        self._labels = None if found is None else Sections(found.labels.array)
         self._part = box
         self.histogram.set_denoised(None if found is None else found.seen)
         for view in self.slices:
             view.set_box_shown(True)
         self._lay_over()
 
-    def show_whole(self, found: Segmentation) -> None:
+    def show_whole(self, found: Segmentation, labels: Sections) -> None:
         """Lay the grains of the whole volume over the slices."""
-        self._labels, self._part = found.labels.array, box_between((0, 0, 0), found.labels.shape)
+        self._labels, self._part = labels, box_between((0, 0, 0), found.labels.shape)
         self.histogram.set_denoised(found.seen)
         self.histogram.set_level(found.level)
         for view in self.slices:

@@ -13,9 +13,18 @@ from regolith_studio.errors import RegolithError
 from regolith_studio.imaging.extraction import Extraction
 from regolith_studio.imaging.segmentation.segment import Segmentation, SegmentationSettings
 from regolith_studio.jobs.events import Job
-from regolith_studio.jobs.extracting import VolumeInput, extract_labels, segment_volume
+from regolith_studio.jobs.extracting import VolumeInput, extract_labels
 from regolith_studio.jobs.grain_recipe import GrainRecipe, read_grain_recipe
-from regolith_studio.jobs.scanning import Scan, look_at_file, preview_part, read_sample_scan, read_scan
+from regolith_studio.jobs.scanning import (
+    FoundGrains,
+    Scan,
+    find_grains,
+    look_at_file,
+    preview_part,
+    read_sample_scan,
+    read_scan,
+)
+from regolith_studio.readers.raw_names import layout_from_name
 from regolith_studio.readers.volume_header import VolumeHeader
 from regolith_studio.session.outputs.staging import json_bytes, write_bytes
 from regolith_studio.ui.layout import CONTROLS_WIDTH, padded, scrolled_column, side_by_side
@@ -43,7 +52,7 @@ class ScanPage(PageWidget):
         self.setAcceptDrops(True)
         self._context = context
         self.scan: Scan | None = None
-        self.grains: Segmentation | None = None
+        self._whole: FoundGrains | None = None
         self.preview: Segmentation | None = None
         self._found_with: SegmentationSettings | None = None
         self.overview, self.controls, self.steps = Overview(), SegmentationControls(), StepsPanel()
@@ -51,6 +60,11 @@ class ScanPage(PageWidget):
         self._arrange()
         self._connect()
         self._show_state()
+
+    @property
+    def grains(self) -> Segmentation | None:
+        """The grains of the whole volume, once they have been found."""
+        return self._whole.segmentation if self._whole else None
 
     def set_theme(self, theme: Theme) -> None:
         self.overview.set_theme(theme)
@@ -75,6 +89,9 @@ class ScanPage(PageWidget):
 
     def release(self) -> None:
         self._timer.stop()
+        self._forget_grains()
+        if self.scan is not None:
+            self.scan.scratch.close()
 
     # --- opening -------------------------------------------------------------------------------
 
@@ -97,7 +114,7 @@ class ScanPage(PageWidget):
         """Open a file or a folder of slices; what it does not say is asked."""
         self._context.remember("folder", str(path.parent))
         if path.suffix.lower() in RAW_SUFFIXES:
-            self._ask(path, None)
+            self._ask_layout(path)
             return
         job = Job(look_at_file, (VolumeInput(path),))
         self._context.start(
@@ -118,15 +135,28 @@ class ScanPage(PageWidget):
         else:
             self.read(VolumeInput(path))
 
-    def _ask(self, path: Path, header: VolumeHeader | None) -> None:
-        dialog = VolumeDialog(path, header, self)
+    def _ask(self, path: Path, header: VolumeHeader) -> None:
+        self._show_dialog(VolumeDialog(path, header, parent=self))
+
+    def _ask_layout(self, path: Path) -> None:
+        try:
+            layout = layout_from_name(path)
+        except RegolithError as error:
+            self._context.toast.problem(str(error))
+            return
+        self._show_dialog(VolumeDialog(path, None, layout, parent=self))
+
+    def _show_dialog(self, dialog: VolumeDialog) -> None:
         dialog.accepted.connect(lambda: self.read(dialog.value()))
         dialog.finished.connect(dialog.deleteLater)
         dialog.open()
 
     def _take(self, scan: Scan) -> None:
         self._stop_work()
-        self.scan, self.grains, self.preview = scan, None, None
+        self._forget_grains()
+        if self.scan is not None:
+            self.scan.scratch.close()
+        self.scan, self.preview = scan, None
         self.overview.set_scan(scan)
         self.controls.set_kind(scan.volume.kind)
         self._show_level()
@@ -171,7 +201,7 @@ class ScanPage(PageWidget):
             return
         self._context.stop("preview")
         settings = self.controls.value().segmentation
-        job = Job(segment_volume, (self.scan.volume, settings))
+        job = Job(find_grains, (self.scan, settings))
         self._context.start("Finding grains", job, lambda found: self._found(found, settings), lane="grains")
 
     def make_particles(self) -> None:
@@ -187,11 +217,17 @@ class ScanPage(PageWidget):
         )
         self._context.start("Making particles", job, self._adopt, lane="grains")
 
-    def _found(self, grains: Segmentation, settings: SegmentationSettings) -> None:
-        self.grains, self.preview, self._found_with = grains, None, settings
-        self.overview.show_whole(grains)
-        self.controls.show_automatic_level(grains.level)
+    def _found(self, found: FoundGrains, settings: SegmentationSettings) -> None:
+        self._forget_grains()
+        self._whole, self.preview, self._found_with = found, None, settings
+        self.overview.show_whole(found.segmentation, found.sections)
+        self.controls.show_automatic_level(found.segmentation.level)
         self._show_state()
+
+    def _forget_grains(self) -> None:
+        if self._whole is not None:
+            self._whole.scratch.close()
+        self._whole = None
 
     def _adopt(self, extraction: Extraction) -> None:
         if not extraction.found:
@@ -209,7 +245,7 @@ class ScanPage(PageWidget):
         if self.grains is not None and recipe.segmentation == self._found_with:
             self._show_state()
             return
-        self.grains = None
+        self._forget_grains()
         self._context.stop("grains")
         self._show_level()
         self._begin_preview()

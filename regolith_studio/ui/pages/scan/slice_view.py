@@ -10,6 +10,7 @@ from PySide6.QtGui import QColor, QWheelEvent
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QSlider, QVBoxLayout, QWidget
 
 from regolith_studio.imaging.boxes import Box
+from regolith_studio.imaging.sections import Sections
 from regolith_studio.imaging.volume import Volume
 from regolith_studio.ui.theme import Theme, current_theme
 
@@ -45,6 +46,7 @@ class SliceView(QWidget):
         self.axis = axis
         self.across, self.down = (each for each in range(3) if each != axis)
         self._volume: Volume | None = None
+        self._sections: Sections | None = None
         self._colours = label_colours()
         self.title = QLabel()
         self.title.setProperty("role", "heading")
@@ -66,9 +68,9 @@ class SliceView(QWidget):
         for line in self._cross:
             line.setPen(pg.mkPen(QColor(theme.accent).lighter(120), width=1, style=Qt.PenStyle.DotLine))
 
-    def set_volume(self, volume: Volume, contrast: tuple[float, float]) -> None:
+    def set_volume(self, volume: Volume, sections: Sections, contrast: tuple[float, float]) -> None:
         """Show another volume, in micrometres, whole."""
-        self._volume = volume
+        self._volume, self._sections = volume, sections
         self._grey.setLevels(contrast)
         self._grains.clear()
         with QSignalBlocker(self.slider):
@@ -78,7 +80,7 @@ class SliceView(QWidget):
 
     def show_place(self, place: tuple[int, int, int], box: Box) -> None:
         """Show the slice through a voxel, where the voxel is, and where the box of the preview is."""
-        if self._volume is None:
+        if self._volume is None or self._sections is None:
             return
         number, count = place[self.axis], self._volume.shape[self.axis]
         with QSignalBlocker(self.slider):
@@ -86,12 +88,13 @@ class SliceView(QWidget):
         self.title.setText(
             f"{AXES[self.across]}{AXES[self.down]}, {AXES[self.axis]} = {number + 1} of {count}"
         )
-        picture = np.take(self._volume.array, number, axis=self.axis)
+        picture = self._sections.picture(self.axis, number)
+        whole = (self._volume.shape[self.across], self._volume.shape[self.down])
         if self._volume.kind == "labels":
             self._grey.clear()
-            self._set(self._grains, self._painted(picture), (0, 0), picture.shape)
+            self._set(self._grains, self._painted(picture), (0, 0), whole)
         else:
-            self._set(self._grey, np.asarray(picture, dtype=np.float32), (0, 0), picture.shape)
+            self._set(self._grey, np.asarray(picture, dtype=np.float32), (0, 0), whole)
         for line, each in zip(self._cross, (self.across, self.down), strict=True):
             line.setValue((place[each] + 0.5) * self._volume.voxel_size[each])
         corner = self._rectangle(
@@ -101,7 +104,7 @@ class SliceView(QWidget):
         self._frame.setRect(corner)
         self._frame.setVisible(box[self.axis].start <= number < box[self.axis].stop)
 
-    def show_grains(self, labels: NDArray[Any] | None, box: Box, number: int) -> None:
+    def show_grains(self, labels: Sections | None, box: Box, number: int) -> None:
         """Lay the grains of a part of the volume over the slice; none where the part does not reach it."""
         side = box[self.axis]
         if self._volume is None or self._volume.kind == "labels":
@@ -109,9 +112,10 @@ class SliceView(QWidget):
         if labels is None or not side.start <= number < side.stop:
             self._grains.clear()
             return
-        picture = np.take(labels, number - side.start, axis=self.axis)
+        picture = labels.picture(self.axis, number - side.start)
         start = (box[self.across].start, box[self.down].start)
-        self._set(self._grains, self._painted(picture), start, picture.shape)
+        size = (_length(box[self.across]), _length(box[self.down]))
+        self._set(self._grains, self._painted(picture), start, size)
 
     def set_box_shown(self, shown: bool) -> None:
         """Whether the box of the preview is drawn."""
@@ -121,9 +125,10 @@ class SliceView(QWidget):
         number = labels.astype(np.int64)
         return self._colours[np.where(number > 0, (number - 1) % 255 + 1, 0)]
 
-    def _set(self, item: Any, picture: NDArray[Any], start: tuple[int, int], shape: tuple[int, ...]) -> None:
+    def _set(self, item: Any, picture: NDArray[Any], start: tuple[int, int], size: tuple[int, int]) -> None:
+        """Draw a picture over so many voxels, whether it has as many pixels or fewer."""
         item.setImage(picture, autoLevels=False)
-        item.setRect(self._rectangle(start, (shape[0], shape[1])))
+        item.setRect(self._rectangle(start, size))
 
     def _rectangle(self, start: tuple[int, int], size: tuple[int, int]) -> QRectF:
         assert self._volume is not None

@@ -1,8 +1,10 @@
 """Asks what a file of voxels does not say about itself."""
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
 from PySide6.QtWidgets import (
     QDialog,
     QDialogButtonBox,
@@ -22,7 +24,7 @@ from regolith_studio.ui.widgets.labels import remark
 
 RAW_SUFFIXES = (".raw", ".bin", ".vol", ".dat")
 UNITS = (("um", "µm"), ("mm", "mm"), ("nm", "nm"), ("cm", "cm"), ("m", "m"))
-_TYPES = ("uint8", "uint16", "int16", "uint32", "int32", "float32", "float64")
+_TYPES = ("uint8", "int8", "uint16", "int16", "uint32", "int32", "uint64", "int64", "float32", "float64")
 
 
 class VolumeDialog(QDialog):
@@ -34,13 +36,21 @@ class VolumeDialog(QDialog):
         The file, or the folder of slices.
     header
         What it says about itself; none for a raw file.
+    layout
+        What the name of a raw file tells, if anything.
     """
 
-    def __init__(self, path: Path, header: VolumeHeader | None, parent: QWidget | None = None) -> None:
+    def __init__(
+        self,
+        path: Path,
+        header: VolumeHeader | None,
+        layout: RawLayout | None = None,
+        parent: QWidget | None = None,
+    ) -> None:
         super().__init__(parent)
         self.setWindowTitle("Open a volume")
         self.setObjectName("volume_dialog")
-        self._path, self._header = path, header
+        self._path, self._header, self._layout = path, header, layout
         self.edges = [_number(f"voxel_{axis}", f"Edge of a voxel along {axis}") for axis in "xyz"]
         self.unit = choice("voxel_unit", "Unit of the voxel size", UNITS)
         self.dataset = choice("dataset", "Volume in the file", ())
@@ -52,10 +62,21 @@ class VolumeDialog(QDialog):
             "kind", "What the volume holds",
             ((None, "Whatever it looks like"), ("grey", "Grey values"), ("labels", "Labels of grains")),
         )  # fmt: skip
+        self._said = "A raw file says nothing about itself: how many voxels are in it, and of which type?"
+        self.verdict, self.facts = remark(), remark()
+        self._buttons = QDialogButtonBox(
+            QDialogButtonBox.StandardButton.Open | QDialogButtonBox.StandardButton.Cancel
+        )
         self._arrange()
         self._suggest()
+        self.facts.setText(self._facts())
         self.edges[0].valueChanged.connect(self._follow)
         self._last = self.edges[0].value()
+        if header is None:
+            for field in (*self.shape, self.offset):
+                field.valueChanged.connect(self._check_size)
+            self.dtype.currentIndexChanged.connect(self._check_size)
+            self._check_size()
 
     def value(self) -> VolumeInput:
         """The answer."""
@@ -86,8 +107,7 @@ class VolumeDialog(QDialog):
         for field in self.edges:
             field.setValue(2.3)
         if header is None:
-            for count in self.shape:
-                count.setValue(256)
+            self._suggest_layout(self._layout)
             return
         if header.voxel_size is not None:
             for field, edge in zip(self.edges, header.voxel_size, strict=True):
@@ -99,6 +119,32 @@ class VolumeDialog(QDialog):
             )
         self.dataset.setCurrentIndex(max(0, self.dataset.findData(header.dataset)))
 
+    def _suggest_layout(self, layout: RawLayout | None) -> None:
+        """What the file's name says, if its size agrees; else a cube of bytes of the file's size."""
+        if layout is None:
+            edge = max(1, round(self._path.stat().st_size ** (1 / 3)))
+            layout = RawLayout((edge, edge, edge), "uint8")
+        else:
+            self._said = "Its name says how many voxels are in it, and its size agrees."
+        for count, edge in zip(self.shape, layout.shape, strict=True):
+            count.setValue(edge)
+        self.dtype.setCurrentIndex(max(0, self.dtype.findData(layout.dtype)))
+        self.order.setCurrentIndex(max(0, self.order.findData(layout.byte_order)))
+        self.offset.setValue(layout.offset)
+
+    def _check_size(self, _changed: int = 0) -> None:
+        """Say at once whether the file has as many bytes as its layout needs, and open only then."""
+        voxels = math.prod(field.value() for field in self.shape)
+        needed = voxels * np.dtype(str(self.dtype.currentData())).itemsize + self.offset.value()
+        there = self._path.stat().st_size
+        if needed == there:
+            self.verdict.setText(f"That is all of the file's {there:,} bytes.")
+        elif needed < there:
+            self.verdict.setText(f"The file has {there - needed:,} bytes more than that.")
+        else:
+            self.verdict.setText(f"The file is {needed - there:,} bytes too short for that.")
+        self._buttons.button(QDialogButtonBox.StandardButton.Open).setEnabled(needed <= there)
+
     def _arrange(self) -> None:
         header = self._header
         form = QFormLayout()
@@ -107,24 +153,22 @@ class VolumeDialog(QDialog):
             form.addRow("Type", self.dtype)
             form.addRow("Byte order", self.order)
             form.addRow("Bytes before", self.offset)
+            form.addRow(self.verdict)
         elif len(header.datasets) > 1:
             form.addRow("Volume", self.dataset)
         form.addRow("Voxel size x, y, z", _row([*self.edges, self.unit]))
         form.addRow("Holds", self.kind)
         layout = QVBoxLayout(self)
         layout.addWidget(QLabel(self._path.name))
-        layout.addWidget(remark(self._facts()))
+        layout.addWidget(self.facts)
         layout.addLayout(form)
-        buttons = QDialogButtonBox(
-            QDialogButtonBox.StandardButton.Open | QDialogButtonBox.StandardButton.Cancel
-        )
-        buttons.accepted.connect(self.accept)
-        buttons.rejected.connect(self.reject)
-        layout.addWidget(buttons)
+        self._buttons.accepted.connect(self.accept)
+        self._buttons.rejected.connect(self.reject)
+        layout.addWidget(self._buttons)
 
     def _facts(self) -> str:
         if self._header is None:
-            return "A raw file says nothing about itself: how many voxels are in it, and of which type?"
+            return self._said
         edges = " × ".join(map(str, self._header.shape))
         said = " ".join(self._header.notes)
         size = "" if self._header.voxel_size else " It does not say how large a voxel is."

@@ -1,0 +1,63 @@
+"""Pictures of the slices of a volume that may be larger than the memory."""
+
+from collections.abc import Generator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from regolith_studio.imaging.slabs import SlabSource
+
+COARSE_BYTES = 2**28
+"""Of the copy with fewer voxels; 512^3 voxels of 16 bits."""
+
+
+@dataclass(frozen=True, eq=False)
+class Sections:
+    """Slices in the three directions.
+
+    In a file whose slices along z follow each other, a slice along x is scattered over every page: it is
+    taken from a copy of every `step`-th voxel instead.
+
+    Parameters
+    ----------
+    array
+        The voxels, shape (nx, ny, nz), in memory or mapped from a file.
+    coarse
+        Every `step`-th voxel along each axis, in memory; ``None`` where `array` is in memory itself.
+    step
+        1 where there is no copy.
+    """
+
+    array: NDArray[Any]
+    coarse: NDArray[Any] | None = None
+    step: int = 1
+
+    def picture(self, axis: int, number: int) -> NDArray[Any]:
+        """The slice `number` along `axis`; along x one of every `step`-th voxel."""
+        if axis == 0 and self.coarse is not None:
+            return np.asarray(self.coarse[min(number // self.step, len(self.coarse) - 1)])
+        return np.asarray(np.take(self.array, number, axis=axis))
+
+    @property
+    def sample(self) -> NDArray[Any]:
+        """Voxels from all over the volume, in memory."""
+        return self.array if self.coarse is None else self.coarse
+
+
+def coarse_step(nbytes: int) -> int:
+    """How many voxels apart those of a copy of at most :data:`COARSE_BYTES` must lie."""
+    return max(1, int(np.ceil((nbytes / COARSE_BYTES) ** (1 / 3) - 1e-9)))
+
+
+def coarse_copy(source: SlabSource) -> Generator[tuple[int, int], None, tuple[NDArray[Any], int]]:
+    """Every n-th voxel of a volume and n, read slice by slice; tells how many are done, of how many."""
+    nx, ny, nz = source.shape
+    step = coarse_step(nx * ny * nz * source.dtype.itemsize)
+    places = range(0, nz, step)
+    copy = np.empty((len(places), -(-ny // step), -(-nx // step)), source.dtype)
+    for at, z in enumerate(places):
+        copy[at] = source.read(z, z + 1)[::step, ::step, 0].T
+        yield at + 1, len(places)
+    return copy.T, step
