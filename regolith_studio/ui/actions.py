@@ -28,6 +28,7 @@ ROWS: tuple[ActionSpec, ...] = (
         "&File", "export", "&Export dataset …", "export", "Ctrl+E", "Export a DEM dataset", None, "words"
     ),
     ActionSpec("&File", "save_recipe", "Save re&cipe …", "recipe", "Ctrl+Alt+S", "For regolith-studio run"),
+    ActionSpec("&File", "run_batch", "Run as a &batch …", "", "Ctrl+Alt+R", "Here or on a cluster"),
     ActionSpec("&File", BREAK, ""),
     ActionSpec("&File", "save_project", "&Save project", "", "Ctrl+S"),
     ActionSpec("&File", "save_project_as", "Save project &as …", "", "Ctrl+Shift+S"),

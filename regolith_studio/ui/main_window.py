@@ -14,6 +14,7 @@ from regolith_studio.session.project import SUFFIX
 from regolith_studio.session.session import Session
 from regolith_studio.ui.actions import Actions
 from regolith_studio.ui.activity import ActivityDock
+from regolith_studio.ui.batches import Batches
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.dialogs.closing import may_close, worth_asking
 from regolith_studio.ui.dialogs.command_palette import CommandPalette
@@ -53,6 +54,7 @@ class MainWindow(QMainWindow):
         choose_theme(str(preferences.window.get("theme", "system")))
         self.toast = Toast(self)
         self.commands = Commands(session, preferences, self.toast, self)
+        self.batches = Batches(session, preferences, self.toast, self)
         self.wiring = Wiring(session, self.toast.problem, self)
         self.pages = PageStack(pages(), self._context)
         self.projects = Projects(session, self.pages, self.toast, self)
@@ -97,6 +99,7 @@ class MainWindow(QMainWindow):
             **{name: getattr(self.commands, name) for name in (*ours, *copying)},
             **{f"theme_{name}": partial(self._choose_theme, name) for name in ("system", *THEMES)},
             **{name: partial(self.activity.show_tab, name) for name in ("tasks", "log")},
+            "run_batch": self.batches.ask,
             "save_project": self.projects.save,
             "save_project_as": self.projects.save_as,
             "palette": self._open_palette,
@@ -121,6 +124,7 @@ class MainWindow(QMainWindow):
         self.projects.changed.connect(lambda: self.setWindowTitle(self.projects.title()))
         wiring.refresh("tasks", lambda: self.tasks.setValue(session.tasks), slow=True)
         wiring.refresh("tasks", self.commands.show_tasks, slow=True)
+        wiring.refresh("tasks", self.batches.show_tasks, slow=True)
         wiring.hear("choices", self._show_undo)
         self._show_undo()
         wiring.hear("failed", lambda failure: self.toast.problem(failure.sentence, failure.details))

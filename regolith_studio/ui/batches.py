@@ -1,0 +1,108 @@
+"""Runs recipes from the window, on this machine or on a cluster."""
+
+from pathlib import Path
+
+from PySide6.QtCore import QObject
+from PySide6.QtWidgets import QWidget
+
+from regolith_studio.errors import RegolithError
+from regolith_studio.jobs.events import Failed, Job
+from regolith_studio.session.hired import Hired, perform_hired
+from regolith_studio.session.performing import Performed
+from regolith_studio.session.preferences import Preferences
+from regolith_studio.session.project import inputs_of, without_file
+from regolith_studio.session.recipe import Recipe, read_recipe
+from regolith_studio.session.session import Session
+from regolith_studio.ui.dialogs.batch import BatchDialog, BatchOrder
+from regolith_studio.ui.widgets.toast import Toast
+
+TITLE = "Running the recipe"
+
+
+class Batches(QObject):
+    """One batch at a time; its dialog can be closed and opened again while it runs.
+
+    Parameters
+    ----------
+    session
+        Whose particles and choices make the recipe, and who runs it.
+    preferences
+        Who worked last.
+    toast
+        Says how it ended where the dialog is closed.
+    window
+        Parent of the dialog.
+    """
+
+    def __init__(self, session: Session, preferences: Preferences, toast: Toast, window: QWidget) -> None:
+        super().__init__(window)
+        self._session, self._preferences, self._toast, self._window = session, preferences, toast, window
+        self._dialog: BatchDialog | None = None
+        self._task = 0
+
+    def ask(self) -> None:
+        """Show the dialog: a new one, unless one is open or its batch runs."""
+        if self._dialog is None or not (self._task or self._dialog.isVisible()):
+            self._renew()
+        assert self._dialog is not None
+        self._dialog.show()
+        self._dialog.raise_()
+
+    def show_tasks(self) -> None:
+        """Tell the dialog how far the batch is."""
+        mine = [task for task in self._session.tasks if task.id == self._task]
+        if mine and self._dialog is not None:
+            self._dialog.show_task(mine[0])
+
+    def _renew(self) -> None:
+        if self._dialog is not None:
+            self._dialog.close()
+            self._dialog.deleteLater()
+        count, unsaved = len(self._session.particles), len(without_file(self._session))
+        self._dialog = BatchDialog(count, unsaved, Path.home() / "regolith-results", self._window)
+        self._dialog.remember(self._preferences.window.get("batch", {}))
+        self._dialog.started.connect(self._start)
+        self._dialog.stopped.connect(lambda: self._session.cancel(self._task))
+
+    def _start(self, order: BatchOrder) -> None:
+        dialog = self._dialog
+        assert dialog is not None
+        self._preferences.window = self._preferences.window | {"batch": dialog.remembered()}
+        try:
+            recipe = self._recipe(order)
+        except RegolithError as error:
+            dialog.finish(str(error))
+            return
+        base = order.recipe.parent if order.recipe else Path.cwd()
+        job = Job(perform_hired, (recipe, base, order.folder, order.hiring, order.resume))
+        self._task = self._session.run(
+            "batch", TITLE, job, self._done, self._hired, self._failed, self._stopped
+        )
+        self.show_tasks()
+
+    def _recipe(self, order: BatchOrder) -> Recipe:
+        if order.recipe:
+            return read_recipe(order.recipe)
+        return Recipe.from_choices(self._session.choices, inputs_of(self._session), order.outputs)
+
+    def _hired(self, value: object) -> None:
+        if isinstance(value, Hired) and self._dialog is not None:
+            self._dialog.show_hired(value)
+
+    def _done(self, done: Performed) -> None:
+        failed = f" {len(done.problems)} problems are listed in failed.csv." if done.problems else ""
+        self._end(f"Done: {len(done.files)} files in {done.folder}.{failed}", report=True)
+
+    def _failed(self, failure: Failed) -> None:
+        self._end(failure.sentence)
+        self._toast.problem(failure.sentence, failure.details)
+
+    def _stopped(self) -> None:
+        self._end("Stopped. What was done is kept: run again into the same folder to go on.")
+
+    def _end(self, sentence: str, report: bool = False) -> None:
+        self._task = 0
+        if self._dialog is not None:
+            self._dialog.finish(sentence, report)
+        if self._dialog is None or not self._dialog.isVisible():
+            self._toast.note(sentence)

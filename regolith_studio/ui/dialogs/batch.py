@@ -1,0 +1,234 @@
+"""A recipe as a batch, on this machine or on a cluster: what, where and by whom; then its progress."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from PySide6.QtCore import Qt, QUrl, Signal
+from PySide6.QtGui import QDesktopServices
+from PySide6.QtWidgets import (
+    QCheckBox,
+    QDialog,
+    QDialogButtonBox,
+    QFormLayout,
+    QGridLayout,
+    QLabel,
+    QProgressBar,
+    QVBoxLayout,
+    QWidget,
+)
+
+from regolith_studio.errors import InputError
+from regolith_studio.jobs.hiring import Hiring
+from regolith_studio.session.hired import Hired, is_unfinished
+from regolith_studio.session.recipe import Outputs
+from regolith_studio.session.tasks import Task
+from regolith_studio.ui.dialogs.batch_fields import PathField, SourceField, WorkersField
+from regolith_studio.ui.widgets.labels import remark
+
+RESULTS = {
+    "descriptors": "Descriptors",
+    "fits": "Fits",
+    "meshes": "Polyhedra (STL)",
+    "dataset": "Dataset",
+    "lmax_study": "Study of l_max",
+    "coarsening_study": "Study of the coarsening",
+    "summary": "Report (HTML)",
+}
+
+
+@dataclass(frozen=True)
+class BatchOrder:
+    """What the user asked for.
+
+    Parameters
+    ----------
+    recipe
+        File; ``None`` for the open particles and the present choices.
+    folder
+        Where the results go.
+    resume
+        Whether to go on with the run that has not ended there.
+    outputs
+        What is written; a recipe file says that itself.
+    hiring
+        Who works.
+    """
+
+    recipe: Path | None
+    folder: Path
+    resume: bool
+    outputs: Outputs
+    hiring: Hiring
+
+
+class BatchDialog(QDialog):
+    """Asks, then shows the progress; closing it stops nothing.
+
+    Emits ``started`` with the order, and ``stopped``.
+    """
+
+    started = Signal(object)
+    stopped = Signal()
+
+    def __init__(self, count: int, unsaved: int, folder: Path, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setWindowTitle("Run as a batch")
+        self.setObjectName("batch_dialog")
+        self.setMinimumWidth(600)
+        self._running = False
+        self.source = SourceField(count, unsaved)
+        self.folder = PathField("batch_folder", "Folder of the results", folder=True)
+        self.folder.setValue(folder)
+        self.results = {key: QCheckBox(label) for key, label in RESULTS.items()}
+        for key, box in self.results.items():
+            box.setObjectName(f"batch_{key}")
+            box.setChecked(getattr(Outputs(), key))
+        self.resume = QCheckBox("Go on with the run that has not ended")
+        self.resume.setObjectName("batch_resume")
+        self.resume.setChecked(True)
+        self.workers = WorkersField()
+        self.state, self.place = remark(), QLabel()
+        self.state.setObjectName("batch_state")
+        self.place.setObjectName("batch_dashboard")
+        self.place.setOpenExternalLinks(True)
+        self.place.setTextInteractionFlags(Qt.TextInteractionFlag.TextBrowserInteraction)
+        self.bar = QProgressBar()
+        self.bar.setAccessibleName("Progress of the batch")
+        self._buttons()
+        self._arrange()
+        for changed in (self.source.changed, self.folder.changed, self.workers.changed):
+            changed.connect(self._judge)
+        for box in (*self.results.values(), self.resume):
+            box.toggled.connect(self._judge)
+        self._judge()
+
+    def value(self) -> BatchOrder:
+        """The order.
+
+        Raises
+        ------
+        InputError
+            If it cannot be given yet, saying why.
+        """
+        folder = self.folder.value()
+        if folder is None or folder.is_file():
+            raise InputError("Name a folder for the results.")
+        outputs = Outputs(**{key: box.isChecked() for key, box in self.results.items()})
+        if self.source.value() is None and not any(box.isChecked() for box in self.results.values()):
+            raise InputError("Choose what is to be written.")
+        resume = is_unfinished(folder) and self.resume.isChecked()
+        return BatchOrder(self.source.checked(), folder, resume, outputs, self.workers.value())
+
+    def remembered(self) -> dict[str, Any]:
+        """What the next dialog may suggest, as plain JSON."""
+        results = [key for key, box in self.results.items() if box.isChecked()]
+        return {"results": results, "workers": self.workers.remembered()}
+
+    def remember(self, known: Mapping[str, Any]) -> None:
+        """Suggest what was given before; what is not understood is left out."""
+        if isinstance(results := known.get("results"), list):
+            for key, box in self.results.items():
+                box.setChecked(key in results)
+        if isinstance(workers := known.get("workers"), dict):
+            self.workers.remember(workers)
+
+    def show_task(self, task: Task) -> None:
+        """Show how far the work is."""
+        self.bar.setRange(0, task.total)
+        self.bar.setValue(task.done)
+        count = f"{task.done:,} of {task.total:,}" if task.total else ""
+        self.state.setText(", ".join(filter(None, [f"{task.title} {count}".strip(), task.message])))
+
+    def show_hired(self, hired: Hired) -> None:
+        """Say who works, and where that can be watched."""
+        who = "1 worker" if hired.workers == 1 else f"{hired.workers} workers"
+        page = f', watched at <a href="{hired.dashboard}">{hired.dashboard}</a>' if hired.dashboard else ""
+        self.place.setText(f"{who}{page}")
+        self.place.show()
+
+    def finish(self, sentence: str, report: bool = False) -> None:
+        """The work has ended, in whichever way; the fields can be edited again."""
+        self._set_running(False)
+        self.place.hide()
+        self._judge()
+        self.state.setText(sentence)
+        self.report.setVisible(report)
+
+    def _buttons(self) -> None:
+        self.box = QDialogButtonBox(QDialogButtonBox.StandardButton.Close)
+        self.go = self.box.addButton("Run", QDialogButtonBox.ButtonRole.ActionRole)
+        self.halt = self.box.addButton("Stop", QDialogButtonBox.ButtonRole.ActionRole)
+        self.report = self.box.addButton("Open the results", QDialogButtonBox.ButtonRole.ActionRole)
+        for name, button in (("go", self.go), ("stop", self.halt), ("results", self.report)):
+            button.setObjectName(f"batch_{name}")
+        self.go.setDefault(True)
+        self.go.clicked.connect(self._start)
+        self.halt.clicked.connect(self.stopped.emit)
+        self.report.clicked.connect(self._open_results)
+        self.box.rejected.connect(self.close)
+
+    def _arrange(self) -> None:
+        grid = QGridLayout()
+        for at, box in enumerate(self.results.values()):
+            grid.addWidget(box, at // 3, at % 3)
+        form = QFormLayout()
+        form.setVerticalSpacing(7)
+        form.addRow("Recipe:", self.source)
+        form.addRow("Write:", grid)
+        form.addRow("Into:", self.folder)
+        form.addRow("", self.resume)
+        form.addRow("Work done by:", self.workers)
+        layout = QVBoxLayout(self)
+        layout.addLayout(form)
+        layout.addWidget(
+            remark("The results are the same bytes whoever works, and a run that was stopped can go on.")
+        )
+        layout.addStretch(1)
+        for widget in (self.state, self.place, self.bar, self.box):
+            layout.addWidget(widget)
+        for hidden in (self.bar, self.place, self.halt, self.report):
+            hidden.hide()
+
+    def _judge(self) -> None:
+        if self._running:
+            return
+        folder = self.folder.value()
+        self.resume.setVisible(folder is not None and is_unfinished(folder))
+        for box in self.results.values():
+            box.setEnabled(self.source.value() is None)
+        self.report.hide()
+        try:
+            order = self.value()
+        except InputError as error:
+            sentence = str(error)
+        else:
+            blocked = is_unfinished(order.folder) and not order.resume
+            sentence = "The folder holds a run that has not ended: go on with it, or choose another folder."
+            sentence = sentence if blocked else ""
+        self.state.setText(sentence)
+        self.go.setEnabled(not sentence)
+
+    def _set_running(self, running: bool) -> None:
+        self._running = running
+        fields = (self.source, self.folder, self.resume, self.workers, self.go, *self.results.values())
+        for widget in fields:
+            widget.setEnabled(not running)
+        self.halt.setVisible(running)
+        self.bar.setVisible(running)
+
+    def _start(self) -> None:
+        order = self.value()
+        self._set_running(True)
+        self.report.hide()
+        self.place.hide()
+        self.bar.setRange(0, 0)
+        self.state.setText("Starting …")
+        self.started.emit(order)
+
+    def _open_results(self) -> None:
+        folder = self.folder.value()
+        if folder is not None:
+            page = folder / "summary.html"
+            QDesktopServices.openUrl(QUrl.fromLocalFile(str(page if page.is_file() else folder)))

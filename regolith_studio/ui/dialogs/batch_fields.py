@@ -1,0 +1,195 @@
+"""Fields of the batch dialog: a path, where the recipe comes from, and who works."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import (
+    QComboBox,
+    QFileDialog,
+    QFormLayout,
+    QHBoxLayout,
+    QLineEdit,
+    QPushButton,
+    QSpinBox,
+    QVBoxLayout,
+    QWidget,
+)
+
+from regolith_studio.errors import InputError
+from regolith_studio.jobs.hiring import TLS_NAMES, Hiring
+from regolith_studio.jobs.runners.process_pool import cores
+from regolith_studio.jobs.runners.scheduler_address import SchedulerAddress
+from regolith_studio.ui.widgets.labels import remark
+
+PLACES = {
+    "processes": "Processes of this machine",
+    "local": "A Dask cluster started on this machine",
+    "address": "A Dask cluster at an address",
+}
+
+
+class PathField(QWidget):
+    """A path with a button that asks for it."""
+
+    changed = Signal()
+
+    def __init__(self, name: str, title: str, *, folder: bool, filter: str = "") -> None:
+        super().__init__()
+        self._title, self._folder, self._filter = title, folder, filter
+        self.text = QLineEdit()
+        self.text.setObjectName(name)
+        self.text.setAccessibleName(title)
+        self.browse = QPushButton("Browse …")
+        layout = QHBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(self.text, 1)
+        layout.addWidget(self.browse)
+        self.browse.clicked.connect(self._ask)
+        self.text.textChanged.connect(self.changed)
+
+    def value(self) -> Path | None:
+        """The path; ``None`` where there is none."""
+        text = self.text.text().strip()
+        return Path(text).expanduser() if text else None
+
+    def setValue(self, path: Path | None) -> None:
+        """Show another path."""
+        self.text.setText("" if path is None else str(path))
+
+    def _ask(self) -> None:
+        if self._folder:
+            name = QFileDialog.getExistingDirectory(self, self._title, self.text.text())
+        else:
+            name, _ = QFileDialog.getOpenFileName(self, self._title, self.text.text(), self._filter)
+        if name:
+            self.text.setText(name)
+
+
+class SourceField(QWidget):
+    """The open particles with the present choices, or a recipe file."""
+
+    changed = Signal()
+
+    def __init__(self, count: int, unsaved: int) -> None:
+        super().__init__()
+        self._count = count - unsaved
+        self.kind = QComboBox()
+        self.kind.setObjectName("batch_source")
+        self.kind.setAccessibleName("Recipe")
+        self.kind.addItem(f"The files of the {self._count} open particles, as chosen now", "open")
+        self.kind.addItem("A recipe file", "file")
+        self.file = PathField("batch_recipe", "Recipe", folder=False, filter="Recipes (*.json)")
+        self.missing = remark(
+            f"{unsaved} of the open particles come from no file and cannot be part of a batch.", "warning"
+        )
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        for widget in (self.kind, self.file, self.missing):
+            layout.addWidget(widget)
+        self.kind.currentIndexChanged.connect(self._changed)
+        self.file.changed.connect(self._changed)
+        self.kind.setCurrentIndex(0 if self._count else 1)
+        self._unsaved = unsaved
+        self._changed()
+
+    def value(self) -> Path | None:
+        """The file; ``None`` for the open particles."""
+        return (self.file.value() or Path()) if self.kind.currentData() == "file" else None
+
+    def checked(self) -> Path | None:
+        """As :meth:`value`.
+
+        Raises
+        ------
+        InputError
+            If there is no such file, or no particle.
+        """
+        path = self.value()
+        if path is None and self._count < 1:
+            raise InputError("No open particle comes from a file: open some, or choose a recipe file.")
+        if path is not None and not path.is_file():
+            raise InputError("Choose a recipe file.")
+        return path
+
+    def _changed(self) -> None:
+        ours = self.kind.currentData() == "open"
+        self.file.setVisible(not ours)
+        self.missing.setVisible(ours and self._unsaved > 0)
+        self.changed.emit()
+
+
+class WorkersField(QWidget):
+    """Edits a :class:`Hiring`."""
+
+    changed = Signal()
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.place = QComboBox()
+        self.place.setObjectName("batch_place")
+        self.place.setAccessibleName("Work done by")
+        for key, label in PLACES.items():
+            self.place.addItem(label, key)
+        self.count = QSpinBox()
+        self.count.setObjectName("batch_workers")
+        self.count.setAccessibleName("Number of processes")
+        self.count.setRange(1, 1024)
+        self.count.setValue(cores())
+        self.address = QLineEdit()
+        self.address.setObjectName("batch_address")
+        self.address.setAccessibleName("Address of the scheduler")
+        self.address.setPlaceholderText("tcp://HOST:8786 or tls://HOST:8786")
+        self.tls = PathField("batch_tls", f"Folder with {', '.join(TLS_NAMES)}", folder=True)
+        self.tls.text.setPlaceholderText(f"folder with {', '.join(TLS_NAMES)}")
+        self._form = QFormLayout(self)
+        self._form.setContentsMargins(0, 0, 0, 0)
+        self._form.addRow(self.place)
+        self._form.addRow("Processes", self.count)
+        self._form.addRow("Scheduler", self.address)
+        self._form.addRow("Certificates", self.tls)
+        self.place.currentIndexChanged.connect(self._changed)
+        self.count.valueChanged.connect(self._changed)
+        self.address.textChanged.connect(self._changed)
+        self.tls.changed.connect(self._changed)
+        self._changed()
+
+    def value(self) -> Hiring:
+        """Who shall work.
+
+        Raises
+        ------
+        InputError
+            If the address has not its form, or certificates are missing.
+        """
+        place = self.place.currentData()
+        if place == "processes":
+            return Hiring("processes", self.count.value())
+        if place == "local":
+            return Hiring("dask", self.count.value())
+        address = SchedulerAddress.parsed(self.address.text())
+        tls = self.tls.value() if address.scheme == "tls" else None
+        missing = [name for name in TLS_NAMES if tls and not (tls / name).is_file()]
+        if address.scheme == "tls" and (tls is None or missing):
+            raise InputError(f"An encrypted cluster needs a folder with {', '.join(TLS_NAMES)}.")
+        return Hiring("dask", 0, str(address), tls)
+
+    def remembered(self) -> dict[str, str]:
+        """For the next sitting."""
+        tls = self.tls.text.text()
+        return {"place": str(self.place.currentData()), "address": self.address.text(), "tls": tls}
+
+    def remember(self, known: Mapping[str, Any]) -> None:
+        """Suggest what was given before."""
+        self.place.setCurrentIndex(max(0, self.place.findData(known.get("place"))))
+        self.address.setText(str(known.get("address", "")))
+        self.tls.text.setText(str(known.get("tls", "")))
+
+    def _changed(self) -> None:
+        remote = self.place.currentData() == "address"
+        encrypted = self.address.text().strip().startswith("tls://")
+        self._form.setRowVisible(self.count, not remote)
+        self._form.setRowVisible(self.address, remote)
+        self._form.setRowVisible(self.tls, remote and encrypted)
+        self.changed.emit()
