@@ -98,3 +98,11 @@ def test_that_a_moving_wall_drags_what_touches_it() -> None:
 def test_that_bad_settings_are_one_sentence() -> None:
     with pytest.raises(InputError, match="time_step"):
         MujocoSettings(time_step=1.0)
+
+
+def test_that_the_memory_for_contacts_grows_with_the_number_and_not_with_its_square(boxes: Dataset) -> None:
+    small, large = (
+        build(prepare(boxes, ReposeCase(n_particles=n)), MujocoSettings()).model.narena for n in (500, 2000)
+    )
+    assert large < 4 * small
+    assert 100_000 * 2000 < large < 1e9

@@ -208,6 +208,9 @@ def _checks(run: _Run) -> Checks:
     at_rest = run.calm_since is not None and run.time - run.calm_since >= run.settings.calm_time
     kinetic = float(run.data.energy[1]) / len(run.prepared)
     problems = []
+    full = (mujoco.mjtWarning.mjWARN_CONTACTFULL, mujoco.mjtWarning.mjWARN_CNSTRFULL)
+    if any(run.data.warning[each].number for each in full):
+        problems.append("MuJoCo had no room for all contacts.")
     if kept < len(run.prepared):
         problems.append(f"{len(run.prepared) - kept} particles fell through the plate.")
     if largest > LARGEST_OVERLAP:
