@@ -1,18 +1,40 @@
 """Spheres inside a convex polyhedron that fill as much of it as they can: greedy, from the largest down."""
 
+from dataclasses import dataclass
+
 import numpy as np
 from scipy.optimize import linprog
 from scipy.spatial.distance import cdist
 from scipy.stats import qmc
 
-from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.arrays import BoolArray, FloatArray
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.geometry.directions import fibonacci_directions
 
 PROBES = 4096
 """Points that the fit tries to cover; a power of two for Sobol's sequence."""
 CENTRES = 1500
 """Places for a sphere that are tried."""
 VOLUME_PROBES = 1 << 16
+SURFACE_PROBES = 4096
+"""Points on each sphere that are looked at for the area of the union."""
+
+
+@dataclass(frozen=True)
+class FitErrors:
+    """How the union of spheres differs from the polyhedron that it stands for, as shares.
+
+    Parameters
+    ----------
+    volume, area
+        Of the union over the polyhedron's, less one: the volume is always missing, the area need not be.
+    inertia
+        Largest difference of a principal moment about the polyhedron's centroid, at equal mass.
+    """
+
+    volume: float
+    area: float
+    inertia: float
 
 
 def fit_spheres(shape: ConvexPolyhedron, count: int) -> FloatArray:
@@ -40,10 +62,43 @@ def fit_spheres(shape: ConvexPolyhedron, count: int) -> FloatArray:
 def union_volume(shape: ConvexPolyhedron, spheres: FloatArray) -> float:
     """Volume of the union of spheres that lie inside `shape`; standard error about 0.001 of the shape's."""
     probes = inner_points(shape, VOLUME_PROBES)
-    covered = np.zeros(len(probes), dtype=bool)
+    return shape.volume * float(_covered(probes, spheres).mean())
+
+
+def union_area(spheres: FloatArray) -> float:
+    """Area of the outer surface of the union of spheres; to about 0.1 %."""
+    directions, area = fibonacci_directions(SURFACE_PROBES), 0.0
+    for k, (x, y, z, radius) in enumerate(spheres):
+        bare = ~_covered((x, y, z) + radius * directions, np.delete(spheres, k, axis=0))
+        area += 4 * np.pi * radius**2 * float(bare.mean())
+    return area
+
+
+def fit_errors(shape: ConvexPolyhedron, spheres: FloatArray) -> FitErrors:
+    """Errors of volume, area and inertia of spheres that lie inside `shape`."""
+    probes = inner_points(shape, VOLUME_PROBES)
+    covered = _covered(probes, spheres)
+    union = _moments(probes[covered] - shape.centroid)
+    solid = np.linalg.eigvalsh(shape.mesh.inertia) / shape.volume
+    return FitErrors(
+        volume=float(covered.mean()) - 1.0,
+        area=float(union_area(spheres) / shape.surface_area - 1.0),
+        inertia=float(np.abs(union / solid - 1.0).max()),
+    )
+
+
+def _covered(points: FloatArray, spheres: FloatArray) -> BoolArray:
+    """Which points lie in a sphere, shape (k,)."""
+    covered = np.zeros(len(points), dtype=bool)
     for x, y, z, radius in spheres:
-        covered |= ((probes - (x, y, z)) ** 2).sum(axis=1) <= radius**2
-    return shape.volume * float(covered.mean())
+        covered |= ((points - (x, y, z)) ** 2).sum(axis=1) <= radius**2
+    return covered
+
+
+def _moments(points: FloatArray) -> FloatArray:
+    """Principal moments about the origin of points of total mass 1, ascending."""
+    second = points.T @ points / len(points)
+    return np.asarray(np.linalg.eigvalsh(np.trace(second) * np.eye(3) - second))
 
 
 def inner_points(shape: ConvexPolyhedron, count: int) -> FloatArray:

@@ -23,7 +23,7 @@ from regolith_studio.dataset.size_distribution import (
     RosinRammlerSizes,
     SieveSizes,
 )
-from regolith_studio.dataset.sphere_fit import fit_spheres, inner_points, union_volume
+from regolith_studio.dataset.sphere_fit import fit_errors, fit_spheres, inner_points, union_area, union_volume
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 
@@ -213,6 +213,19 @@ def test_that_one_sphere_in_a_cube_is_the_inscribed_ball_and_more_cover_more() -
     assert covered[-1] > 0.8
 
 
+def test_that_two_spheres_lose_the_caps_that_lie_in_each_other() -> None:
+    spheres = np.array([[0.0, 0.0, 0.0, 1.0], [1.2, 0.0, 0.0, 1.0]])
+    assert union_area(spheres) == pytest.approx(8 * np.pi - 2 * 2 * np.pi * (1 - 0.6), rel=2e-3)
+    assert union_area(spheres[:1]) == pytest.approx(4 * np.pi, rel=1e-12)
+
+
+def test_that_the_ball_in_a_cube_has_the_errors_of_the_formulas() -> None:
+    errors = fit_errors(cube(), fit_spheres(cube(), 1))
+    assert errors.volume == pytest.approx(np.pi / 6 - 1, abs=2e-3)
+    assert errors.area == pytest.approx(np.pi / 6 - 1, abs=1e-3)
+    assert errors.inertia == pytest.approx(1 - 0.4 * 0.25 / (1 / 6), abs=2e-3)
+
+
 def test_that_inner_points_are_inside_and_even() -> None:
     points = inner_points(cube(), 4096)
     assert np.abs(points).max() <= 0.5
@@ -233,7 +246,10 @@ def test_that_the_stated_volume_of_the_spheres_agrees_with_monte_carlo(
         points = np.random.default_rng(0).uniform(low, high, (100_000, 3))
         inside = (((points[:, None] - spheres[None, :, :3]) ** 2).sum(-1) <= spheres[:, 3] ** 2).any(1)
         assert float(row["union_volume"]) == pytest.approx(inside.mean() * np.prod(high - low), abs=0.01)
-        assert f"{100 * (1 - float(row['union_volume'])):.1f} %" in (folder / "README.txt").read_text()
+        said = (folder / "README.txt").read_text()
+        assert f"{100 * (1 - float(row['union_volume'])):.1f} %" in said
+        assert f"area {100 * float(row['area_error']):+.1f} %" in said
+        assert f"up to {100 * float(row['inertia_error']):.1f} % off" in said
 
 
 # --- glTF

@@ -26,10 +26,10 @@ def test_that_the_spheres_of_a_clump_lie_inside_and_carry_the_polyhedron_s_inert
     assert ((np.abs(brick.spheres[:, :3]) + brick.spheres[:, 3:]) <= half + 1e-9).all()
     squares = (2 * half) ** 2
     assert brick.inertia == pytest.approx(np.diag((squares.sum() - squares) / 12), abs=1e-9)
-    assert 0.6 < brick.volume_share < 0.9
+    assert -0.4 < brick.errors.volume < -0.1
     cube = clump_shape(boxes.representatives[0].shape.vertices, 1)
     assert cube.spheres[0, 3] == pytest.approx(0.5, abs=1e-6)
-    assert cube.volume_share == pytest.approx(np.pi / 6, abs=0.01)
+    assert cube.errors.volume == pytest.approx(np.pi / 6 - 1, abs=0.01)
 
 
 def test_that_clumps_turn_with_their_particles(boxes: Dataset) -> None:

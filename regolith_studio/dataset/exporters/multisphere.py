@@ -5,32 +5,40 @@ import numpy as np
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export_tables import csv_bytes, shape_names, sizes_csv
 from regolith_studio.dataset.exporting import NOTES, Exporter, ExportOptions
-from regolith_studio.dataset.sphere_fit import fit_spheres, union_volume
+from regolith_studio.dataset.sphere_fit import fit_errors, fit_spheres
 
 _NOTE = """One file a shape, a line a sphere: x y z r, in the frame of the shape (volume 1, centroid at the
 origin). The spheres lie inside the polyhedron, so their union is smaller:
 {rows}
 Programs that compute mass from the union or from overlapping spheres get other masses: set mass and
 inertia by hand (density x scale^3, moments in fit.csv). A particle of diameter d has every number times
-d (pi/6)^(1/3). fit.csv: spheres, volume of the union, moments of inertia of the polyhedron (density 1)."""
+d (pi/6)^(1/3). fit.csv: spheres, volume of the union, moments of inertia of the polyhedron (density 1), and
+the errors of the union as shares (its moments of inertia at equal mass, the largest difference)."""
+
+HEADER = (
+    *("shape", "spheres", "union_volume", "moment_x", "moment_y", "moment_z"),
+    *("volume_error", "area_error", "inertia_error"),
+)
 
 
 def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
-    files, rows = {}, []
+    files, rows, said = {}, [], []
     for key, one in zip(shape_names(dataset), dataset.representatives, strict=True):
         spheres = fit_spheres(one.shape, options.n_spheres)
-        volume = union_volume(one.shape, spheres)
+        errors = fit_errors(one.shape, spheres)
         text = "".join(" ".join(map(repr, row)) + "\n" for row in spheres.tolist())
         files[f"spheres/{key}.txt"] = text.encode("ascii")
-        rows.append((key, len(spheres), volume, *np.diag(one.shape.mesh.inertia).tolist()))
-    said = "\n".join(
-        f"  {row[0]}: {row[1]} spheres, {100 * (1 - row[2]):.1f} % of the volume missing" for row in rows
-    )
-    header = ("shape", "spheres", "union_volume", "moment_x", "moment_y", "moment_z")
+        moments = np.diag(one.shape.mesh.inertia).tolist()
+        volume = one.shape.volume * (1 + errors.volume)
+        rows.append((key, len(spheres), volume, *moments, errors.volume, errors.area, errors.inertia))
+        said.append(
+            f"  {key}: {len(spheres)} spheres, {-100 * errors.volume:.1f} % of the volume missing, "
+            f"area {100 * errors.area:+.1f} %, moments of inertia up to {100 * errors.inertia:.1f} % off"
+        )
     return files | {
-        "fit.csv": csv_bytes(header, rows),
+        "fit.csv": csv_bytes(HEADER, rows),
         "sizes.csv": sizes_csv(dataset),
-        NOTES: _NOTE.format(rows=said).encode("utf-8"),
+        NOTES: _NOTE.format(rows="\n".join(said)).encode("utf-8"),
     }
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
-from regolith_studio.dataset.sphere_fit import fit_spheres, union_volume
+from regolith_studio.dataset.sphere_fit import FitErrors, fit_errors, fit_spheres
 from regolith_studio.dem.case import Prepared
 from regolith_studio.dem.filling import loose_column
 from regolith_studio.geometry.arrays import FloatArray, IntArray
@@ -27,13 +27,13 @@ class ClumpShape:
         Rows x, y, z, r about the centroid, shape (k, 4).
     inertia
         Of the polyhedron at density 1 about its centroid, shape (3, 3).
-    volume_share
-        Of the polyhedron's volume that the spheres fill.
+    errors
+        Of the union of the spheres; mass, centre and inertia are the polyhedron's all the same.
     """
 
     spheres: FloatArray
     inertia: FloatArray
-    volume_share: float
+    errors: FitErrors
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,8 +95,8 @@ def clump_shape(vertices: FloatArray, count: int) -> ClumpShape:
     planes = np.unique(np.round(hull.equations, 10), axis=0)
     solid = ConvexPolyhedron.from_half_spaces(HalfSpaces(planes[:, :3], -planes[:, 3]))
     spheres = fit_spheres(solid, count)
-    return ClumpShape(spheres, np.asarray(solid.mesh.inertia), union_volume(solid, spheres))
+    return ClumpShape(spheres, np.asarray(solid.mesh.inertia), fit_errors(solid, spheres))
 
 
 def _ball() -> ClumpShape:
-    return ClumpShape(np.array([[0.0, 0.0, 0.0, BALL]]), np.eye(3) * 0.4 * BALL**2, 1.0)
+    return ClumpShape(np.array([[0.0, 0.0, 0.0, BALL]]), np.eye(3) * 0.4 * BALL**2, FitErrors(0.0, 0.0, 0.0))

@@ -96,10 +96,17 @@ def simulate(prepared: Prepared, settings: LammpsSettings) -> Generator[Moment, 
 
 
 def _fit_in_words(clumps: Clumps) -> str:
-    filled = [100 * shape.volume_share for shape in clumps.shapes]
+    """Errors of the spheres as spheres; the bodies move with the polyhedra's mass and inertia."""
+
+    def span(values: list[float]) -> str:
+        return f"{100 * min(values):.0f} to {100 * max(values):.0f} %"
+
+    errors = [shape.errors for shape in clumps.shapes]
     return (
-        f"The spheres fill {min(filled):.0f} to {max(filled):.0f} % of the polyhedra's volume; mass, "
-        "centre and inertia are those of the polyhedra."
+        f"The spheres fill {span([1 + each.volume for each in errors])} of the polyhedra's volume and have "
+        f"{span([1 + each.area for each in errors])} of their area; their own moments of inertia would be up "
+        f"to {100 * max(each.inertia for each in errors):.0f} % off, so mass, centre and inertia are set to "
+        "those of the polyhedra."
     )
 
 
