@@ -1,0 +1,68 @@
+"""YADE (GPL-2, a program of its own): the polyhedra with a force that grows with the overlapping volume."""
+
+from collections.abc import Generator
+from dataclasses import dataclass
+
+from regolith_studio.dem.case import Prepared
+from regolith_studio.dem.engine import Ending, Found, Moment, Representation
+from regolith_studio.dem.engines.yade.settings import YadeSettings
+from regolith_studio.errors import InputError
+
+SECONDS_PER_PARTICLE_AND_STEP = 60e-6
+"""Measured on one core at 150 particles of 20 facets."""
+REPRESENTS = Representation(
+    shape="the convex polyhedra themselves",
+    normal="force in proportion to the overlapping volume: neither Hertz nor restitution",
+    tangential="Coulomb friction while sliding, one coefficient (the static one), no memory at rest",
+    cohesion="none",
+    rolling="none besides what edges and faces do",
+    coarse_graining="by size",
+    missing="Hertz, Mindlin, restitution, cohesion, rolling resistance: qualitative; some 200 particles",
+)
+
+
+@dataclass(frozen=True)
+class YadeEngine:
+    """Runs the program ``yade``; nothing of it is loaded here."""
+
+    key: str = "yade"
+    label: str = "YADE"
+    order: int = 2
+    licence: str = "GPL-2.0, run as a separate program"
+    Settings: type[YadeSettings] = YadeSettings
+    represents: Representation = REPRESENTS
+
+    def find(self) -> Found:
+        """Whether the program is on the path."""
+        from regolith_studio.dem.engines.yade.program import find_yade
+
+        return find_yade()
+
+    def seconds(self, prepared: Prepared, settings: YadeSettings) -> float:
+        """From the cost of a step and the expected length of the phases."""
+        from regolith_studio.dem.engines.yade.order import TIME, time_step
+        from regolith_studio.dem.engines.yade.phases import expected_duration
+
+        steps = expected_duration(prepared) * TIME / time_step(prepared, settings)
+        return 3.0 + SECONDS_PER_PARTICLE_AND_STEP * len(prepared) * steps
+
+    def simulate(self, prepared: Prepared, settings: YadeSettings) -> Generator[Moment, None, Ending]:
+        """Fill, settle, lift, rest.
+
+        Raises
+        ------
+        InputError
+            If the case has what YADE's law for polyhedra does not know.
+        """
+        from regolith_studio.dem.engines.yade.simulation import simulate
+
+        if prepared.case.shapes == "spheres":
+            raise InputError("YADE is driven with polyhedra here; take MuJoCo or LAMMPS for spheres.")
+        if prepared.surface_energy > 0.0:
+            raise InputError("YADE's law for polyhedra has no cohesion; take LAMMPS, or cohesion none.")
+        if prepared.case.contact.rolling_friction > 0.0:
+            raise InputError("YADE's law for polyhedra has no rolling resistance; take MuJoCo or LAMMPS.")
+        return simulate(prepared, settings)
+
+
+ENGINE = YadeEngine()

@@ -1,0 +1,58 @@
+"""Settings of the YADE engine; where the mean diameter, its mass and gravity are 1."""
+
+from dataclasses import dataclass, field
+
+from regolith_studio.dataset.limits import check_limits
+
+
+@dataclass(frozen=True)
+class YadeSettings:
+    """Numerics; times in sqrt(d/g).
+
+    Parameters
+    ----------
+    stiffness
+        Force by overlapping volume, in m g / d^3.
+    step_share
+        Time step as a share of the time in which the smallest particle would swing on a flat contact.
+    damping
+        YADE's local damping: this share of every force that speeds a particle up is left out.
+    staves
+        Flat blocks that the cylinder is made of.
+    fastest
+        Speed limit while the cylinder is being filled, in sqrt(g d).
+    calm, calm_time, longest_rest
+        Mean kinetic energy of a particle in m g d below which a heap is at rest, how long it must stay so,
+        and when waiting for it ends.
+    restarts
+        How often a run may go on from its last snapshot after YADE has crashed.
+    snapshots
+        Pictures of a run.
+
+    Raises
+    ------
+    InputError
+        If a value is out of its range.
+    """
+
+    stiffness: float = field(
+        default=5e3, metadata={"label": "Stiffness, in m g / d³", "minimum": 1e2, "maximum": 1e9}
+    )
+    step_share: float = field(
+        default=0.35, metadata={"label": "Step, share of a swing", "minimum": 0.01, "maximum": 0.5}
+    )
+    damping: float = field(default=0.4, metadata={"label": "Damping", "minimum": 0.0, "maximum": 0.9})
+    staves: int = field(default=24, metadata={"label": "Blocks of the cylinder", "minimum": 8, "maximum": 96})
+    fastest: float = field(default=4.0, metadata={"label": "Filling speed", "minimum": 0.1, "maximum": 100.0})
+    calm: float = field(
+        default=1e-3, metadata={"label": "Rest: energy", "minimum": 1e-9, "maximum": 0.1, "decimals": 9}
+    )
+    calm_time: float = field(default=3.0, metadata={"label": "Rest: time", "minimum": 0.1, "maximum": 1000.0})
+    longest_rest: float = field(
+        default=40.0, metadata={"label": "Longest wait", "minimum": 1.0, "maximum": 1e5}
+    )
+    restarts: int = field(default=20, metadata={"label": "Restarts", "minimum": 0, "maximum": 1000})
+    snapshots: int = field(default=60, metadata={"label": "Snapshots", "minimum": 2, "maximum": 10_000})
+
+    def __post_init__(self) -> None:
+        check_limits(self, "YADE setting")

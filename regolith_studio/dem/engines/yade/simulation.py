@@ -1,0 +1,199 @@
+"""Runs YADE and reads its states while it goes; a crash is answered by going on from the last state."""
+
+import json
+import subprocess
+import tempfile
+import time
+from collections.abc import Generator
+from dataclasses import dataclass, field
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+
+from regolith_studio.dem.case import Prepared
+from regolith_studio.dem.engine import Checks, Ending, Moment
+from regolith_studio.dem.engines.yade.order import LENGTH, State, order, read_state
+from regolith_studio.dem.engines.yade.phases import expected_duration
+from regolith_studio.dem.engines.yade.program import command
+from regolith_studio.dem.engines.yade.settings import YadeSettings
+from regolith_studio.dem.penetration import penetration_depths
+from regolith_studio.dem.pile import Pile
+from regolith_studio.errors import RegolithError
+
+GLANCE = 0.1
+"""Seconds between two looks for a state."""
+LARGEST_OVERLAP = 0.02
+LARGEST_GAIN = 0.05
+
+
+@dataclass(eq=False)
+class _Run:
+    prepared: Prepared
+    settings: YadeSettings
+    duration: float
+    states: list[State] = field(default_factory=list)
+    pile: Pile | None = None
+    fill: tuple[float, float] = (0.0, 0.0)
+    crashes: int = 0
+    earlier_steps: int = 0
+
+    @property
+    def second(self) -> float:
+        """Seconds in a unit of time."""
+        return float(np.sqrt(self.prepared.mean_diameter / self.prepared.case.test.gravity))
+
+    @property
+    def last(self) -> State | None:
+        return self.states[-1] if self.states else None
+
+
+def simulate(prepared: Prepared, settings: YadeSettings) -> Generator[Moment, None, Ending]:
+    """Write the order, run YADE, read its states; after a crash go on from the last one.
+
+    Raises
+    ------
+    RegolithError
+        If YADE crashes more often than allowed, or ends before its time for another reason.
+    """
+    run = _Run(prepared, settings, expected_duration(prepared))
+    with tempfile.TemporaryDirectory(prefix="regolith-yade-") as name:
+        folder = Path(name)
+        while run.last is None or not run.last.last:
+            code = yield from _attempt(run, folder)
+            if run.last is not None and run.last.last:
+                break
+            _bear(run, code, folder)
+    assert run.last is not None
+    assert run.pile is not None
+    steps = run.earlier_steps + run.last.steps
+    return Ending(run.pile, _checks(run), steps, run.last.time * run.second, _notes(run))
+
+
+def _attempt(run: _Run, folder: Path) -> Generator[Moment, None, int]:
+    """One process of YADE's, from the last state on; its exit code."""
+    plan = order(run.prepared, run.settings, run.duration, run.last)
+    (folder / "order.json").write_text(json.dumps(plan), encoding="utf-8")
+    words, environment = command(folder)
+    with (folder / "said.txt").open("wb") as said:
+        child = subprocess.Popen(
+            words,
+            cwd=folder,
+            env=environment,
+            stdin=subprocess.DEVNULL,
+            stdout=said,
+            stderr=subprocess.STDOUT,
+        )
+    try:
+        number = int(plan["number"])
+        while True:
+            ended = child.poll() is not None
+            while (path := folder / f"state.{number:06d}.json").exists():
+                yield _moment(run, read_state(path, len(run.prepared)))
+                path.unlink()
+                number += 1
+            if ended:
+                return int(child.returncode)
+            time.sleep(GLANCE)
+    finally:
+        child.kill()
+        child.wait()
+
+
+def _bear(run: _Run, code: int, folder: Path) -> None:
+    """Count a crash; give up where there were too many, nothing was reached, or it was none.
+
+    Raises
+    ------
+    RegolithError
+        With YADE's own last words where it said any.
+    """
+    run.crashes += 1
+    said = (folder / "said.txt").read_text(errors="replace").splitlines()
+    errors = [line.strip() for line in said if "Error" in line or "ERROR" in line or "FATAL" in line]
+    how = f"was ended by signal {-code}" if code < 0 else f"ended with code {code}"
+    if code >= 0 and errors:
+        raise RegolithError(f"YADE {how}: {errors[-1][:200]}")
+    if run.last is None:
+        raise RegolithError(f"YADE {how} before its first step.")
+    if run.crashes > run.settings.restarts:
+        raise RegolithError(
+            f"YADE {how}, after {run.settings.restarts} restarts; the last snapshot is kept "
+            f"({run.last.time * run.second:.2f} s)."
+        )
+    run.earlier_steps += run.last.steps
+
+
+def _moment(run: _Run, state: State) -> Moment:
+    run.states.append(state)
+    length = run.prepared.mean_diameter
+    run.pile = Pile(
+        points=state.rows[:, :3] / LENGTH * length,
+        diameters=run.prepared.diameters,
+        orientations=state.rows[:, 3:7],
+        class_index=run.prepared.class_index,
+        time=state.time * run.second,
+        wall=float("inf") if state.phase == "rest" else state.rim * length,
+        phase=state.phase,
+    )
+    if state.phase in ("fill", "settle"):
+        run.fill = _filling(run.prepared, run.pile)
+    share = min(0.99, state.time / run.duration)
+    return Moment(run.pile, share, f"{state.phase}, {run.pile.time:.2f} s simulated")
+
+
+def _filling(prepared: Prepared, pile: Pile) -> tuple[float, float]:
+    """Height of the filling in metres, and its solid fraction."""
+    height = float(np.quantile(pile.points[:, 2] + pile.diameters / 2, 0.98))
+    volume = prepared.mass / prepared.case.contact.density
+    return height, volume / (prepared.case.test.area * height)
+
+
+def _notes(run: _Run) -> tuple[str, ...]:
+    law = (
+        "YADE's force grows with the overlapping volume, and its friction has no memory: the angle is "
+        "qualitative."
+    )
+    if not run.crashes:
+        return (law,)
+    times = "once" if run.crashes == 1 else f"{run.crashes} times"
+    return law, f"YADE crashed {times} and went on from its last snapshot."
+
+
+def _energy_gain(states: list[State]) -> float:
+    """Largest rise of motion and height between two states of one phase without moving walls or falls."""
+    gain = 0.0
+    for before, after in pairwise(states):
+        if before.phase == after.phase and after.phase in ("settle", "rest"):
+            gain = max(gain, after.kinetic + after.potential - before.kinetic - before.potential)
+    return gain
+
+
+def _checks(run: _Run) -> Checks:
+    assert run.last is not None
+    assert run.pile is not None
+    depths = penetration_depths(run.prepared, run.pile) / run.prepared.mean_diameter
+    points = run.pile.points / run.prepared.mean_diameter
+    kept = int(np.count_nonzero(points[:, 2] > -1.0))
+    gain, largest = _energy_gain(run.states), float(depths.max(initial=0.0))
+    problems = []
+    if kept < len(points):
+        problems.append(f"{len(points) - kept} particles fell through the plate.")
+    if largest > LARGEST_OVERLAP:
+        problems.append(f"Particles overlap by up to {100 * largest:.1f} % of the mean diameter.")
+    if gain > LARGEST_GAIN:
+        problems.append(f"The energy rose by {gain:.2g} m g d a particle out of nothing.")
+    if not run.last.calm:
+        problems.append("The heap was still moving when the longest wait was over.")
+    return Checks(
+        particles_in=len(points),
+        particles_out=kept,
+        mean_overlap=float(depths.mean()) if len(depths) else 0.0,
+        largest_overlap=largest,
+        energy_gain=gain,
+        kinetic_energy=run.last.kinetic,
+        at_rest=run.last.calm,
+        fill_height=run.fill[0],
+        solid_fraction=run.fill[1],
+        problems=tuple(problems),
+    )

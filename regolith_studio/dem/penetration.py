@@ -1,0 +1,68 @@
+"""How deep particles stand in each other: the smallest shift that would part two convex bodies."""
+
+import numpy as np
+from scipy.spatial import ConvexHull, cKDTree
+from scipy.spatial.transform import Rotation
+
+from regolith_studio.dem.case import Prepared
+from regolith_studio.dem.filling import enclosing_radii
+from regolith_studio.dem.pile import Pile
+from regolith_studio.geometry.arrays import FloatArray
+
+PARALLEL = 1e-9
+"""Edges whose unit directions cross by less give no direction of their own."""
+
+
+def penetration_depths(prepared: Prepared, pile: Pile) -> FloatArray:
+    """Depth of every pair of particles that overlap, in metres, shape (m,).
+
+    By separating axes: two convex polyhedra overlap by the least overlap of their shadows over the normals
+    of both and the cross products of their edges.
+    """
+    forms = [_normals_and_edges(shape) for shape in prepared.shapes]
+    turns = Rotation.from_quat(pile.orientations, scalar_first=True)
+    reach, scales = enclosing_radii(prepared), prepared.scales
+    pairs = cKDTree(pile.points).query_pairs(2.0 * float(reach.max()), output_type="ndarray")
+    apart = np.linalg.norm(pile.points[pairs[:, 0]] - pile.points[pairs[:, 1]], axis=1)
+    pairs = pairs[apart < reach[pairs].sum(axis=1)]
+
+    def placed(k: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+        kind = int(prepared.class_index[k])
+        normals, edges = forms[kind]
+        corners = turns[k].apply(prepared.shapes[kind] * scales[k]) + pile.points[k]
+        return corners, turns[k].apply(normals), turns[k].apply(edges)
+
+    depths = [depth for a, b in pairs.tolist() if (depth := _depth(placed(a), placed(b))) > 0.0]
+    return np.array(depths)
+
+
+def _normals_and_edges(corners: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Unit normals of the facets and unit directions of the edges of a hull, each direction once."""
+    hull = ConvexHull(corners)
+    normals = np.unique(np.round(hull.equations[:, :3], 9), axis=0)
+    ends = np.sort(
+        np.concatenate([hull.simplices[:, [0, 1]], hull.simplices[:, [1, 2]], hull.simplices[:, [2, 0]]])
+    )
+    ends = np.unique(ends, axis=0)
+    edges = corners[ends[:, 1]] - corners[ends[:, 0]]
+    return normals, edges / np.linalg.norm(edges, axis=1)[:, None]
+
+
+def _depth(
+    one: tuple[FloatArray, FloatArray, FloatArray], other: tuple[FloatArray, FloatArray, FloatArray]
+) -> float:
+    """Of two bodies given by corners, normals and edges; 0 or less if they are apart."""
+    rough = _least_overlap(one[0], other[0], np.vstack([one[1], other[1]]))
+    if rough <= 0.0:
+        return rough
+    crossed = np.cross(one[2][:, None, :], other[2][None, :, :]).reshape(-1, 3)
+    length = np.linalg.norm(crossed, axis=1)
+    crossed = crossed[length > PARALLEL] / length[length > PARALLEL][:, None]
+    return min(rough, _least_overlap(one[0], other[0], crossed))
+
+
+def _least_overlap(one: FloatArray, other: FloatArray, directions: FloatArray) -> float:
+    """Of the shadows along unit directions, shifted either way."""
+    a, b = one @ directions.T, other @ directions.T
+    ways = np.minimum(a.max(axis=0) - b.min(axis=0), b.max(axis=0) - a.min(axis=0))
+    return float(ways.min(initial=np.inf))
