@@ -62,7 +62,7 @@ class SampleMatchedSettings:
 
     l_max: int = 10
     turn: float = field(
-        default=0.5,
+        default=0.35,
         metadata={"label": "Turn [rad]", "maximum": 2.0, "step": 0.1, "decimals": 2, "tip": "Mean rotation."},
     )
     n_neighbours: int = field(
