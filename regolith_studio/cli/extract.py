@@ -37,6 +37,12 @@ def extract(
     dataset: Annotated[
         str, typer.Option("--dataset", help="Which volume of an HDF5 file.", metavar="NAME")
     ] = "",
+    axes: Annotated[
+        str,
+        typer.Option(
+            "--axes", help="NPY and HDF5: order of the array's axes; else zyx, slices first.", metavar="AXES"
+        ),
+    ] = "",
     shape: Annotated[
         str, typer.Option("--shape", help="Raw files: voxels along x, y, z.", metavar="NX,NY,NZ")
     ] = "",
@@ -118,6 +124,7 @@ def extract(
             volume_kind(kind),
             dataset or None,
             _raw_layout(shape, dtype, byte_order, offset),
+            axes or None,
         )
         settings = (
             read_grain_recipe(recipe)

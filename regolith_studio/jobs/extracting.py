@@ -4,6 +4,7 @@ import hashlib
 from collections import deque
 from collections.abc import Callable, Generator, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -60,6 +61,8 @@ class VolumeInput:
         Which volume of a file that holds several.
     raw
         What a raw file does not say about itself.
+    axes
+        Of an NPY or HDF5 array, the slowest first: ``zyx`` by default.
     """
 
     path: Path
@@ -68,6 +71,7 @@ class VolumeInput:
     kind: VolumeKind | None = None
     dataset: str | None = None
     raw: RawLayout | None = None
+    axes: str | None = None
 
     def opened(self) -> FileSource:
         """The volume, read slab by slab.
@@ -82,6 +86,7 @@ class VolumeInput:
         return open_slabs(
             self.path,
             dataset=self.dataset,
+            axes=self.axes,
             voxel_size=self.voxel_size,
             unit=self.unit,
             kind=self.kind,
@@ -139,7 +144,14 @@ def extract_file(given: VolumeInput, recipe: GrainRecipe, scratch: Path | None =
     InputError
         If there is no particle in it, or the voxel size is not known.
     """
-    return (yield from _extracted(given, recipe, scratch, None, 1))
+    return (yield from _extracted(given, recipe, scratch, _collected, collect=True))
+
+
+def extract_each(
+    given: VolumeInput, recipe: GrainRecipe, scratch: Path | None, sink: Callable[[Extracted], None]
+) -> Steps:
+    """As :func:`extract_file`, but each particle is handed to `sink` and forgotten, in the order of slabs."""
+    return (yield from _extracted(given, recipe, scratch, partial(_handed, sink=sink)))
 
 
 def extract_measured(
@@ -154,7 +166,7 @@ def extract_measured(
     workers
         Processes that measure.
     """
-    return (yield from _extracted(given, recipe, scratch, sink, workers))
+    return (yield from _extracted(given, recipe, scratch, partial(_measured, sink=sink, workers=workers)))
 
 
 def segment_volume(
@@ -191,8 +203,12 @@ def fingerprint(path: Path) -> str:
     return digest.hexdigest()
 
 
+_Extracting = Generator[ExtractionProgress, None, Extraction]
+_Consumer = Callable[[_Extracting], Generator[Step, None, Extraction]]
+
+
 def _extracted(
-    given: VolumeInput, recipe: GrainRecipe, folder: Path | None, sink: Sink | None, workers: int | Crew
+    given: VolumeInput, recipe: GrainRecipe, folder: Path | None, consume: _Consumer, *, collect: bool = False
 ) -> Steps:
     yield Started(f"Reading {given.path.name}")
     volume = given.opened()
@@ -206,8 +222,8 @@ def _extracted(
             facts, labels = _facts(segmentation), segmentation.labels
             del segmentation
         yield Started("Extracting particles")
-        steps = extraction_steps(labels, recipe.extraction, given.path.stem, source, collect=sink is None)
-        extraction = yield from (_collected(steps) if sink is None else _measured(steps, sink, workers))
+        steps = extraction_steps(labels, recipe.extraction, given.path.stem, source, collect=collect)
+        extraction = yield from consume(steps)
     if not extraction.n_found:
         raise InputError(_nothing_found(given.path, extraction))
     return ExtractedFile(
@@ -215,20 +231,24 @@ def _extracted(
     )
 
 
-_Extracting = Generator[ExtractionProgress, None, Extraction]
-
-
-def _collected(steps: _Extracting) -> Generator[Step, None, Extraction]:
+def _handed(steps: _Extracting, sink: Callable[[Extracted], None]) -> Generator[Step, None, Extraction]:
     while True:
         try:
             step = next(steps)
         except StopIteration as end:
             found: Extraction = end.value
             return found
+        sink(step.extracted)
         yield Progress(step.done, step.total, step.extracted.particle.name)
 
 
-def _measured(steps: _Extracting, sink: Sink, workers: int | Crew) -> Generator[Step, None, Extraction]:
+def _collected(steps: _Extracting) -> Generator[Step, None, Extraction]:
+    return (yield from _handed(steps, lambda _particle: None))
+
+
+def _measured(
+    steps: _Extracting, sink: Sink, workers: int | Crew
+) -> Generator[Step, None, Extraction]:
     """Measure particles by other processes while the next ones are extracted."""
     waiting: deque[ExtractionProgress] = deque()
     ended: list[Extraction] = []

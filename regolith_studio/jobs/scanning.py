@@ -87,7 +87,7 @@ def scan_of(volume: Volume, sections: Sections | None = None, scratch: Scratch |
 def look_at_file(given: VolumeInput) -> Steps:
     """Read what a file says about itself; returns a ``VolumeHeader``."""
     yield Started(f"Looking at {given.path.name}")
-    return describe_volume(given.path, dataset=given.dataset, raw=given.raw)
+    return describe_volume(given.path, dataset=given.dataset, axes=given.axes, raw=given.raw)
 
 
 def read_scan(given: VolumeInput) -> Steps:
@@ -102,6 +102,7 @@ def read_scan(given: VolumeInput) -> Steps:
     volume = read_volume(
         given.path,
         dataset=given.dataset,
+        axes=given.axes,
         voxel_size=given.voxel_size,
         unit=given.unit,
         kind=given.kind,

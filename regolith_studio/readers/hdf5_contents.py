@@ -49,15 +49,20 @@ class Candidate:
         return nz, ny, nx
 
 
-def candidates_in(file: Any) -> list[Candidate]:
+def candidates_in(file: Any, axes: str = "") -> list[Candidate]:
     """All volumes of an open ``h5py.File``, ilastik's own name first, then the largest.
+
+    Parameters
+    ----------
+    axes
+        Letters that overrule what the file says about arrays of as many dimensions.
 
     Raises
     ------
     FileError
         If the file holds more objects than any volume file does.
     """
-    found = [candidate for path, dataset in _datasets(file) for candidate in _candidates(path, dataset)]
+    found = [candidate for path, dataset in _datasets(file) for candidate in _candidates(path, dataset, axes)]
     return sorted(found, key=lambda each: (each.path != _ILASTIK, -prod(each.shape), each.path, each.channel))
 
 
@@ -122,11 +127,11 @@ def _datasets(file: Any) -> list[tuple[str, Any]]:
     return found
 
 
-def _candidates(path: str, dataset: Any) -> list[Candidate]:
+def _candidates(path: str, dataset: Any, stated: str) -> list[Candidate]:
     shape = dataset.shape
     if not shape or min(shape) < 1 or max(shape) > LONGEST_EDGE or not _is_number(dataset):
         return []
-    axes = _axes(dataset, len(shape))
+    axes = stated.lower() if _fits(stated, len(shape)) else _axes(dataset, len(shape))
     if axes is None:
         return []
     edges = dict(zip(axes, shape, strict=True))
@@ -141,6 +146,11 @@ def _candidates(path: str, dataset: Any) -> list[Candidate]:
         return []
     names = [path] if channels == 1 else [f"{path}[{channel}]" for channel in range(channels)]
     return [Candidate(name, path, k, axes, tuple(shape), dataset.dtype.name) for k, name in enumerate(names)]
+
+
+def _fits(stated: str, dimensions: int) -> bool:
+    letters = set(stated.lower())
+    return len(stated) == len(letters) == dimensions and {"x", "y", "z"} <= letters <= set("tczyx")
 
 
 def _is_number(dataset: Any) -> bool:

@@ -88,6 +88,44 @@ class PlainVoxels:
         }
 
 
+@dataclass(frozen=True)
+class TurnedVoxels:
+    """Plain voxels in another order than slices, rows, columns or its reverse.
+
+    Parameters
+    ----------
+    path, offset, header, stored
+        As for :class:`PlainVoxels`.
+    order
+        The axes, that which runs slowest first: ``yxz``.
+
+    Raises
+    ------
+    FileError
+        If the file is too short for its voxels.
+    """
+
+    path: Path
+    offset: int
+    header: VoxelHeader
+    stored: np.dtype[Any]
+    order: str
+
+    def __post_init__(self) -> None:
+        PlainVoxels(self.path, self.offset, self.header, self.stored)
+
+    def read(self, z0: int, z1: int) -> NDArray[Any]:
+        """Slices z0 to z1 in the machine's byte order, shape (z1 - z0, ny, nx)."""
+        edges = dict(zip("zyx", self.header.shape, strict=True))
+        shape = tuple(edges[axis] for axis in self.order)
+        stored = np.memmap(self.path, self.stored, "r", self.offset, shape)
+        turned = stored.transpose([self.order.index(axis) for axis in "zyx"])
+        return np.ascontiguousarray(turned[z0:z1], dtype=self.header.dtype)
+
+    def close(self) -> None:
+        """Nothing is kept open."""
+
+
 def plain_voxels(layout: Mapping[str, Any], shape: Shape, dtype: np.dtype[Any]) -> PlainVoxels:
     """The inverse of :meth:`PlainVoxels.plain`."""
     return PlainVoxels(

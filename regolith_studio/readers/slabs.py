@@ -107,7 +107,11 @@ class OpenedFile:
 
 
 def opened_file(
-    path: Path, dataset: str | None = None, raw: RawLayout | None = None, guard: Guard | None = None
+    path: Path,
+    dataset: str | None = None,
+    raw: RawLayout | None = None,
+    guard: Guard | None = None,
+    axes: str | None = None,
 ) -> OpenedFile:
     """A volume's header, read and checked by the child.
 
@@ -128,6 +132,7 @@ def opened_file(
         "dataset": dataset,
         "raw": None if raw is None else raw.as_request(),
         "names": list(names),
+        "axes": axes,
     }
     reader.ask("volume-prepare", path, START_SECONDS)
     work = WORKING_SECONDS + size / BYTES_OPENED_A_SECOND

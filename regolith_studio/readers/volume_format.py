@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
+from regolith_studio.readers.sentences import printable
 
 Shape = tuple[int, int, int]
 Sizes = tuple[float, float, float]
@@ -141,6 +142,26 @@ def three_dimensions(shape: tuple[int, ...], named: str = "shape") -> Shape:
     if max(edges) > LONGEST_EDGE:
         raise FileError(f"is damaged: no volume has the {named} {shown_shape(shape)}.")
     return edges[0], edges[1], edges[2]
+
+
+def stated_axes(axes: str, dimensions: int) -> str:
+    """The letters that a user gave for an array's axes, each of ``tczyx`` once, the slowest first.
+
+    Raises
+    ------
+    FileError
+        If they do not fit the array.
+    """
+    letters = axes.lower()
+    if len(letters) != dimensions:
+        raise FileError(
+            f"has an array of {dimensions} dimensions; the axes “{printable(axes)[:12]}” do not fit."
+        )
+    if len(set(letters)) != dimensions or not {"z", "y", "x"} <= set(letters) <= set("tczyx"):
+        raise FileError(
+            f"has axes x, y and z, each once, and perhaps t and c; “{printable(axes)[:12]}” is wrong."
+        )
+    return letters
 
 
 def voxel_type(dtype: np.dtype[Any]) -> np.dtype[Any]:

@@ -13,6 +13,8 @@ from regolith_studio.readers.sentences import printable, sentence_about
 from regolith_studio.readers.volume_format import OpenVolume, VolumeFormat, checked_header
 from regolith_studio.readers.volume_formats import volume_formats, volume_suffixes
 
+WITH_AXES = ("npy", "hdf5")
+"""Formats whose axes may be stated: they keep arrays and need not say which index is which."""
 _HEAD = 1024
 _opened: dict[str, tuple[OpenVolume, VolumeFormat]] = {}
 """At most one volume, by the request that opened it."""
@@ -76,6 +78,8 @@ def opened_volume(path: Path, request: dict[str, Any]) -> tuple[OpenVolume, Volu
         With the second half of a sentence.
     """
     row, _ = volume_format_of(path)
+    if request.get("axes") and row.key not in WITH_AXES:
+        raise FileError(f"is {row.label}, which says itself how its axes lie; leave the axes out.")
     row.prepare()
     with np.errstate(all="ignore"):
         volume = row.open(path, request)
@@ -114,7 +118,7 @@ def volume_format_of(path: Path) -> tuple[VolumeFormat, tuple[str, ...]]:
 
 
 def _open_one(request: dict[str, Any]) -> tuple[OpenVolume, VolumeFormat]:
-    key = repr([request.get(name) for name in ("path", "stamp", "dataset", "raw", "names")])
+    key = repr([request.get(name) for name in ("path", "stamp", "dataset", "raw", "names", "axes")])
     if key not in _opened:
         for volume, _ in _opened.values():
             volume.close()

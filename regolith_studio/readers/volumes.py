@@ -106,7 +106,12 @@ class SlabSource:
 
 
 def describe_volume(
-    path: str | Path, *, dataset: str | None = None, raw: RawLayout | None = None, guard: Guard | None = None
+    path: str | Path,
+    *,
+    dataset: str | None = None,
+    axes: str | None = None,
+    raw: RawLayout | None = None,
+    guard: Guard | None = None,
 ) -> VolumeHeader:
     """What a volume's file says about itself; at most a few slices are decoded.
 
@@ -116,6 +121,9 @@ def describe_volume(
         TIFF stack, folder of slices, NRRD, MetaImage, NIfTI, HDF5, NPY or raw.
     dataset
         Which volume of a file that holds several; by default the likeliest.
+    axes
+        Letters of the array's axes, the slowest first, where an NPY or HDF5 file does not say it
+        (``zyx``, slices first, is taken then) or says it wrongly.
     raw
         What a raw file does not say itself.
     guard
@@ -126,7 +134,7 @@ def describe_volume(
     FileError
         With one sentence if the file cannot be read.
     """
-    file = opened_file(Path(path), dataset, raw, guard)
+    file = opened_file(Path(path), dataset, raw, guard, axes)
     said = file.header
     nz, ny, nx = said.shape
     return VolumeHeader(
@@ -148,6 +156,7 @@ def read_volume(
     path: str | Path,
     *,
     dataset: str | None = None,
+    axes: str | None = None,
     voxel_size: VoxelSize | None = None,
     unit: str | None = None,
     kind: VolumeKind | None = None,
@@ -160,7 +169,7 @@ def read_volume(
 
     Parameters
     ----------
-    path, dataset, raw, guard
+    path, dataset, axes, raw, guard
         As for `describe_volume`.
     voxel_size
         One edge, or three along x, y and z, in `unit` (micrometres without one); by default what
@@ -181,7 +190,7 @@ def read_volume(
     InputError
         If nobody says how large a voxel is, or the box lies outside the volume.
     """
-    file = opened_file(Path(path), dataset, raw, guard)
+    file = opened_file(Path(path), dataset, raw, guard, axes)
     edges = voxel_size_in_micrometres(file.path, (file.header.voxel_size, file.header.unit), voxel_size, unit)
     box = _checked_bounds(file, bounds)
     _check_memory(file, box)
@@ -196,6 +205,7 @@ def open_slabs(
     path: str | Path,
     *,
     dataset: str | None = None,
+    axes: str | None = None,
     voxel_size: VoxelSize | None = None,
     unit: str | None = None,
     kind: VolumeKind | None = None,
@@ -206,7 +216,7 @@ def open_slabs(
 
     Parameters and errors are those of `read_volume`.
     """
-    file = opened_file(Path(path), dataset, raw, guard)
+    file = opened_file(Path(path), dataset, raw, guard, axes)
     edges = voxel_size_in_micrometres(file.path, (file.header.voxel_size, file.header.unit), voxel_size, unit)
     nz, ny, nx = file.header.shape
     kind = kind or file.header.kind or _guessed(file)

@@ -22,6 +22,7 @@ from regolith_studio.readers.volume_format import (
     DatasetEntry,
     VolumeFormat,
     VoxelHeader,
+    stated_axes,
     three_dimensions,
     voxel_type,
 )
@@ -64,7 +65,7 @@ class Hdf5Voxels:
 
 
 def open_hdf5(path: Path, options: Mapping[str, Any]) -> Hdf5Voxels:
-    """The volume ``options["dataset"]`` of a file, by default the likeliest.
+    """The volume ``options["dataset"]`` of a file, by default the likeliest, with its ``options["axes"]``.
 
     Raises
     ------
@@ -76,7 +77,7 @@ def open_hdf5(path: Path, options: Mapping[str, Any]) -> Hdf5Voxels:
     file: Any = None
     try:
         file = h5py.File(path, "r", locking=False, rdcc_nbytes=_CACHE)
-        return _chosen(file, options.get("dataset"))
+        return _chosen(file, options.get("dataset"), str(options.get("axes") or ""))
     except Exception as error:
         if file is not None:
             file.close()
@@ -85,14 +86,16 @@ def open_hdf5(path: Path, options: Mapping[str, Any]) -> Hdf5Voxels:
         raise FileError("is a broken HDF5 file; export it again.") from None
 
 
-def _chosen(file: Any, wanted: Any) -> Hdf5Voxels:
-    candidates = candidates_in(file)
+def _chosen(file: Any, wanted: Any, axes: str) -> Hdf5Voxels:
+    candidates = candidates_in(file, axes)
     if not candidates:
         raise FileError(
             "holds no volume: none of its arrays has three dimensions of numbers (links are not followed)."
         )
     candidate = _candidate(candidates, wanted)
     dataset = file[candidate.path]
+    if axes:
+        stated_axes(axes, len(candidate.shape))
     check_storage(dataset)
     _check_chunks(dataset)
     size = element_size(dataset, candidate)

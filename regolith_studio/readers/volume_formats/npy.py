@@ -6,11 +6,18 @@ from pathlib import Path
 from tokenize import TokenError
 from typing import Any
 
+import numpy as np
 from numpy.lib import format as npy
 
 from regolith_studio.errors import FileError
-from regolith_studio.readers.plain_voxels import PlainVoxels
-from regolith_studio.readers.volume_format import VolumeFormat, VoxelHeader, three_dimensions, voxel_type
+from regolith_studio.readers.plain_voxels import PlainVoxels, TurnedVoxels
+from regolith_studio.readers.volume_format import (
+    VolumeFormat,
+    VoxelHeader,
+    stated_axes,
+    three_dimensions,
+    voxel_type,
+)
 
 LONGEST_HEADER = 10_000
 _NONSENSE = (ValueError, TypeError, SyntaxError, KeyError, EOFError, RecursionError, MemoryError, TokenError)
@@ -18,8 +25,8 @@ _NONSENSE = (ValueError, TypeError, SyntaxError, KeyError, EOFError, RecursionEr
 _HEADERS: dict[tuple[int, int], Any] = {(1, 0): npy.read_array_header_1_0, (2, 0): npy.read_array_header_2_0}
 
 
-def open_npy(path: Path, _options: Mapping[str, Any]) -> PlainVoxels:
-    """A three-dimensional array whose first index counts the slices.
+def open_npy(path: Path, options: Mapping[str, Any]) -> PlainVoxels | TurnedVoxels:
+    """A three-dimensional array whose first index counts the slices, or as ``options["axes"]`` says.
 
     Raises
     ------
@@ -36,8 +43,24 @@ def open_npy(path: Path, _options: Mapping[str, Any]) -> PlainVoxels:
         except _NONSENSE:
             raise FileError("is a broken NPY file: its header makes no sense; save it again.") from None
         offset = file.tell()
-    three = three_dimensions(shape)
-    return PlainVoxels(path, offset, VoxelHeader(three, voxel_type(dtype)), dtype, bool(fortran))
+    if not options.get("axes"):
+        three = three_dimensions(shape)
+        return PlainVoxels(path, offset, VoxelHeader(three, voxel_type(dtype)), dtype, bool(fortran))
+    return _turned(path, offset, str(options["axes"]), tuple(map(int, shape)), dtype, bool(fortran))
+
+
+def _turned(
+    path: Path, offset: int, axes: str, shape: tuple[int, ...], dtype: np.dtype[Any], fortran: bool
+) -> PlainVoxels | TurnedVoxels:
+    edges = dict(zip(stated_axes(axes, len(shape)), shape, strict=True))
+    if any(edge != 1 for axis, edge in edges.items() if axis in "tc"):
+        raise FileError("holds several channels or times; save one of them.")
+    three = three_dimensions((edges["z"], edges["y"], edges["x"]))
+    order = "".join(axis for axis in (reversed(edges) if fortran else edges) if axis in "zyx")
+    header = VoxelHeader(three, voxel_type(dtype))
+    if order in ("zyx", "xyz"):
+        return PlainVoxels(path, offset, header, dtype, order == "xyz")
+    return TurnedVoxels(path, offset, header, dtype, order)
 
 
 FORMAT = VolumeFormat("npy", "an NPY array", (".npy",), lambda head: head.startswith(b"\x93NUMPY"), open_npy)

@@ -72,6 +72,7 @@ def recipe_document(given: VolumeInput, recipe: GrainRecipe, done: ExtractedFile
         "volume": {
             "path": str(given.path),
             "dataset": given.dataset,
+            "axes": given.axes,
             "sha256": done.sha256,
             "shape_xyz": list(done.shape),
             "dtype": done.dtype,

@@ -19,10 +19,16 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.jobs.extracting import VolumeInput
 from regolith_studio.readers.volume_header import RawLayout, VolumeHeader
+from regolith_studio.readers.volume_task import WITH_AXES
 from regolith_studio.ui.pages.scan.fields import choice
 from regolith_studio.ui.widgets.labels import remark
 
 RAW_SUFFIXES = (".raw", ".bin", ".vol", ".dat")
+AXES = (
+    (None, "As the file says, else slices first (z, y, x)"),
+    ("xyz", "x, y, z: slices last"),
+    ("yxz", "y, x, z: as MATLAB has pictures"),
+)
 UNITS = (("um", "µm"), ("mm", "mm"), ("nm", "nm"), ("cm", "cm"), ("m", "m"))
 _TYPES = ("uint8", "int8", "uint16", "int16", "uint32", "int32", "uint64", "int64", "float32", "float64")
 
@@ -62,6 +68,7 @@ class VolumeDialog(QDialog):
             "kind", "What the volume holds",
             ((None, "Whatever it looks like"), ("grey", "Grey values"), ("labels", "Labels of grains")),
         )  # fmt: skip
+        self.axes = choice("axes", "Order of the array's axes", AXES)
         self._said = "A raw file says nothing about itself: how many voxels are in it, and of which type?"
         self.verdict, self.facts = remark(), remark()
         self._buttons = QDialogButtonBox(
@@ -93,6 +100,7 @@ class VolumeDialog(QDialog):
             self.kind.currentData(),
             self.dataset.currentData(),
             raw,
+            self.axes.currentData(),
         )
 
     def _follow(self, value: float) -> None:
@@ -156,6 +164,8 @@ class VolumeDialog(QDialog):
             form.addRow(self.verdict)
         elif len(header.datasets) > 1:
             form.addRow("Volume", self.dataset)
+        if header is not None and header.format in WITH_AXES:
+            form.addRow("Axes", self.axes)
         form.addRow("Voxel size x, y, z", _row([*self.edges, self.unit]))
         form.addRow("Holds", self.kind)
         layout = QVBoxLayout(self)
