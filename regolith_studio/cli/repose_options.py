@@ -23,8 +23,6 @@ Test = Annotated[
 Measure = Annotated[
     list[str] | None, typer.Option("--measure", help="One setting of the evaluation.", metavar="KEY=VALUE")
 ]
-CASE_KEYS = ("shapes", "cohesion", "n_particles", "coarse_graining")
-"""What can be varied besides the values of Tables 1 and 2."""
 
 
 def evaluation_settings(entries: list[str] | None) -> "EvaluationSettings":
@@ -44,9 +42,9 @@ def order_from(
     **case: Any,
 ) -> "ReposeOrder":
     """The order that options stand for; a wrong one is bad use. `case` are fields of ``ReposeCase``."""
+    from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
     from regolith_studio.dem.case import ReposeCase
     from regolith_studio.dem.engines import engine_named
-    from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
     from regolith_studio.jobs.repose import ReposeOrder
 
     with as_bad_use():

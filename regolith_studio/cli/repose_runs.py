@@ -5,9 +5,8 @@ from typing import Annotated, Any
 
 import typer
 
-from regolith_studio.cli.options import Folder, Jobs, Json, Seed, Settings, values
+from regolith_studio.cli.options import Folder, Jobs, Json, Seed, Settings, as_bad_use, values
 from regolith_studio.cli.repose_options import (
-    CASE_KEYS,
     Contact,
     EngineKey,
     Measure,
@@ -91,23 +90,19 @@ def study(
 ) -> None:
     """Angle of repose against one value or one dataset against others; goes on where it was stopped."""
     from regolith_studio.cli.terminal import follow, print_json, print_table
-    from regolith_studio.jobs.repose import StudyRow, study_repose
+    from regolith_studio.jobs.repose_study import StudyRow, study_repose, with_value
     from regolith_studio.studies.repose import repose_table, write_repose_study
 
     del jobs  # one run after the other, so that what is there already is known
     key, points = _varied(vary)
+    order = order_from(engine, contact, test, set_, measure, n_particles=particles, seed=seed)
     rows = []
     for folder in datasets:
-        for point in points or [folder.name]:
-            case: dict[str, Any] = {"n_particles": particles, "seed": seed}
-            extra = {"contact": list(contact or ()), "test": list(test or ())}
-            if points and key in CASE_KEYS:
-                case[key] = point
-            elif points:
-                extra[_table_of(key)].append(f"{key}={point}")
-            order = order_from(engine, extra["contact"], extra["test"], set_, measure, **case)
-            name = (key if len(datasets) == 1 else f"{key} {folder.name}") if points else "dataset"
-            rows.append(StudyRow(name, point, folder, order))
+        name = (key if len(datasets) == 1 else f"{key} {folder.name}") if points else "dataset"
+        with as_bad_use():
+            rows += [StudyRow(name, point, folder, with_value(order, key, point)) for point in points]
+        if not points:
+            rows.append(StudyRow(name, folder.name, folder, order))
     done = follow(study_repose(rows, output, repeats))
     files = [path.name for path in write_repose_study(done, output)]
     if json:
@@ -124,14 +119,3 @@ def _varied(text: str) -> tuple[str, list[Any]]:
     if not equals or not all(point.strip() for point in points.split(",")):
         raise typer.BadParameter(f"Write what varies as KEY=V1,V2, got {text!r}.")
     return key, [values([f"{key}={point}"], "value")[key] for point in points.split(",")]
-
-
-def _table_of(key: str) -> str:
-    """Whether a value belongs to Table 1 (``contact``) or Table 2 (``test``)."""
-    from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
-
-    for table, kind in (("contact", ContactParameters), ("test", LiftingCylinderTest)):
-        if key in kind.__dataclass_fields__:
-            return table
-    known = [*ContactParameters.__dataclass_fields__, *LiftingCylinderTest.__dataclass_fields__, *CASE_KEYS]
-    raise typer.BadParameter(f"{key!r} cannot be varied; these can: {', '.join(known)}.")

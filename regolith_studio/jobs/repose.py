@@ -1,8 +1,7 @@
 """The angle of repose of a dataset: simulate the lifting cylinder, measure the pile (2.6, 3.3)."""
 
 import time
-from collections.abc import Generator, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -14,14 +13,13 @@ from regolith_studio.dem.engines import DEFAULT_ENGINE, engine_named
 from regolith_studio.dem.evaluation.refusal import NoPile
 from regolith_studio.dem.evaluation.settings import EvaluationSettings
 from regolith_studio.dem.filling import loose_column
-from regolith_studio.dem.host import EngineStopped, run_engine
+from regolith_studio.dem.host import run_engine
 from regolith_studio.dem.pile import Pile
 from regolith_studio.dem.repose import ReposeMeasurement, measure_repose
-from regolith_studio.dem.run_document import case_document, run_document
-from regolith_studio.dem.run_folder import claim_folder, read_run, save_ending, save_shapes, snapshot_files
-from regolith_studio.errors import EnvironmentProblem, FileError, RegolithError
-from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
-from regolith_studio.studies.repose import runs_from
+from regolith_studio.dem.run_document import run_document
+from regolith_studio.dem.run_folder import claim_folder, save_ending, save_shapes, snapshot_files
+from regolith_studio.errors import EnvironmentProblem, RegolithError
+from regolith_studio.jobs.events import Partial, Progress, Started, Steps
 from regolith_studio.studies.repose_figures import write_section_figure
 
 PARTS = 1000
@@ -163,85 +161,6 @@ def measured_or_refused(ending: Ending, evaluation: EvaluationSettings) -> Repos
         return measure_repose(ending.pile.points, ending.pile.diameters, evaluation, base=0.0)
     except NoPile as refusal:
         return refusal
-
-
-@dataclass(frozen=True)
-class StudyRow:
-    """One value of what a study varies.
-
-    Parameters
-    ----------
-    varied, value
-        What, and to what.
-    dataset
-        Folder of the dataset.
-    order
-        How to run; its seed is the first of the repeats.
-    """
-
-    varied: str
-    value: float | str
-    dataset: Path
-    order: ReposeOrder
-
-
-def study_repose(rows: Sequence[StudyRow], folder: Path, repeats: int = 1) -> Steps:
-    """Run every row `repeats` times, each run in a folder of its own; returns :class:`ReposeStudy`.
-
-    Runs that a folder holds already, finished and of the same case, are not run again: a study that was
-    stopped goes on where it was. A run that fails is a row without an angle.
-    """
-    plan = [(row, row.order.case.seed + k) for row in rows for k in range(repeats)]
-    yield Started("Angle of repose: study", PARTS * len(plan))
-    done: list[tuple[str, float | str, str, dict[str, Any]]] = []
-    for number, (row, seed) in enumerate(plan):
-        order = replace(row.order, case=replace(row.order.case, seed=seed), overwrite=True)
-        place = folder / f"{row.varied}_{row.value}_seed{seed}".replace("/", "-").replace(" ", "-")
-        document = _earlier(place, row.dataset, order)
-        if document is None:
-            document = yield from _study_run(row, order, place, number, len(plan))
-        done.append((row.varied, row.value, place.name, document))
-        yield Progress(PARTS * (number + 1), PARTS * len(plan), place.name)
-        yield Partial(runs_from(done))
-    return runs_from(done)
-
-
-def _study_run(
-    row: StudyRow, order: ReposeOrder, place: Path, number: int, total: int
-) -> Generator[Step, None, dict[str, Any]]:
-    steps = simulate_repose(row.dataset, place, order)
-    try:
-        while True:
-            try:
-                step = next(steps)
-            except StopIteration as end:
-                return dict(end.value.document)
-            if isinstance(step, Progress):
-                message = f"{row.varied} {row.value}: {step.message}"
-                yield Progress(PARTS * number + step.done, PARTS * total, message)
-    except EngineStopped:
-        return dict(read_run(place).document)
-    finally:
-        steps.close()
-
-
-def _earlier(place: Path, dataset: Path, order: ReposeOrder) -> dict[str, Any] | None:
-    """The document of a finished run of the same case on the same dataset, if there is one."""
-    try:
-        document = read_run(place).document
-    except FileError:
-        return None
-    engine = engine_named(order.engine)
-    settings = asdict(engine.Settings() if order.settings is None else order.settings)
-    same = (
-        document["state"] == "finished"
-        and document["dataset"]["sha256"] == dataset_hash(dataset)
-        and document["case"] == case_document(order.case)
-        and document["engine"]["key"] == engine.key
-        and document["engine"]["settings"] == settings
-        and document["measurement"].get("settings", asdict(order.evaluation)) == asdict(order.evaluation)
-    )
-    return document if same else None
 
 
 def preview_repose(dataset_folder: Path, case: ReposeCase) -> Steps:

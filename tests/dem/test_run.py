@@ -12,6 +12,7 @@ import psutil
 import pytest
 
 from regolith_studio.cli.entry import run
+from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.dataset.folder import read_dataset
 from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
 from regolith_studio.dataset.reading import dataset_hash
@@ -23,13 +24,19 @@ from regolith_studio.dem.host import EngineStopped
 from regolith_studio.dem.pile import read_pile
 from regolith_studio.dem.run_folder import find_runs, read_run, read_shapes, snapshot_files
 from regolith_studio.errors import FileError, InputError
+from regolith_studio.geometry.directions import icosphere
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.jobs.coarsening import CoarseningOrder
 from regolith_studio.jobs.events import Partial, Progress
-from regolith_studio.jobs.repose import (
-    ReposeOrder,
+from regolith_studio.jobs.repose import ReposeOrder, simulate_prepared, simulate_repose
+from regolith_studio.jobs.repose_study import (
     StudyRow,
-    simulate_prepared,
-    simulate_repose,
+    StudyWish,
     study_repose,
+    study_wish,
+    values_in,
+    with_value,
 )
 from regolith_studio.studies.repose import write_repose_study
 
@@ -116,6 +123,51 @@ def test_that_a_study_s_wishes_are_checked(
     for wrong in ("static_friction", "static_friction=-1", "colour=red", "static_friction=,2"):
         assert run([*where, "--vary", wrong]) == 2
     assert "Traceback" not in capsys.readouterr().err
+
+
+def test_that_a_wish_of_the_window_is_the_same_study(
+    finished: Path, boxes_folder: Path, tmp_path: Path
+) -> None:
+    shutil.copytree(finished, tmp_path / "static_friction_0.8_seed1")
+    wish = StudyWish("static_friction", (0.8,), ORDER, boxes_folder)
+    told = list(study_wish(wish, tmp_path))
+    assert not [step for step in told if isinstance(step, Progress) and "simulated" in step.message]
+    assert {f"repose_study.{kind}" for kind in ("csv", "json", "png", "svg")} <= {
+        path.name for path in tmp_path.iterdir()
+    }
+
+
+def test_that_shapes_are_varied_from_particles(tmp_path: Path) -> None:
+    """A dataset a value, coarsened to it; the runs are not waited for."""
+    ball = icosphere(2)
+    particles = (Particle("ball", Mesh(40.0 * ball.vertices, ball.faces)),)
+    coarsening = CoarseningOrder(LossWeights.of(), method="quadric", target="particle")
+    order = replace(ORDER, case=replace(CASE, n_particles=20))
+    steps = study_wish(
+        StudyWish("n_faces", (8, 14), order, particles=particles, coarsening=coarsening), tmp_path
+    )
+    for step in steps:
+        if isinstance(step, Progress) and "simulated" in step.message:
+            break
+    steps.close()
+    built = [read_dataset(tmp_path / "datasets" / f"n_faces-{n}").representatives[0].shape for n in (8, 14)]
+    assert [shape.n_faces for shape in built] == [8, 14]
+
+
+def test_that_values_are_read_as_their_key_has_them() -> None:
+    assert values_in("n_faces", " 8, 20,8") == (8, 20)
+    assert values_in("static_friction", "0.2, 1") == (0.2, 1.0)
+    assert values_in("cohesion", "none,scaled") == ("none", "scaled")
+    for key, text in (("n_faces", "8.5"), ("gravity", "moon")):
+        with pytest.raises(InputError, match="commas"):
+            values_in(key, text)
+    assert with_value(ORDER, "gravity", "1.62").case.test.gravity == 1.62
+    for key, value in (("colour", 1), ("gravity", "moon"), ("gravity", -1.0), ("cohesion", "glue")):
+        with pytest.raises(InputError):
+            with_value(ORDER, key, value)
+    for wish in (("static_friction", ()), ("static_friction", (0.2,)), ("n_faces", (8,))):
+        with pytest.raises(InputError):
+            StudyWish(*wish, ORDER)
 
 
 def test_that_a_crash_of_the_engine_is_one_sentence_and_keeps_the_last_snapshot(

@@ -16,6 +16,7 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.runners.inline import InlineRunner
 from regolith_studio.session.session import Session
+from regolith_studio.studies.repose import runs_from
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.repose import PAGE
@@ -229,3 +230,51 @@ def test_that_the_open_particles_become_a_dataset(page, wait):
     wait(lambda: page.player.pile is not None)
     assert page.setup.run.isEnabled()
     assert not page._context.toast.sentence.text()
+
+
+def test_that_a_study_grows_is_stopped_and_goes_on(page, dataset, wait):
+    small(page, dataset)
+    panel = page.study
+    panel.restore({"key": "static_friction", "values": "0.2, 0.8", "repeats": 1})
+    page.start_study()
+    wait(lambda: panel.table.rowCount() == 2)
+    wait(lambda: "tables and figure" in panel.said.text())
+    assert [panel.table.item(row, 0).text() for row in (0, 1)] == ["0.2", "0.8"]
+    folder = page._folder / "studies" / f"static_friction-{dataset.name}"
+    assert (folder / "repose_study.csv").exists()
+    assert not page.busy()
+    before = {path: path.stat().st_mtime_ns for path in folder.glob("*/repose.json")}
+    assert len(before) == 2
+    page.start_study()
+    wait(lambda: "tables and figure" in panel.said.text())
+    assert {path: path.stat().st_mtime_ns for path in before} == before
+    panel.table.selectRow(1)
+    wait(lambda: page.player.slider.maximum() >= 4)
+    assert "no angle" in page.verdict.text()
+    assert page.state()["study"]["values"] == "0.2, 0.8"
+
+
+def test_that_a_study_of_names_and_piles_is_drawn(page):
+    document = {"state": "finished", "case": {"seed": 0}, "problem": None}
+    runs = [
+        ("cohesion", name, name, document | {"measurement": {"angle_deg": angle, "interval_deg": [20, 30]}})
+        for name, angle in (("none", 22.0), ("scaled", 30.0))
+    ]
+    page.study.show_study(runs_from(runs))
+    mean, dots = page.study.plot.curves
+    assert (dots.x, dots.y) == ((1.0, 2.0), (22.0, 30.0))
+    assert mean.y == dots.y
+    assert not mean.line
+
+
+def test_that_a_study_says_what_it_lacks(page, dataset):
+    page.start_study()
+    assert "no dataset yet" in page._context.toast.sentence.text()
+    page.study.key.setCurrentIndex(page.study.key.findData("n_faces"))
+    assert page.study.values.text() == "8, 20, 60"
+    page.start_study()
+    assert "open particles" in page._context.toast.sentence.text()
+    small(page, dataset)
+    page.study.restore({"key": "gravity", "values": "moon", "repeats": 2})
+    page.start_study()
+    assert "numbers with commas" in page._context.toast.sentence.text()

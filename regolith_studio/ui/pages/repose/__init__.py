@@ -22,6 +22,7 @@ PAGE = Page(
         ActionSpec(PAGE_MENU, "open_dataset", "Open a &dataset …", tip="Choose the dataset to simulate"),
         ActionSpec(PAGE_MENU, BREAK, ""),
         ActionSpec(PAGE_MENU, "run_test", "&Run the test", "play", "Ctrl+Return", bar="words"),
+        ActionSpec(PAGE_MENU, "start_study", "Start the &study", tip="Run the values of the study, or go on"),
         ActionSpec(PAGE_MENU, "play", "&Play the run"),
         ActionSpec(PAGE_MENU, BREAK, ""),
         ActionSpec(

@@ -29,6 +29,8 @@ from regolith_studio.ui.pages.repose.player import Player
 from regolith_studio.ui.pages.repose.runs import RunsPanel
 from regolith_studio.ui.pages.repose.section_plot import SectionPlot
 from regolith_studio.ui.pages.repose.setup import SetupPanel
+from regolith_studio.ui.pages.repose.study import StudyPanel
+from regolith_studio.ui.pages.repose.study_desk import StudyDesk
 from regolith_studio.ui.pages.repose.words import angle_in_words, checks_in_words, duration
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.widgets.labels import remark
@@ -36,7 +38,7 @@ from regolith_studio.ui.widgets.labels import remark
 PREVIEW_DELAY = 250
 """Milliseconds after the last change until the preview is drawn anew."""
 MOST_PREVIEWED = 20_000
-RUN, PREVIEW, MEASURE, BUILD = "run", "preview", "measure", "build"
+RUN, PREVIEW, MEASURE, BUILD, STUDY = "run", "preview", "measure", "build", "study"
 
 
 class ReposePage(PageWidget):
@@ -55,7 +57,8 @@ class ReposePage(PageWidget):
         self.x_z, self.y_z = SectionPlot("x"), SectionPlot("y")
         self.verdict = remark("No pile yet.")
         self.verdict.setObjectName("repose_verdict")
-        self.runs, self.engines = RunsPanel(), EnginePanel()
+        self.runs, self.study, self.engines = RunsPanel(), StudyPanel(), EnginePanel()
+        self.studies = StudyDesk(context, self.study, self.setup, self._show_study_run)
         self._later = QTimer(self)
         self._later.setSingleShot(True)
         self._later.setInterval(PREVIEW_DELAY)
@@ -70,13 +73,14 @@ class ReposePage(PageWidget):
 
     def set_theme(self, theme: Theme) -> None:
         self.player.set_theme(theme)
-        for plot in (self.x_z, self.y_z, self.runs):
+        for plot in (self.x_z, self.y_z, self.runs, self.study):
             plot.set_theme(theme)
 
     def commands(self) -> Mapping[str, Callable[..., object]]:
         return {
             "open_dataset": self.open_dataset,
             "run_test": self.run_test,
+            "start_study": self.start_study,
             "play": self.player.toggle,
             "open_positions": self.open_positions,
             "export_run": self.export_run,
@@ -84,14 +88,18 @@ class ReposePage(PageWidget):
         }
 
     def busy(self) -> str:
-        return "A simulation of the angle of repose would be stopped." if self._running else ""
+        if self._running:
+            return "A simulation of the angle of repose would be stopped."
+        return self.studies.busy()
 
     def state(self) -> dict[str, Any]:
-        return {"setup": self.setup.state()}
+        return {"setup": self.setup.state(), "study": self.study.state()}
 
     def restore(self, state: Mapping[str, Any]) -> None:
         if isinstance(state.get("setup"), Mapping):
             self.setup.restore(state["setup"])
+        if isinstance(state.get("study"), Mapping):
+            self.study.restore(state["study"])
 
     def left(self) -> None:
         self.player.stop()
@@ -145,6 +153,10 @@ class ReposePage(PageWidget):
             stopped=self._stopped,
             lane=RUN,
         )
+
+    def start_study(self) -> None:
+        """Run what the panel of studies says, or go on with it."""
+        self.studies.start(self._folder)
 
     def open_positions(self) -> None:
         """Measure the pile of another program, from a file of positions."""
@@ -259,6 +271,10 @@ class ReposePage(PageWidget):
     def _list_runs(self, chosen: Path | None = None) -> None:
         self.runs.set_runs(find_runs(self._folder) if self._folder.is_dir() else [], chosen)
 
+    def _show_study_run(self, run: RunSummary) -> None:
+        if not self._running:
+            self._show_run(run)
+
     def _show_run(self, run: RunSummary) -> None:
         case = run.document["case"]
         try:
@@ -320,7 +336,12 @@ class ReposePage(PageWidget):
         row.addWidget(self.x_z)
         row.addWidget(self.y_z)
         measured = stacked([sections, padded(self.verdict, 10, 0, 10, 4)], [300, 40], stretch=0)
-        pages = [(measured, "Sections"), (self.runs, "Runs"), (self.engines, "Engines")]
+        pages = [
+            (measured, "Sections"),
+            (self.runs, "Runs"),
+            (self.study, "Study"),
+            (self.engines, "Engines"),
+        ]
         below = tabs("repose_tabs", pages)
         pictures = stacked([self.player, below], [480, 340], stretch=0)
         pictures.setObjectName("repose_pictures")
@@ -338,6 +359,7 @@ class ReposePage(PageWidget):
         self.setup.sampleWanted.connect(self.make_dataset)
         self.setup.runWanted.connect(self.run_test)
         self.runs.chosen.connect(self._show_run)
+        self.study.startWanted.connect(self.start_study)
         for plot in (self.x_z, self.y_z):
             plot.cutDragged.connect(self._take_cut)
 

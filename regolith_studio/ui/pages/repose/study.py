@@ -1,0 +1,236 @@
+"""A study on the page: what is varied, start and stop, and a plot that grows with every run."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtWidgets import (
+    QAbstractItemView,
+    QComboBox,
+    QFormLayout,
+    QHBoxLayout,
+    QHeaderView,
+    QLineEdit,
+    QPushButton,
+    QSpinBox,
+    QTableWidget,
+    QTableWidgetItem,
+    QVBoxLayout,
+    QWidget,
+)
+
+from regolith_studio.coarsening.weights import presets
+from regolith_studio.jobs.repose_study import SHAPE_KEYS, values_in
+from regolith_studio.studies.repose import ReposeStudy, ReposeStudyRun
+from regolith_studio.ui.theme import Theme
+from regolith_studio.ui.widgets.curve_plot import Curve, CurvePlot
+from regolith_studio.ui.widgets.labels import remark
+
+VARIED: Mapping[str, tuple[str, str]] = {
+    "static_friction": ("Static friction", "0.2, 0.4, 0.8"),
+    "n_faces": ("Facets of the open particles", "8, 20, 60"),
+    "preset": ("Weights of the loss, open particles", "overlap, size, all"),
+    "rolling_friction": ("Rolling resistance", "0, 0.1, 0.3"),
+    "cohesion": ("Cohesion", "none, scaled"),
+    "shapes": ("Shapes", "polyhedra, spheres"),
+    "gravity": ("Gravity [m/s²]", "1.62, 3.71, 9.81"),
+    "plate_friction": ("Plate friction", "0.3, 0.8"),
+    "wall_friction": ("Wall friction", "0, 0.3, 0.8"),
+    "lift_speed": ("Lift speed [m/s]", "0.01, 0.03, 0.1"),
+    "n_particles": ("Number of particles", "300, 1000, 2000"),
+}
+"""What can be varied: label, and the values that are proposed."""
+HEADINGS = ("Value", "Seed", "Angle", "Interval")
+
+
+class StudyPanel(QWidget):
+    """Says what is wished; shows what has become of it."""
+
+    startWanted = Signal()  # noqa: N815
+    stopWanted = Signal()  # noqa: N815
+    chosen = Signal(object)
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("repose_study")
+        self._study: ReposeStudy | None = None
+        self.key = QComboBox()
+        self.key.setObjectName("repose_study_key")
+        self.key.setAccessibleName("What is varied")
+        for name, (label, _) in VARIED.items():
+            self.key.addItem(label, name)
+        self.values = QLineEdit(VARIED["static_friction"][1])
+        self.values.setObjectName("repose_study_values")
+        self.values.setAccessibleName("Values, with commas between them")
+        self.repeats = QSpinBox()
+        self.repeats.setObjectName("repose_study_repeats")
+        self.repeats.setAccessibleName("Runs of each value, with other seeds")
+        self.repeats.setRange(1, 100)
+        self.start, self.stop = QPushButton("Start or go on"), QPushButton("Stop")
+        self.start.setObjectName("repose_study_start")
+        self.start.setToolTip("Runs that are there already are not run again")
+        self.stop.setObjectName("repose_study_stop")
+        self.table = self._table()
+        self.plot = CurvePlot("Static friction", "Angle [°]", "Each run adds a point.")
+        self.said = remark()
+        self.said.setObjectName("repose_study_said")
+        self._place()
+        self._connect()
+        self.set_running(False)
+
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        self.plot.set_theme(theme)
+        self._draw()
+
+    def wish(self) -> tuple[str, tuple[float | str, ...], int]:
+        """What is varied, to which values, how often.
+
+        Raises
+        ------
+        InputError
+            If a value is none.
+        """
+        key = str(self.key.currentData())
+        return key, values_in(key, self.values.text()), self.repeats.value()
+
+    def set_running(self, running: bool) -> None:
+        """Whether a study is going on."""
+        self.start.setVisible(not running)
+        self.stop.setVisible(running)
+        for each in (self.key, self.values, self.repeats):
+            each.setEnabled(not running)
+
+    def tell(self, text: str) -> None:
+        """A sentence on where the study stands."""
+        self.said.setText(text)
+
+    def show_study(self, study: ReposeStudy | None) -> None:
+        """Show these runs."""
+        self._study = study
+        runs = study.runs if study is not None else ()
+        self.table.setRowCount(len(runs))
+        for row, run in enumerate(runs):
+            for column, text in enumerate(_cells(run)):
+                item = QTableWidgetItem(text)
+                item.setToolTip(_why(run))
+                item.setTextAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+                self.table.setItem(row, column, item)
+        self._draw()
+
+    def state(self) -> dict[str, Any]:
+        """As plain JSON."""
+        return {
+            "key": self.key.currentData(),
+            "values": self.values.text(),
+            "repeats": self.repeats.value(),
+        }
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Show what :meth:`state` returned; what is not known is left as it is."""
+        at = self.key.findData(state.get("key"))
+        if at >= 0:
+            self.key.setCurrentIndex(at)
+            self.values.setText(str(state.get("values", VARIED[self.key.currentData()][1])))
+        repeats = state.get("repeats")
+        if isinstance(repeats, int):
+            self.repeats.setValue(repeats)
+
+    def _draw(self) -> None:
+        study = self._study
+        if study is None or not study.runs:
+            self.plot.set_curves([])
+            return
+        numeric = all(isinstance(value, int | float) for value in study.values)
+        places = {value: float(value) if numeric else float(k) for k, value in enumerate(study.values, 1)}
+        label = VARIED[study.runs[0].varied][0]
+        names = "" if numeric else ": " + ", ".join(f"{k} {value}" for k, value in enumerate(places, 1))
+        self.plot.set_labels(label + names, "Angle [°]")
+        found = [(places[run.value], run.angle) for run in study.runs if run.angle is not None]
+        means = sorted(
+            (places[value], float(np.mean(study.angles(value))))
+            for value in study.values
+            if study.angles(value)
+        )
+        theme = self.plot.theme
+        self.plot.set_curves(
+            [
+                Curve("mean", theme.fit, *_columns(means), line=numeric),
+                Curve("run", theme.polyhedron, *_columns(found), markers=True, line=False),
+            ]
+            if found
+            else []
+        )
+
+    def _table(self) -> QTableWidget:
+        table = QTableWidget(0, len(HEADINGS))
+        table.setObjectName("repose_study_runs")
+        table.setAccessibleName("Runs of the study")
+        table.setHorizontalHeaderLabels(HEADINGS)
+        table.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
+        table.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)
+        table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
+        table.setShowGrid(False)
+        table.verticalHeader().hide()
+        table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
+        return table
+
+    def _place(self) -> None:
+        form = QFormLayout()
+        form.setContentsMargins(8, 6, 0, 0)
+        form.addRow("Vary", self.key)
+        form.addRow("Values", self.values)
+        form.addRow("Runs of each", self.repeats)
+        buttons = QHBoxLayout()
+        buttons.addWidget(self.start)
+        buttons.addWidget(self.stop)
+        buttons.addStretch(1)
+        form.addRow(buttons)
+        form.addRow(self.said)
+        left = QWidget()
+        column = QVBoxLayout(left)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.addLayout(form)
+        column.addStretch(1)
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.addWidget(left, 3)
+        row.addWidget(self.plot, 4)
+        row.addWidget(self.table, 3)
+
+    def _connect(self) -> None:
+        self.key.currentIndexChanged.connect(lambda *_: self._propose())
+        self.start.clicked.connect(self.startWanted)
+        self.stop.clicked.connect(self.stopWanted)
+        self.table.itemSelectionChanged.connect(self._announce)
+
+    def _propose(self) -> None:
+        key = str(self.key.currentData())
+        self.values.setText(VARIED[key][1])
+        tip = f"Names of presets: {', '.join(presets())}" if key == "preset" else ""
+        self.values.setToolTip(tip)
+        self.tell("A dataset is made of the open particles for every value." if key in SHAPE_KEYS else "")
+
+    def _announce(self) -> None:
+        rows = self.table.selectionModel().selectedRows()
+        if rows and self._study is not None and rows[0].row() < len(self._study.runs):
+            self.chosen.emit(self._study.runs[rows[0].row()])
+
+
+def _columns(points: list[tuple[float, float]]) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    return tuple(x for x, _ in points), tuple(y for _, y in points)
+
+
+def _cells(run: ReposeStudyRun) -> tuple[str, ...]:
+    measurement = run.document.get("measurement") or {"status": run.document["state"]}
+    interval = measurement.get("interval_deg")
+    value = f"{run.value:g}" if isinstance(run.value, int | float) else run.value
+    angle = str(measurement["status"]) if run.angle is None else f"{run.angle:.1f}°"
+    return value, str(run.seed), angle, f"{interval[0]:.1f} to {interval[1]:.1f}" if interval else ""
+
+
+def _why(run: ReposeStudyRun) -> str:
+    measurement = run.document.get("measurement") or {}
+    said = [run.document.get("problem"), measurement.get("reason"), "Choose it to see the run."]
+    return "\n".join(str(each) for each in said if each)
