@@ -128,10 +128,8 @@ class Extraction:
     @property
     def summary(self) -> str:
         """One sentence for the user."""
-        return (
-            f"{self.n_found} particles; left out: {len(self.border)} at the border, "
-            f"{len(self.small)} too small."
-        )
+        particles = "1 particle" if self.n_found == 1 else f"{self.n_found} particles"
+        return f"{particles}; left out: {len(self.border)} at the border, {len(self.small)} too small."
 
 
 def extract_particles(

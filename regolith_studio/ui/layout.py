@@ -18,6 +18,14 @@ def stacked(parts: Sequence[QWidget], sizes: Sequence[int], stretch: int) -> QSp
     return _splitter(Qt.Orientation.Vertical, parts, sizes, stretch)
 
 
+def equal_parts(direction: Qt.Orientation, parts: Sequence[QWidget]) -> QSplitter:
+    """Parts of the same size with movable borders, which all take their share of what room is left."""
+    made = _splitter(direction, parts, [1000] * len(parts), 0)
+    for number in range(len(parts)):
+        made.setStretchFactor(number, 1)
+    return made
+
+
 def tabs(name: str, pages: Sequence[tuple[QWidget, str]]) -> QTabWidget:
     """Pages of which one is seen."""
     made = QTabWidget()

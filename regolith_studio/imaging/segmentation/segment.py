@@ -86,12 +86,16 @@ class Segmentation:
         return len(self.sizes)
 
     @property
+    def counts(self) -> str:
+        """How many grains of how many bodies."""
+        grains = "1 grain" if self.n_grains == 1 else f"{self.n_grains} grains"
+        bodies = "1 connected body" if self.n_bodies == 1 else f"{self.n_bodies} connected bodies"
+        return f"{grains} from {bodies}"
+
+    @property
     def summary(self) -> str:
         """One sentence for the user."""
-        return (
-            f"{self.n_grains} grains from {self.n_bodies} connected bodies at grey level {self.level:g}; "
-            f"{self.n_small} too small."
-        )
+        return f"{self.counts} at grey level {self.level:g}; {self.n_small} too small."
 
 
 Steps = Generator[SegmentationProgress, None, Segmentation]

@@ -107,7 +107,8 @@ class ScatterPanel(QWidget):
             self._draw_group([e for e in self._entries if e.particle.group == group], number)
         named = [(DESCRIPTOR_COLOURS[n % len(DESCRIPTOR_COLOURS)], g) for n, g in enumerate(groups) if g]
         self.plot.set_legend(named if len(groups) > 1 else [])
-        self.plot.set_remark(f"{len(self._entries)} particles")
+        count = len(self._entries)
+        self.plot.set_remark("1 particle" if count == 1 else f"{count} particles")
         canvas.enableAutoRange()
 
     def _draw_group(self, members: Sequence[ParticleEntry], number: int) -> None:

@@ -2,12 +2,13 @@
 
 import numpy as np
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QGridLayout, QStackedLayout, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QStackedLayout, QVBoxLayout, QWidget
 
 from regolith_studio.imaging.boxes import Box, box_between
 from regolith_studio.imaging.sections import Sections
 from regolith_studio.imaging.segmentation.segment import Segmentation
 from regolith_studio.jobs.scanning import Scan
+from regolith_studio.ui.layout import equal_parts
 from regolith_studio.ui.pages.scan.histogram_plot import HistogramPlot
 from regolith_studio.ui.pages.scan.slice_view import SliceView
 from regolith_studio.ui.theme import Theme
@@ -96,16 +97,9 @@ class Overview(QWidget):
             view.show_grains(self._labels, self._part, self.place[view.axis])
 
     def _arrange(self) -> None:
-        page = QWidget()
-        grid = QGridLayout(page)
-        grid.setContentsMargins(0, 0, 0, 0)
-        grid.setSpacing(8)
-        for part, (row, column) in zip(
-            (*self.slices, self.histogram), ((0, 0), (0, 1), (1, 0), (1, 1)), strict=True
-        ):
-            grid.addWidget(part, row, column)
-            grid.setRowStretch(row, 1)
-            grid.setColumnStretch(column, 1)
+        above = equal_parts(Qt.Orientation.Horizontal, self.slices[:2])
+        below = equal_parts(Qt.Orientation.Horizontal, [self.slices[2], self.histogram])
+        page = equal_parts(Qt.Orientation.Vertical, [above, below])
         hint = QWidget()
         column_of_words = QVBoxLayout(hint)
         words = remark(

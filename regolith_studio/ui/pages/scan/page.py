@@ -5,6 +5,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from PySide6.QtCore import QTimer
 from PySide6.QtGui import QDragEnterEvent, QDropEvent
 from PySide6.QtWidgets import QFileDialog, QHBoxLayout
@@ -136,7 +137,7 @@ class ScanPage(PageWidget):
             self.read(VolumeInput(path))
 
     def _ask(self, path: Path, header: VolumeHeader) -> None:
-        self._show_dialog(VolumeDialog(path, header, parent=self))
+        self._show_dialog(VolumeDialog(path, header, last=self._last_size(), parent=self))
 
     def _ask_layout(self, path: Path) -> None:
         try:
@@ -144,12 +145,22 @@ class ScanPage(PageWidget):
         except RegolithError as error:
             self._context.toast.problem(str(error))
             return
-        self._show_dialog(VolumeDialog(path, None, layout, parent=self))
+        self._show_dialog(VolumeDialog(path, None, layout, self._last_size(), self))
 
     def _show_dialog(self, dialog: VolumeDialog) -> None:
-        dialog.accepted.connect(lambda: self.read(dialog.value()))
+        dialog.accepted.connect(lambda: self._read_and_remember(dialog.value()))
         dialog.finished.connect(dialog.deleteLater)
         dialog.open()
+
+    def _read_and_remember(self, given: VolumeInput) -> None:
+        size = np.ravel(np.asarray(given.voxel_size))[0]
+        self._context.remember("voxel_size", [float(size), given.unit])
+        self.read(given)
+
+    def _last_size(self) -> tuple[float, str]:
+        """Voxel size and unit of the volume before: scans of one day are alike."""
+        size, unit = self._context.recall("voxel_size", [1.0, "um"])
+        return float(size), str(unit)
 
     def _take(self, scan: Scan) -> None:
         self._stop_work()

@@ -7,6 +7,9 @@ from regolith_studio.imaging.segmentation.segment import Segmentation
 from regolith_studio.jobs.scanning import Scan
 from regolith_studio.ui.widgets.labels import heading, remark
 
+_MOST_OF_IT = 0.4
+"""Share of the voxels that no single grain of a sample has."""
+
 
 class StepsPanel(QWidget):
     """Buttons that lead through the page; each says what it needs by being greyed out."""
@@ -60,14 +63,16 @@ class StepsPanel(QWidget):
         elif not is_grey:
             self.found.setText("The volume holds labels: its grains have been found already.")
         elif grains is not None:
-            self.found.setText(f"{grains.summary} {_too_small(grains, least)}".strip())
+            self.found.setText(f"{grains.summary} {_too_small(grains, least)}{_too_large(grains)}".strip())
         elif preview is not None:
             self.found.setText(
-                f"In the frame: {preview.n_grains} grains from {preview.n_bodies} connected bodies. "
-                f"{_too_small(preview, least)} Click into a slice to move the frame.".replace("  ", " ")
+                f"In the frame: {preview.counts}. {_too_small(preview, least)}{_too_large(preview)}"
+                "Click into a slice to move the frame."
             )
         else:
-            self.found.setText("No grain in the frame so far.")
+            self.found.setText(
+                "No grain in the frame so far. Move the level, or click into a slice to move the frame."
+            )
 
     def set_particles(self, summary: str) -> None:
         """Say what came out."""
@@ -77,7 +82,20 @@ class StepsPanel(QWidget):
 
 def _too_small(found: Segmentation, least: int) -> str:
     count = int((found.sizes < least).sum())
-    return f"{count} of them have fewer than {least} voxels and will be left out." if count else ""
+    if not count:
+        return ""
+    have = "has" if count == 1 else "have"
+    return f"{count} of them {have} fewer than {least} voxels and will be left out. "
+
+
+def _too_large(found: Segmentation) -> str:
+    """What a new user must be told who sees one body instead of many grains."""
+    if found.sizes.max() < _MOST_OF_IT * found.labels.array.size:
+        return ""
+    return (
+        "One grain fills most of it: if the grains are dark, tick that below; else move the level or "
+        "make h smaller. "
+    )
 
 
 def _about(scan: Scan | None) -> str:

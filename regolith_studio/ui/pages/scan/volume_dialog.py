@@ -44,6 +44,8 @@ class VolumeDialog(QDialog):
         What it says about itself; none for a raw file.
     layout
         What the name of a raw file tells, if anything.
+    last
+        Voxel size, and its unit, that begin where the file does not say them.
     """
 
     def __init__(
@@ -51,12 +53,13 @@ class VolumeDialog(QDialog):
         path: Path,
         header: VolumeHeader | None,
         layout: RawLayout | None = None,
+        last: tuple[float, str] = (1.0, "um"),
         parent: QWidget | None = None,
     ) -> None:
         super().__init__(parent)
         self.setWindowTitle("Open a volume")
         self.setObjectName("volume_dialog")
-        self._path, self._header, self._layout = path, header, layout
+        self._path, self._header, self._layout, self._last_size = path, header, layout, last
         self.edges = [_number(f"voxel_{axis}", f"Edge of a voxel along {axis}") for axis in "xyz"]
         self.unit = choice("voxel_unit", "Unit of the voxel size", UNITS)
         self.dataset = choice("dataset", "Volume in the file", ())
@@ -112,15 +115,19 @@ class VolumeDialog(QDialog):
 
     def _suggest(self) -> None:
         header = self._header
+        size, unit = self._last_size
         for field in self.edges:
-            field.setValue(2.3)
+            field.setValue(size)
+        self.unit.setCurrentIndex(max(0, self.unit.findData(unit)))
         if header is None:
             self._suggest_layout(self._layout)
             return
         if header.voxel_size is not None:
             for field, edge in zip(self.edges, header.voxel_size, strict=True):
                 field.setValue(edge)
-        self.unit.setCurrentIndex(max(0, self.unit.findData(header.unit or "um")))
+            self.unit.setCurrentIndex(max(0, self.unit.findData(header.unit or "um")))
+        looks = "labels of grains" if header.kind == "labels" else "grey values"
+        self.kind.setItemText(0, f"What it looks like: {looks}")
         for entry in header.datasets:
             self.dataset.addItem(
                 f"{entry.name}, {' × '.join(map(str, entry.shape))}, {entry.dtype}", entry.name
