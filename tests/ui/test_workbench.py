@@ -57,7 +57,7 @@ def test_that_the_palette_finds_commands_of_the_window_and_of_hidden_pages(windo
     palette.line.clear()
     QTest.keyClicks(palette.line, "go sample")
     QTest.keyClick(palette.line, Qt.Key.Key_Return)
-    assert window.pages.current == "sample"
+    wait(lambda: window.pages.current == "sample", 5.0)
     wait(lambda: window.findChild(CommandPalette) is None)
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from PySide6.QtCore import QEvent, QObject, Qt
+from PySide6.QtCore import QEvent, QObject, Qt, QTimer
 from PySide6.QtGui import QKeyEvent
 from PySide6.QtWidgets import QDialog, QLineEdit, QListWidget, QVBoxLayout, QWidget
 
@@ -81,4 +81,4 @@ class CommandPalette(QDialog):
             return
         command = found[max(0, self.list.currentRow())]
         self.accept()
-        command.run()
+        QTimer.singleShot(0, self.parent() or self, command.run)  # when this dialog is gone

@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QFileDialog, QHBoxLayout
 
 from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.geometry.particle import Particle
+from regolith_studio.jobs.comparing import compare_distributions
 from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.generating import GenerateOrder, groups_of, make_particles
 from regolith_studio.jobs.judging import (
@@ -26,6 +27,7 @@ from regolith_studio.readers.shape_files import ShapeSource, read_shape_source
 from regolith_studio.ui.layout import padded, scrolled_column, side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.model.controls import DrawControls, SourceControls, order_from
+from regolith_studio.ui.pages.model.distributions import DistributionsPanel
 from regolith_studio.ui.pages.model.files import ask_card, ask_model
 from regolith_studio.ui.pages.model.judgement import JudgementPanel
 from regolith_studio.ui.pages.model.sources import Sources, usual_sizes
@@ -53,7 +55,7 @@ class ModelPage(PageWidget):
         self._live_seed = 0
         self.source, self.drawing = SourceControls(), DrawControls()
         self.live, self.gallery = LiveShape(context.views), Gallery(context.views)
-        self.judgement = JudgementPanel()
+        self.distributions, self.judgement = DistributionsPanel(), JudgementPanel()
         self._place()
         self._connect()
         context.wiring.refresh("particles", self._show_sources)
@@ -64,6 +66,7 @@ class ModelPage(PageWidget):
     def set_theme(self, theme: Theme) -> None:
         self.live.set_theme(theme)
         self.gallery.set_theme(theme)
+        self.distributions.set_theme(theme)
 
     def commands(self) -> Mapping[str, Callable[..., object]]:
         return {
@@ -199,6 +202,8 @@ class ModelPage(PageWidget):
         self._live_seed = 0
         self._show_live(again=True)
         self.gallery.show_shapes(fitted.examples, ())
+        self._context.stop("compare")
+        self.distributions.show_compared(None)
         self.judgement.show_judged(None)
         self._show_state()
         self.drawing.show_names(getattr(model, "names", ()))
@@ -214,6 +219,9 @@ class ModelPage(PageWidget):
         thrown = f"; {drawn.draws.rejected:,} draws thrown away" if drawn.draws.rejected else ""
         self.drawing.findings.setText(f"{len(drawn.draws):,} particles{sizes}{thrown}.")
         self.gallery.show_shapes(self._fitted.examples if self._fitted else (), drawn.examples)
+        job = Job(compare_distributions, (self._sample(), drawn.draws))
+        show = self.distributions.show_compared
+        self._context.start("Comparing distributions", job, show, lane="compare")
         self._show_state()
 
     def _show_live(self, again: bool = False) -> None:
@@ -288,7 +296,8 @@ class ModelPage(PageWidget):
             self._context.toast.problem(str(error))
 
     def _place(self) -> None:
-        below = tabs("model_tabs", [(self.gallery, "Gallery"), (self.judgement, "Judgement")])
+        shown = [(self.gallery, "Gallery"), (self.distributions, "Distributions")]
+        below = tabs("model_tabs", [*shown, (self.judgement, "Judgement")])
         middle = stacked([self.live, below], [380, 420], stretch=1)
         middle.setObjectName("model_rows")
         parts = [scrolled_column([self.source, self.drawing]), padded(middle, 2, 10, 10, 8)]

@@ -20,6 +20,15 @@ PAGE = Page(
     build=build,
     actions=(
         ActionSpec(PAGE_MENU, "run_all", "&Compute all", "play", "Ctrl+Return", "All three", bar="words"),
-        ActionSpec(PAGE_MENU, "save", "&Save figures and tables …", "export", tip="CSV, JSON, PNG and SVG"),
+        ActionSpec(
+            PAGE_MENU,
+            "save",
+            "&Save figures and tables …",
+            "export",
+            "",
+            "CSV, JSON, PNG",
+            None,
+            "words",
+        ),
     ),
 )

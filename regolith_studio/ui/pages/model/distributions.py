@@ -1,0 +1,89 @@
+"""Distributions of a descriptor: drawn particles over measured ones."""
+
+import numpy as np
+from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
+
+from regolith_studio.descriptors.catalogue import CATALOGUE
+from regolith_studio.descriptors.distributions import Distribution, wasserstein_1
+from regolith_studio.jobs.comparing import Compared
+from regolith_studio.studies.population import KEYS
+from regolith_studio.ui.theme import Theme
+from regolith_studio.ui.widgets.choice_box import ChoiceBox
+from regolith_studio.ui.widgets.curve_plot import Curve, CurvePlot
+from regolith_studio.ui.widgets.labels import ElidedLabel, plain_symbol
+
+WEIGHTINGS = {"number": "Each particle counts the same", "volume": "Particles count by their volume"}
+WAITING = "Draw particles: their distributions appear here, over those of the measured ones."
+_UNITS = {0: "", 1: " [µm]", 2: " [µm²]", 3: " [µm³]"}
+
+
+class DistributionsPanel(QWidget):
+    """The share of particles at or below each value, as two stairs."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("model_distributions")
+        self.key = ChoiceBox("model_distribution_of", "Descriptor", {k: CATALOGUE[k].label for k in KEYS})
+        self.weighting = ChoiceBox("model_distribution_weighting", "What particles count", WEIGHTINGS)
+        self.plot = CurvePlot("", "Share at or below [%]", WAITING)
+        self.words = ElidedLabel(role="remark")
+        self.weighting.setMinimumContentsLength(26)
+        self._compared: Compared | None = None
+        row = QHBoxLayout()
+        row.setContentsMargins(8, 6, 8, 0)
+        row.setSpacing(10)
+        row.addWidget(self.key)
+        row.addWidget(self.weighting)
+        row.addWidget(self.words, 1)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addLayout(row)
+        layout.addWidget(self.plot, 1)
+        for box in (self.key, self.weighting):
+            box.currentIndexChanged.connect(lambda _: self._show())
+        self._show()
+
+    def show_compared(self, compared: Compared | None) -> None:
+        """Draw these distributions, or none."""
+        self._compared = compared if compared is not None and len(compared.drawn) else None
+        self._show()
+
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        self.plot.set_theme(theme)
+        self._show()
+
+    def _show(self) -> None:
+        row = CATALOGUE[self.key.value()]
+        symbol = plain_symbol(row.symbol)
+        self.plot.set_labels(f"{row.label} {symbol}{_UNITS.get(row.dimension, '')}", "Share at or below [%]")
+        if self._compared is None:
+            self.plot.set_curves([])
+            self.words.setText("")
+            return
+        measured, drawn = self._compared.distributions(self.key.value(), self.weighting.value())
+        theme = self.plot.theme
+        curves = [_stairs(f"{len(drawn.values):,} drawn", theme.fit, drawn)]
+        if measured is not None:
+            curves.insert(0, _stairs(f"{len(measured.values):,} measured", theme.particle, measured))
+        self.plot.set_curves(curves)
+        self.words.setText(distance_words(measured, drawn))
+
+
+def distance_words(measured: Distribution | None, drawn: Distribution) -> str:
+    """How far apart two distributions are."""
+    if measured is None:
+        return "The source holds no measured particles."
+    places = np.union1d(measured.values, drawn.values)
+    ks = float(np.abs(measured.ecdf(places) - drawn.ecdf(places)).max())
+    apart = wasserstein_1(measured, drawn) / measured.mean
+    return (
+        f"Wasserstein distance {apart:.1%} of the mean, Kolmogorov-Smirnov distance {ks:.2f}; "
+        f"means {measured.mean:.4g} measured, {drawn.mean:.4g} drawn"
+    )
+
+
+def _stairs(label: str, colour: str, spread: Distribution) -> Curve:
+    x = np.repeat(spread.values, 2)
+    y = np.concatenate([[0.0], np.repeat(np.cumsum(spread.weights), 2)[:-1]])
+    return Curve(label, colour, tuple(x), tuple(100.0 * y))
