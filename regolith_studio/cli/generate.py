@@ -23,7 +23,7 @@ Model = Annotated[
     str,
     typer.Option(
         "--model",
-        help="gaussian_field gaussian_mixture log_field mixture_field sample_matched (by itself the last).",
+        help="gaussian_field gaussian_mixture hull_field log_field mixture_field sample_matched (default).",
         metavar="NAME",
         show_default=False,
     ),

@@ -12,6 +12,7 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.model.models.gaussian_field import GaussianField
 from regolith_studio.model.models.gaussian_mixture import GaussianMixture
+from regolith_studio.model.models.hull_field import HullField
 from regolith_studio.model.models.log_field import LogField
 from regolith_studio.model.models.mixture_field import MixtureField
 from regolith_studio.model.models.sample_matched import SampleMatched
@@ -34,7 +35,7 @@ def relative_amplitudes(model: FittedModel) -> FloatArray:
     match model:
         case GaussianField():
             squares = model.spectrum / model.mean**2
-        case LogField():
+        case LogField() | HullField():
             squares = model.spectrum / (4 * np.pi)
         case GaussianMixture():
             squares = model.weights @ (model.spectra / model.means[:, None] ** 2) / model.weights.sum()

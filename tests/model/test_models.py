@@ -30,6 +30,7 @@ def test_that_the_models_are_found_by_themselves() -> None:
     assert set(MODELS) == {
         "gaussian_field",
         "gaussian_mixture",
+        "hull_field",
         "log_field",
         "mixture_field",
         "sample_matched",

@@ -1,0 +1,146 @@
+"""Hulls on a grid, the copula, and the field that is drawn to its hull."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from scipy.spatial import ConvexHull
+from scipy.stats import spearmanr
+
+from regolith_studio.errors import InputError
+from regolith_studio.model.copula import GaussianCopula
+from regolith_studio.model.draws import Draws, virtual_mesh
+from regolith_studio.model.hull_radii import hull_grid, hull_radii
+from regolith_studio.model.models import MODELS
+from regolith_studio.model.models.hull_field import HullFieldSettings
+from regolith_studio.model.sample import Sample
+from regolith_studio.model.shape_numbers import (
+    CONVEXITY,
+    FORM,
+    POWERS,
+    log_ellipsoids,
+    shape_grid,
+    shape_numbers,
+)
+
+MODEL = MODELS["hull_field"]
+
+
+def _dented(n: int, seed: int = 0) -> np.ndarray:
+    rng = np.random.default_rng(seed)
+    rows = 0.05 * rng.normal(size=(n, 49))
+    rows[:, 0] = 0.0
+    return np.asarray(rows @ hull_grid(14, 6).grid.basis)
+
+
+def test_that_the_hull_of_an_ellipsoid_is_itself() -> None:
+    shapes = hull_grid(25, 4)
+    frames = np.eye(3)[None]
+    logs = log_ellipsoids(shapes.grid.directions, np.array([[0.3, 0.2]]), frames)
+    np.testing.assert_allclose(shapes.hulls(np.exp(logs)), np.exp(logs), rtol=0.01)
+
+
+def test_that_an_ellipsoid_has_the_axes_asked_for() -> None:
+    directions = np.vstack([np.eye(3), -np.eye(3)])
+    short, middle, long = np.exp(log_ellipsoids(directions, np.array([[0.3, 0.2]]), np.eye(3)[None]))[0, :3]
+    assert long / middle == pytest.approx(np.exp(0.3))
+    assert middle / short == pytest.approx(np.exp(0.2))
+    assert short * middle * long == pytest.approx(1.0)
+
+
+def test_that_hulls_on_the_grid_hold_the_hull_of_its_points() -> None:
+    shapes = hull_grid(14, 6)
+    radii = np.exp(_dented(5))
+    hulls = shapes.hulls(radii)
+    for radius, hull in zip(radii, hulls, strict=True):
+        planes = ConvexHull(radius[:, None] * shapes.grid.directions).equations
+        heights = shapes.grid.directions @ planes[:, :3].T
+        exact = np.where(heights > 1e-9, -planes[:, 3] / np.maximum(heights, 1e-9), np.inf).min(axis=1)
+        assert (hull >= exact * (1 - 1e-5)).all()
+        assert (hull / exact - 1).mean() < 0.03
+
+
+def test_that_compiled_hulls_equal_plain_python() -> None:
+    shapes = hull_grid(5, 2)
+    radii = np.exp(_dented(2)[:, : len(shapes.grid.weights)]).astype(np.float32)
+    plain = hull_radii.py_func(radii, shapes.cosines, shapes.reciprocals)
+    np.testing.assert_allclose(hull_radii(radii, shapes.cosines, shapes.reciprocals), plain, rtol=1e-6)
+
+
+def test_that_a_surface_drawn_to_its_hull_fills_the_share_asked_for() -> None:
+    shapes = hull_grid(14, 6)
+    logs = _dented(40)
+    before = shapes.convexities(np.exp(logs))
+    wanted = np.clip(before + np.linspace(-0.03, 0.05, 40), 0.0, 0.98)
+    np.testing.assert_allclose(
+        shapes.convexities(np.exp(shapes.with_convexities(logs, wanted))), wanted, atol=2e-4
+    )
+    np.testing.assert_allclose(np.exp(shapes.drawn(logs, 1.0)), shapes.hulls(np.exp(logs)), rtol=1e-5)
+
+
+def test_that_a_copula_keeps_ranks_and_marginals() -> None:
+    rng = np.random.default_rng(3)
+    normal = rng.multivariate_normal([0, 0, 0], [[1, 0.6, -0.3], [0.6, 1, 0], [-0.3, 0, 1]], size=4000)
+    table = np.column_stack([normal[:, 0], np.exp(normal[:, 1]), normal[:, 2] ** 3])
+    copula = GaussianCopula.of(table)
+    drawn = copula.draw(rng.permutation(table[:, 0]), rng)
+    np.testing.assert_allclose(spearmanr(drawn).statistic, spearmanr(table).statistic, atol=0.05)
+    np.testing.assert_allclose(np.percentile(drawn, [10, 50, 90], axis=0)[:, 1],
+                               np.percentile(table, [10, 50, 90], axis=0)[:, 1], rtol=0.06)  # fmt: skip
+
+
+def test_that_a_first_number_beyond_the_tables_goes_with_the_outermost() -> None:
+    x = np.linspace(0.0, 1.0, 500)
+    copula = GaussianCopula.of(np.column_stack([x, 2 * x]))
+    drawn = copula.draw(np.full(200, 50.0), np.random.default_rng(0))
+    assert drawn[:, 0].min() == 50.0
+    assert 1.5 < drawn[:, 1].mean() <= 2.0
+
+
+def test_that_numbers_that_are_no_distribution_are_refused() -> None:
+    with pytest.raises(InputError, match="finite and ascend"):
+        GaussianCopula(np.array([[1.0], [0.0]]), np.eye(1))
+    with pytest.raises(InputError, match="positive definite"):
+        GaussianCopula(np.array([[0.0, 0.0], [1.0, 1.0]]), np.ones((2, 2)))
+
+
+def test_that_the_numbers_of_an_ellipsoid_are_its_own() -> None:
+    shapes = shape_grid(10)
+    logs = log_ellipsoids(shapes.grid.directions, np.array([[0.25, 0.15]]), np.eye(3)[None])
+    found = shape_numbers(shapes.grid.expanded(7 * np.exp(logs)))[0]
+    assert np.exp(found[0]) == pytest.approx(7.0, rel=1e-3)
+    np.testing.assert_allclose(found[FORM], [0.25, 0.15], atol=2e-3)
+    assert found[POWERS].max() < -10
+    assert found[CONVEXITY] > 4
+
+
+@pytest.mark.parametrize("l_max", [2, 21])
+def test_that_a_degree_that_has_no_facets_or_too_many_is_refused(
+    l_max: int, rough_sample: Callable[..., Sample]
+) -> None:
+    with pytest.raises(InputError, match=f"has l_max 3 to 20, got {l_max}"):
+        MODEL.fit(rough_sample(10, 21), HullFieldSettings(l_max=l_max))
+
+
+def test_that_an_unknown_law_of_sizes_is_refused(rough_sample: Callable[..., Sample]) -> None:
+    with pytest.raises(InputError, match="size law must be one of"):
+        MODEL.fit(rough_sample(10), HullFieldSettings(4, "even"))
+
+
+def test_that_drawn_particles_have_the_numbers_and_fill_the_hull_of_real_ones(cement: Sample) -> None:
+    cut = cement.truncated(10).coefficients
+    draws = {key: MODELS[key].fit(cement).draw(500, 2) for key in ("hull_field", "log_field")}
+    grid = shape_grid(10).grid
+    measured = shape_numbers(cut)
+    drawn = shape_numbers(grid.expanded(np.exp(draws["hull_field"].coefficients @ grid.basis)))
+    gap = np.abs(drawn.mean(axis=0) - measured.mean(axis=0)) / measured.std(axis=0)
+    assert gap.max() < 0.4
+    np.testing.assert_allclose(drawn.std(axis=0) / measured.std(axis=0), 1.0, atol=0.3)
+    real = _mean_share_of_hull(Draws(cut, "radius", "measured", 0))
+    assert abs(_mean_share_of_hull(draws["hull_field"]) - real) < 0.012
+    assert abs(_mean_share_of_hull(draws["log_field"]) - real) > 0.02
+
+
+def _mean_share_of_hull(draws: Draws) -> float:
+    meshes = (virtual_mesh(draws, i, 3) for i in range(150))
+    return float(np.mean([mesh.volume / ConvexHull(mesh.vertices).volume for mesh in meshes]))
