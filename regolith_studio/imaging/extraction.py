@@ -24,6 +24,8 @@ from regolith_studio.imaging.label_table import label_masks, label_table
 from regolith_studio.imaging.slabs import SlabSource
 from regolith_studio.imaging.smoothing import windowed_sinc, with_volume
 
+_COARSE = "Only"
+
 
 @dataclass(frozen=True)
 class ExtractionSettings:
@@ -198,6 +200,11 @@ def voxel_diameter(n_voxels: int) -> float:
     return float((6.0 * n_voxels / np.pi) ** (1 / 3))
 
 
+def is_coarse_note(note: str) -> bool:
+    """Whether a particle's note says that it has few voxels, and not that anything was changed."""
+    return note.startswith(f"{_COARSE} ") and "voxels in diameter" in note
+
+
 def border_weight(box: Box, shape: tuple[int, int, int]) -> float:
     """Weight that undoes the bias of leaving out border grains: 1 / prod(1 - (b + 1) / N).
 
@@ -230,7 +237,7 @@ def mask_surface(
     restored = with_volume(smooth, float(n_voxels))
     if (diameter := voxel_diameter(n_voxels)) < settings.warn_diameter:
         notes.append(
-            f"Only {diameter:.1f} voxels in diameter: volume and above all surface area are coarse "
+            f"{_COARSE} {diameter:.1f} voxels in diameter: volume and above all surface area are coarse "
             f"below {settings.warn_diameter:g}."
         )
     corner = np.array([side.start for side in box]) - 1.0

@@ -9,6 +9,7 @@ from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.descriptors.distributions import distribution
 from regolith_studio.descriptors.zingg import zingg_class
 from regolith_studio.errors import InputError
+from regolith_studio.imaging.extraction import is_coarse_note
 from regolith_studio.jobs.examining import Examined
 from regolith_studio.session.outputs.descriptors import descriptor_table
 from regolith_studio.session.results import ParticleEntry
@@ -32,12 +33,20 @@ Filter = Callable[[ParticleEntry], bool]
 
 
 def health_word(entry: ParticleEntry) -> str:
-    """One word: ``sound``, ``mended`` (or doubtful), ``unsound``, or ``unknown`` until it is measured."""
+    """One word that says most: ``sound``, ``coarse``, ``mended``, ``doubtful`` or ``unsound``.
+
+    Coarse: of few voxels. Mended: with a note on what was changed. Doubtful: with faults that leave a
+    volume and an area, such as tunnels and crossing faces. ``unknown`` until it is measured.
+    """
     if entry.health is None:
         return "unknown"
     if not entry.health.sound:
         return "unsound"
-    return "mended" if entry.health.problems or entry.particle.notes else "sound"
+    if entry.health.problems:
+        return "doubtful"
+    if all(is_coarse_note(note) for note in entry.particle.notes):
+        return "coarse" if entry.particle.notes else "sound"
+    return "mended"
 
 
 def health_sentences(entry: ParticleEntry) -> str:
