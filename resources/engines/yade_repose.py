@@ -18,8 +18,8 @@ from yade.minieigenHP import Quaternion
 FOLDER = Path(sys.argv[1])
 ORDER = json.loads((FOLDER / "order.json").read_text(encoding="utf-8"))
 GONE = 1000.0
-STAVES = 2
-"""Mask of the tube's blocks, which touch each other for good."""
+ANY, STAVE = 1, 2
+"""Bits of masks: bodies with a common bit meet, but not the blocks of the tube, which touch for good."""
 
 
 def material(label, friction):
@@ -64,7 +64,7 @@ def add_walls():
                 x, y = reach * math.cos(angle), reach * math.sin(angle)
                 corners += [Vector3(x, y, ORDER["rim"] + z) for z in (0.0, wall["height"])]
         body = polyhedra_utils.polyhedra(stave, v=corners, fixed=True)
-        body.mask = STAVES
+        body.mask = ANY | STAVE
         numbers.append(O.bodies.append(body))
     return numbers
 
@@ -76,7 +76,7 @@ def set_engines():
         wrapper.InsertionSortCollider(
             [wrapper.Bo1_Polyhedra_Aabb(), wrapper.Bo1_Wall_Aabb()],
             verletDist=ORDER["skin"],
-            avoidSelfInteractionMask=STAVES,
+            avoidSelfInteractionMask=STAVE,
         ),
         wrapper.InteractionLoop(
             [

@@ -156,5 +156,7 @@ def test_that_yade_fills_lifts_and_comes_to_rest(boxes: Dataset) -> None:
     assert ending.checks.particles_out == 20
     assert ending.checks.at_rest
     assert ending.checks.energy_gain < 0.05
+    filled = [moment.pile for moment in moments if moment.pile.phase in ("fill", "settle")]
+    assert max(np.hypot(*pile.points[:, :2].T).max() for pile in filled) < SMALL.test.diameter / 2
     assert ending.pile.points[:, 2].max() < moments[0].pile.points[:, 2].max() / 2
     assert list(dict.fromkeys(moment.pile.phase for moment in moments)) == ["fill", "settle", "lift", "rest"]

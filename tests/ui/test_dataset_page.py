@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QFileDialog, QMessageBox, QPushButton, QWidget
 
 from regolith_studio.dataset.exporters import EXPORTERS
 from regolith_studio.dataset.folder import read_dataset, validate_dataset
+from regolith_studio.dataset.reading import dataset_hash
 from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.runners.inline import InlineRunner
@@ -256,6 +257,24 @@ def test_that_the_library_lists_datasets_with_what_came_from_them(chosen, tmp_pa
     wait(lambda: len(chosen.gallery.shown) == 3)
     QTest.keyClicks(library.words, "venus")
     assert library.tree.topLevelItemCount() == 0
+
+
+def test_that_the_first_dataset_opens_the_library_with_its_simulations(chosen, tmp_path, wait) -> None:
+    """Nobody chose a folder: what was built is listed, and what was simulated elsewhere with it."""
+    runs = tmp_path / "elsewhere"
+    chosen.session.shelf.put("runs_folder", runs)
+    chosen.build_in(tmp_path / "sets" / "set")
+    library = chosen.library
+    wait(lambda: library.tree.topLevelItemCount() == 1)
+    assert library.tree.topLevelItem(0).childCount() == 0
+    for name, sha in (("own", dataset_hash(tmp_path / "sets" / "set")), ("other", "0" * 64)):
+        (runs / name).mkdir(parents=True)
+        run = {"format": "regolith-studio-repose", "state": "finished", "engine": {"label": "MuJoCo"}}
+        run |= {"dataset": {"name": "set", "sha256": sha}, "measurement": {"angle_deg": 27.0}}
+        (runs / name / "repose.json").write_text(json.dumps(run))
+    chosen.entered()
+    wait(lambda: library.tree.topLevelItemCount() == 1 and library.tree.topLevelItem(0).childCount() == 1)
+    assert library.tree.topLevelItem(0).child(0).text(0) == "27.0° angle of repose of set"
 
 
 @pytest.mark.usefixtures("app")

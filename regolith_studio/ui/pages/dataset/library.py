@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+from platformdirs import user_data_path
 from PySide6.QtCore import QSize, Qt, QUrl, Signal
 from PySide6.QtGui import QDesktopServices, QIcon
 from PySide6.QtWidgets import (
@@ -84,8 +85,20 @@ class LibraryPanel(QWidget):
         if root and Path(root).is_dir():
             self.place.setText(str(root))
             self._entries = ()
-            job = Job(list_library, (Path(root),))
+            job = Job(list_library, (Path(root), self._results()))
             self._context.start("Looking for datasets", job, self._take, lane=LANE)
+
+    def suggest(self, root: Path) -> None:
+        """List a folder where none was ever chosen; else what it holds now."""
+        if self._context.recall("library"):
+            self.refresh()
+        else:
+            self.show_folder(root)
+
+    def _results(self) -> Path:
+        """Where the page of the angle of repose keeps its runs."""
+        usual = user_data_path("regolith-studio") / "repose"
+        return Path(self._context.session.shelf.get("runs_folder", usual))
 
     def selected(self) -> LibraryEntry | None:
         """The entry of the chosen row."""

@@ -89,8 +89,7 @@ class DatasetPage(PageWidget):
         self.folder.name.setText(str(state.get("name", "regolith")))
 
     def entered(self) -> None:
-        if not self.library.entries:
-            self.library.refresh()
+        self.library.refresh()
 
     def release(self) -> None:
         self.gallery.release()
@@ -292,7 +291,7 @@ class DatasetPage(PageWidget):
     def _take_built(self, built: Built) -> None:
         self._take_dataset(built.folder, built.dataset)
         self._context.toast.note(f"{len(built.dataset)} shapes in {built.folder}.")
-        self._look_again()
+        self.library.suggest(built.folder.parent)
 
     def _look_again(self) -> None:
         if self.library.entries:

@@ -269,6 +269,7 @@ class ReposePage(PageWidget):
     # --- what a run left -----------------------------------------------------------------------
 
     def _list_runs(self, chosen: Path | None = None) -> None:
+        self._context.session.shelf.put("runs_folder", self._folder)
         self.runs.set_runs(find_runs(self._folder) if self._folder.is_dir() else [], chosen)
 
     def _show_study_run(self, run: RunSummary) -> None:
