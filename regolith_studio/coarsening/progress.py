@@ -1,6 +1,7 @@
 """What a coarsening tells while it runs."""
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -8,6 +9,9 @@ from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
+
+if TYPE_CHECKING:
+    from regolith_studio.coarsening.moves import Move
 
 
 @dataclass(frozen=True)
@@ -22,12 +26,15 @@ class MethodStep:
         Eq. 9 for `half_spaces`, as the method evaluates it.
     half_spaces
         The polyhedron, where it differs from that of the step before; else ``None``.
+    move
+        What was proposed and decided, where the method works by proposals.
     """
 
     step: int
     steps: int
     loss: float
     half_spaces: HalfSpaces | None = None
+    move: "Move | None" = None
 
 
 @dataclass(frozen=True)

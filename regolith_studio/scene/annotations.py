@@ -154,14 +154,16 @@ def show_title(plotter: Any, title: str, surroundings: Surroundings = palette.PA
     text.prop.justification_vertical = "top"
 
 
-def show_colour_scale(plotter: Any, mapper: Any, surroundings: Surroundings) -> None:
-    """The scale of the map of distances in micrometres, at the right."""
+def show_colour_scale(
+    plotter: Any, mapper: Any, surroundings: Surroundings, numbers: str = "%.2g µm"
+) -> None:
+    """The scale of a colour map at the right; of distances in micrometres, unless `numbers` says so."""
     plotter.add_scalar_bar(
         title=" ",
         mapper=mapper,
         color=surroundings.ink,
         n_labels=3,
-        fmt="%.2g µm",
+        fmt=numbers,
         vertical=True,
         width=0.045,
         height=0.34,

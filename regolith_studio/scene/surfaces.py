@@ -93,7 +93,7 @@ def show_polyhedron(
     corners = polyhedron.vertices + np.asarray(centre, dtype=np.float64)
     polygons = _polygons(corners, polyhedron.facets)
     _show_surface(plotter, polygons, palette.POLYHEDRON_MATERIAL, smooth=False, layer=layer)
-    edges = pv.PolyData(corners.copy(), lines=_facet_edges(polyhedron))
+    edges = pv.PolyData(corners.copy(), lines=facet_edges(polyhedron))
     _show_lines(plotter, edges, surroundings.outline, layer)
 
 
@@ -194,7 +194,7 @@ def _polygons(vertices: FloatArray, facets: tuple[tuple[int, ...], ...]) -> pv.P
     return polygons
 
 
-def _facet_edges(polyhedron: ConvexPolyhedron) -> FloatArray:
+def facet_edges(polyhedron: ConvexPolyhedron) -> FloatArray:
     """Each edge between two facets once, in VTK's layout of lines."""
     edges = {
         (min(a, b), max(a, b))

@@ -7,6 +7,7 @@ import numpy as np
 
 from regolith_studio.coarsening.core.cuts import with_all_facets
 from regolith_studio.coarsening.evaluation import Evaluation, LossFunction
+from regolith_studio.coarsening.moves import Move
 from regolith_studio.coarsening.progress import MethodStep
 from regolith_studio.coarsening.result import MethodResult
 from regolith_studio.coarsening.start import quadric_half_spaces
@@ -123,14 +124,16 @@ class AnnealingMethod:
         best, least, history = points, now.loss, [now.loss]
         factor, refused, taken = settings.step_factor, 0, 0
         for k in range(1, settings.iterations + 1):
-            proposal = _perturbed(points, factor, rng)
+            i, sigma, proposal = _perturbed(points, factor, rng)
             if settings.facet_repair:
                 proposal = _repaired(target, proposal)
             then = _judged(evaluate, proposal)
-            lucky = rng.random() < settings.acceptance_probability(k)
+            drawn, probability = float(rng.random()), settings.acceptance_probability(k)
+            lucky = drawn < probability
             better = then is not None and then.loss < now.loss
             changed = then is not None and (better or lucky)
             refused += then is None
+            move = Move(i, proposal, sigma, now, then, probability, drawn, changed)
             if then is not None and changed:
                 points, now, taken = proposal, then, taken + 1
             if settings.adaptive_step:
@@ -139,7 +142,7 @@ class AnnealingMethod:
                 best, least = points, now.loss
             history.append(now.loss)
             shown = HalfSpaces.from_points(points) if changed else None
-            yield MethodStep(k, settings.iterations, now.loss, shown)
+            yield MethodStep(k, settings.iterations, now.loss, shown, move)
         counts = {
             "iterations": float(settings.iterations),
             "accepted": float(taken),
@@ -159,13 +162,13 @@ def _start(target: Target, n_faces: int, rng: np.random.Generator) -> FloatArray
     return points * ties
 
 
-def _perturbed(points: FloatArray, factor: float, rng: np.random.Generator) -> FloatArray:
-    """Steps 2 and 3: one point moved by a normal step."""
+def _perturbed(points: FloatArray, factor: float, rng: np.random.Generator) -> tuple[int, float, FloatArray]:
+    """Steps 2 and 3: which point is moved, by a normal step of which deviation, and all points then."""
     sigma = factor * float(np.linalg.norm(points, axis=1).mean())
     i = int(rng.integers(len(points)))
     proposal = points.copy()
     proposal[i] = rng.normal(points[i], sigma)
-    return proposal
+    return i, sigma, proposal
 
 
 def _judged(evaluate: LossFunction, points: FloatArray) -> Evaluation | None:

@@ -46,7 +46,7 @@ class Sections(QObject):
             self.changed.emit()
 
     def set_direction(self, key: str, eye: FloatArray | None = None) -> None:
-        """Cut across another of :data:`~regolith_studio.scene.sectioning.DIRECTIONS`; `eye` points to the eye.
+        """Cut across one of :data:`~regolith_studio.scene.sectioning.DIRECTIONS`; `eye` points to the eye.
 
         What lies on the side of the eye is taken away.
         """

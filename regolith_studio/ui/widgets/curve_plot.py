@@ -27,6 +27,8 @@ class Curve:
         Whether the points themselves are drawn.
     dash
         Whether the line is dashed.
+    line
+        Whether there is a line, or only markers.
     """
 
     label: str
@@ -35,6 +37,12 @@ class Curve:
     y: tuple[float, ...]
     markers: bool = False
     dash: bool = False
+    line: bool = True
+
+
+def _plain_decades(values: Sequence[float], _scale: float, _spacing: float) -> list[str]:
+    """Numbers at a logarithmic axis, as people write them."""
+    return [f"{10.0**value:.3g}" for value in values]
 
 
 class CurvePlot(Plot):
@@ -55,6 +63,7 @@ class CurvePlot(Plot):
         self._line: pg.InfiniteLine | None = None
         super().__init__(x, y, placeholder, parent)
         self.canvas.setLogMode(x=False, y=log_y)
+        self.canvas.getAxis("left").logTickStrings = _plain_decades
 
     @property
     def curves(self) -> tuple[Curve, ...]:
@@ -87,7 +96,7 @@ class CurvePlot(Plot):
             self._items.append(self.canvas.plot(antialias=True))
         for item, curve in zip(self._items, self._curves, strict=True):
             item.setData(np.asarray(curve.x, dtype=float), np.asarray(curve.y, dtype=float))
-            item.setPen(self.pen(curve.colour, dash=curve.dash))
+            item.setPen(self.pen(curve.colour, dash=curve.dash) if curve.line else None)
             item.setSymbol("o" if curve.markers else None)
             item.setSymbolSize(5)
             item.setSymbolBrush(curve.colour)

@@ -1,0 +1,270 @@
+"""For a lecture: the paper's annealing iteration by iteration, the fit degree by degree, a field."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from regolith_studio.coarsening.coarsen import coarsen, settings_of
+from regolith_studio.coarsening.evaluation import Evaluation
+from regolith_studio.coarsening.methods import METHODS
+from regolith_studio.coarsening.methods.annealing import AnnealingSettings
+from regolith_studio.coarsening.moves import Move
+from regolith_studio.coarsening.polyhedra import polyhedron_of
+from regolith_studio.coarsening.progress import MethodStep
+from regolith_studio.coarsening.result import Coarsened
+from regolith_studio.coarsening.target import Target
+from regolith_studio.coarsening.weights import LossWeights
+from regolith_studio.descriptors.comparison import relative_errors
+from regolith_studio.descriptors.describe import describe
+from regolith_studio.errors import GeometryError, InputError
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.geometry.directions import icosphere
+from regolith_studio.geometry.half_spaces import HalfSpaces
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.harmonics.coefficients import ShCoefficients
+from regolith_studio.harmonics.fit import HarmonicFit
+from regolith_studio.harmonics.surface import gallery
+from regolith_studio.harmonics.synthesis import radii_on_icosphere
+from regolith_studio.jobs.coarsening import CoarseningOrder
+from regolith_studio.jobs.events import Partial, Progress, Started, Steps
+from regolith_studio.model.draws import virtual_mesh
+from regolith_studio.model.materials import materials
+from regolith_studio.model.spectra import with_amplitudes
+
+MOST_STEPS = 2_000
+"""Iterations of a lesson at most: every one of them keeps its polyhedra."""
+SAME = 1e-9
+GROWTH_KEYS = ("volume", "sphericity", "convex_hull_volume")
+"""Descriptors that are followed through all degrees: none of them needs the minimum-volume box, which takes
+a fifth of a second for a smooth surface."""
+
+
+@dataclass(frozen=True, eq=False)
+class AnnealingStep:
+    """One iteration of the annealing; polyhedra about the particle's centroid, in its unit.
+
+    Parameters
+    ----------
+    number
+        k; 0 is the start.
+    polyhedron
+        After the decision.
+    evaluation
+        Its errors and loss.
+    move
+        What was proposed and decided; ``None`` for the start.
+    before
+        The polyhedron as it was.
+    proposal
+        ``None`` where the half-spaces bound no polyhedron.
+    facet, proposed_facet
+        Facet of the moved plane in `before` and in `proposal`; ``None`` where it bounds none.
+    distance
+        How far the point p_i was moved.
+    """
+
+    number: int
+    polyhedron: ConvexPolyhedron
+    evaluation: Evaluation
+    move: Move | None = None
+    before: ConvexPolyhedron | None = None
+    proposal: ConvexPolyhedron | None = None
+    facet: int | None = None
+    proposed_facet: int | None = None
+    distance: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class AnnealingLesson:
+    """An annealing to be looked through, and what the exact method finds for the same request.
+
+    Parameters
+    ----------
+    imitated
+        The surface that is imitated, in the particle's frame.
+    centre
+        Its centroid, shape (3,).
+    scale
+        Length that one unit of the unit-volume particle stands for.
+    exact
+        ``None`` until it is known.
+    """
+
+    imitated: Mesh
+    centre: FloatArray
+    scale: float
+    n_faces: int
+    weights: LossWeights
+    settings: AnnealingSettings
+    steps: tuple[AnnealingStep, ...]
+    exact: Coarsened | None = None
+
+
+def anneal_slowly(mesh: Mesh, order: CoarseningOrder, particle_index: int = 0) -> Steps:
+    """Anneal and keep every iteration, then coarsen exactly; returns an :class:`AnnealingLesson`.
+
+    The seed, weights and number of faces are those of the order, and its settings if they are those of the
+    annealing: the last polyhedron is that of the method itself.
+
+    Raises
+    ------
+    InputError
+        If more than 2,000 iterations are asked for, or all weights are 0.
+    """
+    settings = settings_of("annealing", dict(order.settings) if order.method == "annealing" else None)
+    if settings.iterations > MOST_STEPS:
+        raise InputError(f"A lesson has at most {MOST_STEPS:,} iterations; choose fewer in the settings.")
+    if order.weights.all_zero:
+        raise InputError("All weights of the loss are 0, so there is nothing to optimise; raise one of them.")
+    yield Started("Annealing step by step", settings.iterations)
+    target = Target.of(mesh)
+    seed = np.random.SeedSequence(order.seed, spawn_key=(particle_index,))
+    run = METHODS["annealing"].run(target, order.n_faces, order.weights, seed, settings)
+    raw = []
+    for step in run:
+        raw.append(step)
+        yield Progress(step.step, step.steps)
+    lesson = AnnealingLesson(
+        mesh, target.centre, target.scale, order.n_faces, order.weights, settings, _traced(target, raw)
+    )
+    yield Partial(lesson)
+    exact = coarsen(target, order.n_faces, "exact", order.weights, order.seed, particle_index)
+    return replace(lesson, exact=exact)
+
+
+def _traced(target: Target, raw: list[MethodStep]) -> tuple[AnnealingStep, ...]:
+    """The steps of the method with the polyhedra of all proposals, in the frame of the particle."""
+    first = raw[0].half_spaces
+    move = raw[1].move
+    if first is None or move is None:
+        raise ValueError("an annealing begins with a polyhedron and a move")
+    points, now = first.points, _solid(target, first)
+    steps = [AnnealingStep(0, now, move.before)]
+    for step in raw[1:]:
+        move = step.move
+        if move is None:
+            raise ValueError("every iteration has a move")
+        proposed = HalfSpaces.from_points(move.points) if move.proposed is not None else None
+        proposal = _solid(target, proposed) if proposed is not None else None
+        i = move.plane
+        after = proposal if move.accepted and proposal is not None else now
+        judged = move.proposed if move.accepted and move.proposed is not None else move.before
+        steps.append(
+            AnnealingStep(
+                number=step.step,
+                polyhedron=after,
+                evaluation=judged,
+                move=move,
+                before=now,
+                proposal=proposal,
+                facet=_facet(now, target, points[i]),
+                proposed_facet=_facet(proposal, target, move.points[i]) if proposal is not None else None,
+                distance=target.scale * float(np.linalg.norm(move.points[i] - points[i])),
+            )
+        )
+        if move.accepted:
+            points, now = move.points, after
+    return tuple(steps)
+
+
+def _solid(target: Target, half_spaces: HalfSpaces) -> ConvexPolyhedron:
+    return polyhedron_of(target.in_particle_frame(half_spaces))
+
+
+def _facet(solid: ConvexPolyhedron, target: Target, point: FloatArray) -> int | None:
+    """The facet in the plane of a foot point of the unit-volume particle; ``None`` where it bounds none."""
+    foot = target.scale * (point @ target.axes)
+    gap = np.linalg.norm(solid.half_spaces.points - foot, axis=1)
+    nearest = int(gap.argmin())
+    return nearest if gap[nearest] <= SAME * target.scale + SAME * float(np.linalg.norm(foot)) else None
+
+
+@dataclass(frozen=True, eq=False)
+class DegreeStep:
+    """The fit cut at one degree.
+
+    Parameters
+    ----------
+    mesh
+        Its surface in the particle's frame; ``None`` where a radius is negative.
+    errors
+        Relative errors (Eq. 8) against the particle, of :data:`GROWTH_KEYS`; empty with no mesh.
+    radial_error
+        Root mean square of the radius left over, as a share of that of the radius.
+    mean_radius
+        c_00 / sqrt(4 pi).
+    """
+
+    l_max: int
+    mesh: Mesh | None
+    errors: Mapping[str, float]
+    radial_error: float
+    mean_radius: float
+
+
+def grow_fit(mesh: Mesh, fit: HarmonicFit, level: int = 4) -> Steps:
+    """The fit at every degree from 0 on; partial results and the result are tuples of :class:`DegreeStep`."""
+    degrees = range(fit.l_max + 1)
+    yield Started("Growing the fit", len(degrees))
+    truth = describe(mesh, GROWTH_KEYS)
+    steps: tuple[DegreeStep, ...] = ()
+    for degree, surface in gallery(fit, degrees, level):
+        cut = fit.truncated(degree)
+        errors = _errors(truth, surface)
+        steps += (DegreeStep(degree, surface, errors, cut.radial_error, fit.coefficients.mean_radius),)
+        yield Partial(steps)
+        yield Progress(degree + 1, len(degrees), f"l = {degree}")
+    return steps
+
+
+def _errors(truth: Mapping[str, float], surface: Mesh | None) -> Mapping[str, float]:
+    if surface is None:
+        return {}
+    try:
+        return relative_errors(truth, describe(surface, GROWTH_KEYS), GROWTH_KEYS)
+    except GeometryError:
+        return {}
+
+
+@dataclass(frozen=True, eq=False)
+class DrawnField:
+    """One realisation of a Gaussian field of ln r, and its particle.
+
+    Parameters
+    ----------
+    values
+        ln(r / mean) at the vertices of `sphere` and of `mesh`, shape (n,).
+    sphere
+        Of radius 1.
+    mesh
+        The particle, centred on its star point.
+    """
+
+    values: FloatArray
+    sphere: Mesh
+    mesh: Mesh
+
+
+def draw_field(material: str, amplitudes: FloatArray, seed: int, level: int = 4) -> DrawnField:
+    """Draw a particle of a material with other amplitudes sqrt(A_l) / mu, l = 1, 2, ...
+
+    The same seed has the same random numbers, so that the particle changes with its spectrum.
+
+    Raises
+    ------
+    InputError
+        If there is no such material or an amplitude is negative.
+    GeometryError
+        If the amplitudes are too large for a surface.
+    """
+    card = materials().get(material)
+    if card is None:
+        raise InputError(f"There is no material {material!r}; there are {', '.join(materials())}.")
+    model = with_amplitudes(card.model(len(amplitudes)), np.asarray(amplitudes, dtype=np.float64))
+    draws = model.draw(1, seed)
+    mesh = virtual_mesh(draws, 0, level)
+    relative = draws.coefficients[0].copy()
+    relative[0] = 0.0
+    return DrawnField(radii_on_icosphere(ShCoefficients(relative), level), icosphere(level), mesh)

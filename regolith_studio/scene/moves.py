@@ -1,0 +1,72 @@
+"""One step of an annealing as a picture: the polyhedron, the other one, and the facet that was moved."""
+
+from typing import Any
+
+import numpy as np
+import pyvista as pv
+from numpy.typing import ArrayLike
+
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.scene import palette, surfaces
+from regolith_studio.scene.extras import hide_named, show_named
+from regolith_studio.scene.palette import Surroundings
+
+FACET_OLD, FACET_NEW, FRAME_NEW = "moved_facet", "proposed_facet", "proposed_edges"
+LIFT = 2e-3
+"""Of a painted facet over the surface, as a share of the polyhedron's size."""
+
+
+def show_move(
+    plotter: Any,
+    now: ConvexPolyhedron,
+    facet: int | None,
+    other: ConvexPolyhedron | None,
+    other_facet: int | None,
+    centre: ArrayLike,
+    colour: str,
+    surroundings: Surroundings = palette.LIGHT,
+) -> None:
+    """Paint the facet that was moved, and draw the edges of the other polyhedron.
+
+    Parameters
+    ----------
+    now
+        After the step.
+    facet
+        Of `now`, in the plane that was moved; ``None`` if it bounds none.
+    other, other_facet
+        What it was, if the move was taken; what was proposed, if not.
+    centre
+        Where the origin of the polyhedra lies.
+    colour
+        Of what was moved.
+    """
+    middle = np.asarray(centre, dtype=np.float64)
+    surfaces.show_polyhedron(plotter, now, middle, surroundings)
+    _paint(plotter, FACET_OLD, now, facet, middle, colour, 1.0)
+    _paint(plotter, FACET_NEW, other, other_facet, middle, colour, 0.35)
+    if other is None:
+        hide_named(plotter, FRAME_NEW)
+        return
+    edges = pv.PolyData(other.vertices + middle, lines=surfaces.facet_edges(other))
+    show_named(plotter, FRAME_NEW, edges, colour, 0.8, line_width=1.4).prop.lighting = False
+
+
+def _paint(
+    plotter: Any,
+    name: str,
+    solid: ConvexPolyhedron | None,
+    facet: int | None,
+    centre: FloatArray,
+    colour: str,
+    opacity: float,
+) -> None:
+    if solid is None or facet is None:
+        hide_named(plotter, name)
+        return
+    corners = solid.vertices[list(solid.facets[facet])] + centre
+    lift = LIFT * float(np.ptp(solid.vertices, axis=0).max()) * solid.half_spaces.normals[facet]
+    polygon = pv.PolyData(np.asarray(corners + lift), faces=np.array([len(corners), *range(len(corners))]))
+    actor = show_named(plotter, name, polygon, colour, opacity)
+    actor.prop.lighting = False

@@ -1,0 +1,257 @@
+"""Lesson one: the paper's annealing, one proposal after the other, and the exact method beside it."""
+
+from functools import partial
+from typing import Any
+
+import numpy as np
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QLabel, QSplitter, QVBoxLayout, QWidget
+
+from regolith_studio.jobs.lecturing import AnnealingLesson, AnnealingStep
+from regolith_studio.scene import surfaces
+from regolith_studio.scene.comparing import OTHER, show_other
+from regolith_studio.scene.moves import show_move
+from regolith_studio.scene.shapes import FIT, Shape
+from regolith_studio.ui.layout import side_by_side, stacked
+from regolith_studio.ui.pages.lecture import words
+from regolith_studio.ui.pages.lecture.transport import Transport
+from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.views.camera_link import CameraLink
+from regolith_studio.ui.views.factory import make_view
+from regolith_studio.ui.views.view_frame import ViewFrame
+from regolith_studio.ui.widgets.bar_plot import BarPlot, BarSeries
+from regolith_studio.ui.widgets.curve_plot import Curve, CurvePlot
+from regolith_studio.ui.widgets.formula import FormulaLabel
+from regolith_studio.ui.widgets.labels import remark
+
+SEEN_THROUGH = 0.6
+"""Opacity of a polyhedron with the edges of another one about it."""
+WAIT = "The particle is annealed …"
+
+
+class AnnealingView(QWidget):
+    """Two polyhedra, the sentence and the formulas of a step, three plots.
+
+    Parameters
+    ----------
+    kind
+        ``live`` or ``image``, of the views.
+    """
+
+    def __init__(self, kind: str, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("lesson_annealing")
+        self._theme = current_theme()
+        self._lesson: AnnealingLesson | None = None
+        ink = self._theme.surroundings
+        self.frames = {
+            name: ViewFrame(make_view(kind, ink), f"lecture_{name}") for name in ("annealing", "exact")
+        }
+        self.link = CameraLink([frame.view for frame in self.frames.values()])
+        self.sentence = remark(WAIT, role="")
+        self.sentence.setObjectName("annealing_sentence")
+        self.loss_formula = FormulaLabel("Eq. 9 with its numbers")
+        self.rule = FormulaLabel("The proposal, T(k) and the decision with their numbers")
+        self.exact_formula = FormulaLabel("Eq. 9 of the exact method")
+        self.loss = CurvePlot("Step k", "Loss L (Eq. 9)", WAIT)
+        self.chance = CurvePlot("Step k", "Probability", WAIT)
+        self.terms = BarPlot("Term of Eq. 9", "α ε", WAIT, unit="")
+        for plot, name in ((self.loss, "loss"), (self.chance, "chance"), (self.terms, "terms")):
+            plot.setObjectName(f"annealing_{name}")
+        self.transport = Transport("annealing", "step")
+        self.transport.stepChanged.connect(self._show_step)
+        self._arrange()
+
+    def show_lesson(self, lesson: AnnealingLesson) -> None:
+        """Begin a lesson, or show the exact method that has been found for the one that is shown."""
+        fresh = self._lesson is None or self._lesson.steps is not lesson.steps
+        self._lesson = lesson
+        if fresh:
+            self.transport.pause()
+            self.transport.set_count(len(lesson.steps))
+            self.link.frame(lesson.imitated.vertices)
+        self._show_exact()
+        self._show_step(self.transport.step)
+
+    def wait(self, sentence: str = WAIT) -> None:
+        """Say what is being done, or why nothing is."""
+        self.sentence.setText(sentence)
+
+    @property
+    def step(self) -> AnnealingStep | None:
+        """The step that is seen."""
+        return self._lesson.steps[self.transport.step] if self._lesson is not None else None
+
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        self._theme = theme
+        for frame in self.frames.values():
+            frame.view.set_surroundings(theme.surroundings)
+            frame.set_colour(theme.polyhedron)
+        for plot in (self.loss, self.chance, self.terms):
+            plot.set_theme(theme)
+        if self._lesson is not None:
+            self._show_exact()
+            self._show_step(self.transport.step)
+
+    def release(self) -> None:
+        """Stop, and give the graphics memory back."""
+        self.transport.pause()
+        for frame in self.frames.values():
+            frame.view.release()
+
+    def colour_of(self, step: AnnealingStep) -> str:
+        """Refused moves are orange-red, accepted ones green, lucky ones blue."""
+        theme = self._theme
+        return {words.REFUSED: theme.bad, words.ACCEPTED: theme.good, words.LUCKY: theme.fit}.get(
+            words.mood_of(step), theme.muted
+        )
+
+    def _show_step(self, number: int) -> None:
+        lesson = self._lesson
+        if lesson is None:
+            return
+        step = lesson.steps[number]
+        self.sentence.setText(words.sentence_of(step, lesson))
+        self.loss_formula.set_lines(*words.loss_lines(lesson.weights, step.evaluation))
+        self.rule.set_lines(
+            words.proposal_line(step, lesson),
+            words.temperature_line(lesson.settings, step.number),
+            words.decision_line(step),
+        )
+        self.frames["annealing"].view.draw(partial(self._fill_step, step))
+        solid = step.polyhedron
+        self.frames["annealing"].set_texts(
+            f"Annealing, step {step.number} of {len(lesson.steps) - 1}",
+            f"loss {step.evaluation.loss:.4g}; {solid.n_faces} facets of {lesson.n_faces} planes",
+        )
+        self._plot_loss(number)
+        self._plot_chance(number)
+        self._plot_terms(step)
+
+    def _fill_step(self, step: AnnealingStep, plotter: Any) -> None:
+        lesson, move = self._lesson, step.move
+        if lesson is None:
+            return
+        taken = move is not None and move.accepted
+        facet, other_facet = (step.proposed_facet, step.facet) if taken else (step.facet, step.proposed_facet)
+        other = step.before if taken else step.proposal
+        ink = self._theme.surroundings
+        show_move(
+            plotter, step.polyhedron, facet, other, other_facet, lesson.centre, self.colour_of(step), ink
+        )
+        actor = plotter.actors[surfaces.SURFACE]
+        actor.prop.culling = "back"
+        actor.prop.opacity = 1.0 if other is None else SEEN_THROUGH
+
+    def _show_exact(self) -> None:
+        lesson, frame = self._lesson, self.frames["exact"]
+        exact = lesson.exact if lesson is not None else None
+        if lesson is None or exact is None:
+            frame.view.draw(surfaces.clear)
+            frame.set_texts("Exact method", "being found …")
+            self.exact_formula.set_lines()
+            return
+        veil = Shape(FIT, lesson.imitated)
+        solid, centre = exact.polyhedron, exact.centre
+
+        def fill(plotter: Any) -> None:
+            surfaces.show_polyhedron(plotter, solid, centre, self._theme.surroundings)
+            show_other(plotter, veil, True)
+            surfaces.set_opacity(plotter, 0.15, OTHER)
+
+        frame.view.draw(fill)
+        frame.set_texts(
+            "Exact method", f"loss {exact.loss:.4g}; {exact.n_faces} facets; veil: what is imitated"
+        )
+        self.exact_formula.set_lines(*words.exact_lines(lesson))
+
+    def _plot_loss(self, number: int) -> None:
+        lesson, theme = self._lesson, self._theme
+        if lesson is None:
+            return
+        seen = lesson.steps[: number + 1]
+        k = tuple(float(step.number) for step in seen)
+        present = Curve("present", theme.polyhedron, k, tuple(step.evaluation.loss for step in seen))
+        curves = [present, *self._proposals(seen)]
+        if lesson.exact is not None:
+            ends = (0.0, float(len(lesson.steps) - 1))
+            curves.append(Curve("exact method", theme.particle, ends, (lesson.exact.loss,) * 2, dash=True))
+        self.loss.set_curves(curves)
+        self.loss.set_marker(float(number))
+        highest = max(step.evaluation.loss for step in lesson.steps)
+        self.loss.canvas.setXRange(0, len(lesson.steps) - 1, padding=0.01)
+        self.loss.canvas.setYRange(0.0, 1.6 * highest, padding=0.0)
+
+    def _proposals(self, seen: tuple[AnnealingStep, ...]) -> list[Curve]:
+        curves = []
+        for mood, label, colour in (
+            (words.ACCEPTED, "better", self._theme.good),
+            (words.LUCKY, "worse, accepted", self._theme.fit),
+            (words.REFUSED, "refused", self._theme.bad),
+        ):
+            chosen = [
+                (float(step.number), step.move.proposed.loss)
+                for step in seen
+                if step.move is not None and step.move.proposed is not None and words.mood_of(step) == mood
+            ]
+            x, y = zip(*chosen, strict=True) if chosen else ((), ())
+            curves.append(Curve(label, colour, tuple(x), tuple(y), markers=True, line=False))
+        return curves
+
+    def _plot_chance(self, number: int) -> None:
+        lesson, theme = self._lesson, self._theme
+        if lesson is None:
+            return
+        k = np.arange(len(lesson.steps))
+        chance = tuple(float(lesson.settings.acceptance_probability(int(each))) for each in k)
+        drawn = [(float(step.number), step.move.drawn) for step in lesson.steps[1 : number + 1] if step.move]
+        x, y = zip(*drawn, strict=True) if drawn else ((), ())
+        self.chance.set_curves(
+            [
+                Curve("T(k)", theme.fit, tuple(map(float, k)), chance),
+                Curve("drawn u", theme.muted, tuple(x), tuple(y), markers=True, line=False),
+            ]
+        )
+        self.chance.set_marker(float(number))
+        self.chance.canvas.setXRange(0, len(lesson.steps) - 1, padding=0.01)
+        self.chance.canvas.setYRange(0.0, 1.0, padding=0.02)
+
+    def _plot_terms(self, step: AnnealingStep) -> None:
+        lesson, theme = self._lesson, self._theme
+        if lesson is None:
+            return
+        move = step.move
+        before = words.terms_of(lesson.weights, move.before if move else step.evaluation)
+        series = [BarSeries("before", theme.particle, tuple(before.values()))]
+        if move is not None and move.proposed is not None:
+            proposed = words.terms_of(lesson.weights, move.proposed)
+            series.append(BarSeries("proposed", self.colour_of(step), tuple(proposed.values())))
+        if lesson.exact is not None:
+            exact = words.exact_terms(lesson)
+            series.append(BarSeries("exact method", theme.polyhedron, tuple(exact.values())))
+        self.terms.set_bars([words.plain(key) for key in before], series)
+
+    def _arrange(self) -> None:
+        said = QWidget()
+        column = QVBoxLayout(said)
+        column.setContentsMargins(10, 6, 6, 6)
+        column.setSpacing(10)
+        column.addWidget(self.sentence)
+        for each in (self.rule, self.loss_formula):
+            column.addWidget(each)
+        column.addWidget(QLabel("Exact method:"))
+        column.addWidget(self.exact_formula)
+        column.addStretch(1)
+        above = side_by_side([*self.frames.values(), said], [500, 500, 560], stretch=2)
+        below = side_by_side([self.loss, self.chance, self.terms], [560, 420, 560], stretch=0)
+        for row in (above, below):
+            for place in range(row.count()):
+                row.setStretchFactor(place, 1)
+        rows: QSplitter = stacked([above, below], [520, 300], stretch=0)
+        rows.setObjectName("lecture_annealing_rows")
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(rows, 1)
+        layout.addWidget(self.transport)
+        self.sentence.setAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop)

@@ -1,0 +1,138 @@
+"""Lesson two: the fit from a sphere to the particle, degree by degree (Eq. 4)."""
+
+from PySide6.QtWidgets import QVBoxLayout, QWidget
+
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.jobs.lecturing import GROWTH_KEYS, DegreeStep
+from regolith_studio.scene import surfaces
+from regolith_studio.scene.palette import DESCRIPTOR_COLOURS
+from regolith_studio.ui.layout import side_by_side
+from regolith_studio.ui.pages.lecture import words
+from regolith_studio.ui.pages.lecture.transport import Transport
+from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.views.camera_link import CameraLink
+from regolith_studio.ui.views.factory import make_view
+from regolith_studio.ui.views.view_frame import ViewFrame
+from regolith_studio.ui.widgets.curve_plot import Curve, CurvePlot
+from regolith_studio.ui.widgets.formula import FormulaLabel
+from regolith_studio.ui.widgets.labels import remark
+
+WAIT = "The particle is fitted …"
+
+
+class DegreesView(QWidget):
+    """Particle and fit, the sentence and the series at a degree, the errors up to it.
+
+    Parameters
+    ----------
+    kind
+        ``live`` or ``image``, of the views.
+    """
+
+    def __init__(self, kind: str, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("lesson_degrees")
+        self._theme = current_theme()
+        self._particle: Mesh | None = None
+        self._steps: tuple[DegreeStep, ...] = ()
+        ink = self._theme.surroundings
+        self.frames = {
+            name: ViewFrame(make_view(kind, ink), f"degrees_{name}") for name in ("particle", "fit")
+        }
+        self.link = CameraLink([frame.view for frame in self.frames.values()])
+        self.sentence = remark(WAIT, role="")
+        self.sentence.setObjectName("degrees_sentence")
+        self.formula = FormulaLabel("Eq. 4 with its numbers")
+        self.errors = CurvePlot("Degree l<sub>max</sub>", "Error [%]", WAIT, log_y=True)
+        self.errors.setObjectName("degrees_errors")
+        self.transport = Transport("degrees", "degree")
+        self.transport.stepChanged.connect(self._show_step)
+        self._arrange()
+
+    def show_particle(self, mesh: Mesh, name: str) -> None:
+        """Begin with a particle; its steps follow."""
+        self._particle, self._steps = mesh, ()
+        self.transport.pause()
+        self.transport.set_count(0)
+        self.frames["particle"].set_texts(f"CT particle, {name}")
+        self.frames["fit"].set_texts("Spherical-harmonics fit")
+        self.frames["particle"].view.draw(lambda plotter: surfaces.show_particle(plotter, mesh))
+        self.frames["fit"].view.draw(surfaces.clear)
+        self.sentence.setText(WAIT)
+        self.link.frame(mesh.vertices)
+
+    def show_steps(self, steps: tuple[DegreeStep, ...]) -> None:
+        """The degrees that are known by now."""
+        first = not self._steps
+        self._steps = steps
+        self.transport.extend(len(steps))
+        if first or self.transport.step == len(steps) - 1:
+            self._show_step(self.transport.step)
+        else:
+            self._plot()
+
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        self._theme = theme
+        for name, frame in self.frames.items():
+            frame.view.set_surroundings(theme.surroundings)
+            frame.set_colour(getattr(theme, name))
+        self.errors.set_theme(theme)
+
+    def release(self) -> None:
+        """Stop, and give the graphics memory back."""
+        self.transport.pause()
+        for frame in self.frames.values():
+            frame.view.release()
+
+    def _show_step(self, number: int) -> None:
+        if number >= len(self._steps):
+            return
+        step = self._steps[number]
+        mesh = step.mesh
+        self.sentence.setText(words.degree_sentence(step))
+        self.formula.set_lines(*words.degree_lines(step))
+        self.frames["fit"].set_texts(
+            f"Spherical-harmonics fit, l<sub>max</sub>&nbsp;=&nbsp;{step.l_max}",
+            f"{(step.l_max + 1) ** 2:,} coefficients",
+        )
+        if mesh is None:
+            self.frames["fit"].view.draw(surfaces.clear)
+        else:
+            self.frames["fit"].view.draw(lambda plotter: surfaces.show_fit(plotter, mesh))
+        self._plot()
+
+    def _plot(self) -> None:
+        known = [step for step in self._steps[: self.transport.step + 1] if step.errors]
+        x = tuple(float(step.l_max) for step in known)
+        curves = [
+            Curve(
+                words.plain(key),
+                DESCRIPTOR_COLOURS[place],
+                x,
+                tuple(max(100 * step.errors[key], 1e-4) for step in known),
+                markers=True,
+            )
+            for place, key in enumerate(GROWTH_KEYS)
+        ]
+        radial = tuple(max(100 * step.radial_error, 1e-4) for step in known)
+        curves.append(Curve("radius (rms)", self._theme.particle, x, radial, markers=True))
+        self.errors.set_curves(curves)
+        self.errors.canvas.setXRange(0, max(len(self._steps) - 1, 1), padding=0.02)
+
+    def _arrange(self) -> None:
+        said = QWidget()
+        column = QVBoxLayout(said)
+        column.setContentsMargins(10, 6, 6, 6)
+        column.setSpacing(10)
+        column.addWidget(self.sentence)
+        column.addWidget(self.formula)
+        column.addWidget(self.errors, 1)
+        parts = side_by_side([*self.frames.values(), said], [500, 500, 560], stretch=2)
+        parts.setObjectName("lecture_degrees_columns")
+        for place in range(parts.count()):
+            parts.setStretchFactor(place, 1)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(parts, 1)
+        layout.addWidget(self.transport)

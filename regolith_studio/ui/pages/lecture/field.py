@@ -1,0 +1,150 @@
+"""Lesson three: a random field on the sphere, its spectrum to drag, and the particle that it makes."""
+
+import numpy as np
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout, QWidget
+
+from regolith_studio.errors import RegolithError
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.jobs.lecturing import DrawnField, draw_field
+from regolith_studio.model.materials import materials
+from regolith_studio.scene.fields import show_field
+from regolith_studio.ui.layout import side_by_side
+from regolith_studio.ui.pages.lecture import words
+from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.views.camera_link import CameraLink
+from regolith_studio.ui.views.factory import make_view
+from regolith_studio.ui.views.view_frame import ViewFrame
+from regolith_studio.ui.widgets.choice_box import ChoiceBox
+from regolith_studio.ui.widgets.formula import FormulaLabel
+from regolith_studio.ui.widgets.labels import remark
+from regolith_studio.ui.widgets.spectrum_editor import SpectrumEditor
+
+DEGREE = 10
+
+
+class FieldView(QWidget):
+    """Sphere and particle in the same colours, the spectrum with bars to drag.
+
+    Parameters
+    ----------
+    kind
+        ``live`` or ``image``, of the views.
+    """
+
+    seedChanged = Signal(int)  # noqa: N815
+
+    def __init__(self, kind: str, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("lesson_field")
+        self._theme = current_theme()
+        self.seed = 0
+        self.drawn: DrawnField | None = None
+        ink = self._theme.surroundings
+        self.frames = {name: ViewFrame(make_view(kind, ink), f"field_{name}") for name in ("sphere", "grain")}
+        self.link = CameraLink([frame.view for frame in self.frames.values()])
+        self.sentence = remark("", role="")
+        self.sentence.setObjectName("field_sentence")
+        self.formula = FormulaLabel("The field with its amplitudes")
+        self.material = ChoiceBox(
+            "field_material", "Material", {key: card.label for key, card in materials().items()}
+        )
+        self.spectrum = SpectrumEditor("No material.")
+        self.spectrum.setObjectName("field_spectrum")
+        self.reset, self.another = QPushButton("Reset the spectrum"), QPushButton("Draw anew")
+        self.reset.setObjectName("field_reset")
+        self.another.setObjectName("field_another")
+        self._arrange()
+        self.material.currentIndexChanged.connect(lambda _: self.take_material())
+        self.spectrum.valueChanged.connect(lambda _: self.redraw())
+        self.reset.clicked.connect(self.spectrum.reset)
+        self.another.clicked.connect(self.draw_another)
+
+    def take_material(self) -> None:
+        """Begin with the spectrum of the chosen material."""
+        card = materials()[self.material.value()]
+        self.spectrum.setValue(np.array(card.relative_amplitudes[: min(DEGREE, card.l_max)]))
+        self.redraw(again=True)
+
+    def draw_another(self) -> None:
+        """Other random numbers."""
+        self.seed += 1
+        self.redraw(again=True)
+        self.seedChanged.emit(self.seed)
+
+    def redraw(self, again: bool = False) -> None:
+        """Draw field and particle of the present spectrum; frame the particle, if it is another one."""
+        amplitudes = self.spectrum.value()
+        self.reset.setEnabled(self.spectrum.is_changed())
+        if not len(amplitudes):
+            return
+        self.formula.set_lines(*words.field_lines(amplitudes.tolist()))
+        try:
+            drawn = self.drawn = draw_field(self.material.value(), amplitudes, self.seed)
+        except RegolithError as error:
+            self.sentence.setText(str(error))
+            return
+        self._show(drawn, again)
+        self.sentence.setText(_sentence(drawn, amplitudes, self.seed))
+
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        self._theme = theme
+        for frame in self.frames.values():
+            frame.view.set_surroundings(theme.surroundings)
+            frame.set_colour(theme.fit)
+        self.spectrum.set_theme(theme)
+        if self.drawn is not None:
+            self._show(self.drawn, False)
+
+    def release(self) -> None:
+        """Give the graphics memory back."""
+        for frame in self.frames.values():
+            frame.view.release()
+
+    def _show(self, drawn: DrawnField, again: bool) -> None:
+        span = float(np.abs(drawn.values).max(initial=0.0))
+        ink = self._theme.surroundings
+        radius = float(np.cbrt(3 * drawn.mesh.volume / (4 * np.pi)))
+        sphere = drawn.sphere.moved(scale=radius)
+        self.frames["sphere"].view.draw(
+            lambda plotter: show_field(plotter, sphere, drawn.values, span, ink, "%.2g")
+        )
+        self.frames["grain"].view.draw(
+            lambda plotter: show_field(plotter, drawn.mesh, drawn.values, span, ink)
+        )
+        self.frames["sphere"].set_texts("The field on the sphere", "ln(r / mean), blue inwards, red outwards")
+        self.frames["grain"].set_texts("The particle", f"equivalent radius {radius:.3g} µm")
+        if again:
+            self.link.frame(drawn.mesh.vertices)
+
+    def _arrange(self) -> None:
+        said = QWidget()
+        column = QVBoxLayout(said)
+        column.setContentsMargins(10, 6, 6, 6)
+        column.setSpacing(10)
+        row = QHBoxLayout()
+        row.addWidget(self.material, 1)
+        row.addWidget(self.reset)
+        row.addWidget(self.another)
+        column.addLayout(row)
+        column.addWidget(self.sentence)
+        column.addWidget(self.formula)
+        column.addWidget(self.spectrum, 1)
+        parts = side_by_side([*self.frames.values(), said], [500, 500, 560], stretch=2)
+        parts.setObjectName("lecture_field_columns")
+        for place in range(parts.count()):
+            parts.setStretchFactor(place, 1)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(parts, 1)
+
+
+def _sentence(drawn: DrawnField, amplitudes: FloatArray, seed: int) -> str:
+    loudest = int(amplitudes.argmax()) + 1
+    expected = float(np.sqrt(((2 * np.arange(1, len(amplitudes) + 1) + 1) * amplitudes**2).sum()))
+    return (
+        f"Draw {seed + 1}. The radius strays by {float(drawn.values.std()):.1%} from its mean; {expected:.1%}"
+        f" is expected over many draws. Degree {loudest} is the strongest:"
+        f" {100 * amplitudes[loudest - 1]:.2g} %."
+    )

@@ -1,0 +1,216 @@
+"""Three lessons as tabs, in large letters; jobs compute them, the page plays them."""
+
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import Any
+
+from PySide6.QtGui import QGuiApplication
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QTabWidget, QVBoxLayout, QWidget
+
+from regolith_studio.jobs.events import Failed, Job
+from regolith_studio.jobs.lecturing import anneal_slowly, grow_fit
+from regolith_studio.session.results import ParticleEntry
+from regolith_studio.ui.page import PageContext, PageWidget
+from regolith_studio.ui.pages.lecture.annealing import AnnealingView
+from regolith_studio.ui.pages.lecture.degrees import DegreesView
+from regolith_studio.ui.pages.lecture.field import FieldView
+from regolith_studio.ui.pages.lecture.transport import Transport
+from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.widgets.choice_box import ChoiceBox
+
+LETTERS = 1.35
+"""Size of the letters against those of the other pages, at first."""
+SMALLEST, LARGEST, STEP = 0.8, 2.4, 1.12
+LESSONS = ("annealing", "degrees", "field")
+
+
+class LecturePage(PageWidget):
+    """Chooses particle and lesson, and asks for what the lesson shows."""
+
+    def __init__(self, context: PageContext) -> None:
+        super().__init__()
+        self.setObjectName("lecture")
+        self._context, self._session = context, context.session
+        self._letters = float(context.recall("letters", LETTERS))
+        self._made_for: dict[str, tuple[Any, ...]] = {}
+        self._seed = 0
+        self.annealing, self.degrees = AnnealingView(context.views), DegreesView(context.views)
+        self.field = FieldView(context.views)
+        self.particle = ChoiceBox("lecture_particle", "Particle", {})
+        self.another = QPushButton("Another seed")
+        self.another.setObjectName("lecture_another")
+        self.request = QLabel()
+        self.request.setProperty("role", "remark")
+        self.tabs = QTabWidget()
+        self.tabs.setObjectName("lecture_lessons")
+        self._place()
+        self._show_letters()
+        self.tabs.currentChanged.connect(self._turn)
+        self.another.clicked.connect(self.draw_another)
+        self.particle.currentIndexChanged.connect(self._select)
+        context.wiring.refresh("particles choices", self._show_particles)
+        context.wiring.refresh("particles choices fit surface", self._fill, slow=True)
+
+    # --- the page of the window ----------------------------------------------------------------
+
+    def set_theme(self, theme: Theme) -> None:
+        for lesson in (self.annealing, self.degrees, self.field):
+            lesson.set_theme(theme)
+
+    def commands(self) -> Mapping[str, Callable[..., object]]:
+        return {
+            "play": lambda: self._with_transport(Transport.toggle),
+            "back": lambda: self._with_transport(lambda each: each.go(each.step - 1)),
+            "forward": lambda: self._with_transport(lambda each: each.go(each.step + 1)),
+            "another": self.draw_another,
+            "larger": partial(self.scale_letters, STEP),
+            "smaller": partial(self.scale_letters, 1 / STEP),
+            "full_screen": self.toggle_full_screen,
+        }
+
+    def left(self) -> None:
+        for lesson in (self.annealing, self.degrees):
+            lesson.transport.pause()
+
+    def state(self) -> dict[str, Any]:
+        return {"lesson": self.lesson, "seed": self._seed}
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        if state.get("lesson") in LESSONS:
+            self.tabs.setCurrentIndex(LESSONS.index(state["lesson"]))
+        if isinstance(state.get("seed"), int) and state["seed"] >= 0:
+            self._seed = state["seed"]
+            self._fill()
+
+    def release(self) -> None:
+        for lesson in (self.annealing, self.degrees, self.field):
+            lesson.release()
+
+    # --- commands ------------------------------------------------------------------------------
+
+    @property
+    def lesson(self) -> str:
+        """The lesson that is seen."""
+        return LESSONS[self.tabs.currentIndex()]
+
+    def draw_another(self) -> None:
+        """Other random numbers for the lesson that is seen."""
+        if self.lesson == "field":
+            self.field.draw_another()
+        else:
+            self._seed += 1
+            self._fill()
+
+    def scale_letters(self, factor: float) -> None:
+        """Larger or smaller letters; remembered."""
+        self._letters = min(max(self._letters * factor, SMALLEST), LARGEST)
+        self._context.remember("letters", self._letters)
+        self._show_letters()
+
+    def toggle_full_screen(self) -> None:
+        """The window on the whole screen, or as it was."""
+        window = self.window()
+        if window.isFullScreen():
+            window.showNormal()
+        else:
+            window.showFullScreen()
+
+    # --- filling -------------------------------------------------------------------------------
+
+    def _fill(self) -> None:
+        """Ask for what the lesson that is seen shows, unless it shows that already."""
+        entry = self._session.selected
+        self.another.setVisible(self.lesson == "annealing")
+        self.request.setVisible(self.lesson == "annealing")
+        if self.lesson == "field":
+            if self.field.drawn is None:
+                self.field.take_material()
+        elif entry is None:
+            self.annealing.wait("Open a particle first.")
+        elif self.lesson == "annealing":
+            self._anneal(entry)
+        else:
+            self._grow(entry)
+
+    def _anneal(self, entry: ParticleEntry) -> None:
+        choices, results = self._session.choices, self._session.results
+        fitted = choices.target == "fit"
+        mesh = results.surface if fitted else entry.particle.mesh
+        if mesh is None or (fitted and results.surface_l_max != choices.l_max):
+            return
+        seed = choices.seed + self._seed
+        settings = choices.settings if choices.method == "annealing" else ()
+        wanted = (mesh, choices.n_faces, choices.weights, settings, seed)
+        if self._made_for.get("annealing") == wanted:
+            return
+        self._made_for["annealing"] = wanted
+        order = choices.replaced(method="annealing", settings=settings, seed=seed).order
+        index = [each.id for each in self._session.particles].index(entry.id)
+        imitated = f"the fit at l_max = {choices.l_max}" if fitted else "the particle"
+        self.request.setText(f"{choices.n_faces} planes, imitating {imitated}, seed {seed}")
+        self.annealing.wait()
+        show = self.annealing.show_lesson
+        job = Job(anneal_slowly, (mesh, order, index))
+        self._context.start(
+            "Annealing step by step", job, show, partial=show, failed=self._refused, lane="annealing"
+        )
+
+    def _refused(self, failure: Failed) -> None:
+        self.annealing.wait(failure.sentence)
+
+    def _grow(self, entry: ParticleEntry) -> None:
+        fit = self._session.results.fit
+        if fit is None or self._made_for.get("degrees") == (fit,):
+            return
+        self._made_for["degrees"] = (fit,)
+        self.degrees.show_particle(entry.particle.mesh, entry.id)
+        show = self.degrees.show_steps
+        job = Job(grow_fit, (entry.particle.mesh, fit))
+        self._context.start("Growing the fit", job, show, partial=show, lane="degrees")
+
+    def _show_particles(self) -> None:
+        ids = [entry.id for entry in self._session.particles]
+        self.particle.blockSignals(True)
+        if [self.particle.itemText(place) for place in range(self.particle.count())] != ids:
+            self.particle.clear()
+            for each in ids:
+                self.particle.addItem(each, each)
+        self.particle.setCurrentIndex(self.particle.findData(self._session.choices.selected))
+        self.particle.blockSignals(False)
+
+    def _select(self) -> None:
+        if self.particle.currentIndex() >= 0:
+            self._session.select(self.particle.value())
+
+    def _turn(self) -> None:
+        self.left()
+        self._fill()
+
+    def _with_transport(self, action: Callable[[Transport], object]) -> None:
+        if self.lesson == "annealing":
+            action(self.annealing.transport)
+        elif self.lesson == "degrees":
+            action(self.degrees.transport)
+
+    def _show_letters(self) -> None:
+        """By one style sheet for the whole page: fonts of widgets are overruled by that of the program."""
+        size = QGuiApplication.font().pointSizeF() * self._letters
+        self.setStyleSheet(f"* {{ font-size: {size:.1f}pt; }}")
+        for part in self.findChildren(QWidget):
+            part.ensurePolished()
+        self.set_theme(current_theme())
+
+    def _place(self) -> None:
+        titles = ("Annealing", "Degrees of the fit", "Random field")
+        for widget, title in zip((self.annealing, self.degrees, self.field), titles, strict=True):
+            self.tabs.addTab(widget, title)
+        row = QHBoxLayout()
+        row.setSpacing(10)
+        row.addWidget(self.particle)
+        row.addWidget(self.another)
+        row.addWidget(self.request)
+        row.addStretch(1)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(10, 10, 10, 8)
+        layout.addLayout(row)
+        layout.addWidget(self.tabs, 1)

@@ -1,0 +1,127 @@
+"""Play, pause, one step, speed: the same row under every lesson."""
+
+from PySide6.QtCore import QSignalBlocker, Qt, QTimer, Signal
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QSlider, QWidget
+
+from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
+
+SPEED = NumberSpec(
+    "Speed", "Steps a second", 0.5, 20.0, 0.5, suffix=" /s", tip="Steps a second while it plays by itself."
+)
+USUAL_SPEED = 2.0
+
+
+class Transport(QWidget):
+    """Chooses one of some steps, by hand or by itself.
+
+    Parameters
+    ----------
+    name
+        Begins the object names.
+    noun
+        What one step is called, such as ``step``.
+    """
+
+    stepChanged = Signal(int)  # noqa: N815
+
+    def __init__(self, name: str, noun: str, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._noun = noun
+        self.back, self.play, self.forward = QPushButton("◀"), QPushButton("Play"), QPushButton("▶")
+        self.first = QPushButton("|◀")
+        for button, key, words in (
+            (self.first, "first", "To the beginning"),
+            (self.back, "back", "One step back"),
+            (self.play, "play", "Play or pause"),
+            (self.forward, "forward", "One step"),
+        ):
+            button.setObjectName(f"{name}_{key}")
+            button.setAccessibleName(words)
+            button.setToolTip(words)
+        self.slider = QSlider(Qt.Orientation.Horizontal)
+        self.slider.setObjectName(f"{name}_step")
+        self.slider.setAccessibleName(f"Which {noun}")
+        self.speed = NumberSlider(SPEED)
+        self.speed.setObjectName(f"{name}_speed")
+        self.speed.setMaximumWidth(300)
+        self.clock = QLabel()
+        self._timer = QTimer(self)
+        self._timer.timeout.connect(self._next)
+        self._arrange()
+        self.first.clicked.connect(lambda: self.go(0))
+        self.back.clicked.connect(lambda: self.go(self.step - 1))
+        self.forward.clicked.connect(lambda: self.go(self.step + 1))
+        self.play.clicked.connect(self.toggle)
+        self.slider.valueChanged.connect(self._changed)
+        self.speed.valueChanged.connect(lambda _: self._timer.setInterval(self._interval()))
+        self.speed.setValue(USUAL_SPEED)
+        self.set_count(0)
+
+    @property
+    def step(self) -> int:
+        """The step that is chosen."""
+        return self.slider.value()
+
+    @property
+    def playing(self) -> bool:
+        """Whether it goes on by itself."""
+        return self._timer.isActive()
+
+    def set_count(self, count: int, at: int = 0) -> None:
+        """There are so many steps; one of them is chosen, which is not announced."""
+        with QSignalBlocker(self.slider):
+            self.slider.setRange(0, max(0, count - 1))
+            self.slider.setValue(at)
+        for part in (self.first, self.back, self.play, self.forward, self.slider):
+            part.setEnabled(count > 1)
+        self._tell()
+
+    def extend(self, count: int) -> None:
+        """There are more steps now; the same one stays chosen."""
+        self.set_count(count, self.step)
+
+    def go(self, step: int) -> None:
+        """Choose a step, and pause."""
+        self.pause()
+        self.slider.setValue(step)
+
+    def toggle(self) -> None:
+        """Play on, from the beginning if the end is reached, or pause."""
+        if self.playing:
+            self.pause()
+        elif self.slider.maximum() > 0:
+            if self.step == self.slider.maximum():
+                self.slider.setValue(0)
+            self.play.setText("Pause")
+            self._timer.start(self._interval())
+
+    def pause(self) -> None:
+        """Stand still."""
+        self._timer.stop()
+        self.play.setText("Play")
+
+    def _interval(self) -> int:
+        return round(1000 / max(float(self.speed.value()), 0.1))
+
+    def _next(self) -> None:
+        if self.step >= self.slider.maximum():
+            self.pause()
+        else:
+            self.slider.setValue(self.step + 1)
+
+    def _changed(self, step: int) -> None:
+        self._tell()
+        self.stepChanged.emit(step)
+
+    def _tell(self) -> None:
+        self.clock.setText(f"{self._noun} {self.step} of {self.slider.maximum()}")
+
+    def _arrange(self) -> None:
+        row = QHBoxLayout(self)
+        row.setContentsMargins(8, 4, 8, 4)
+        row.setSpacing(8)
+        for part in (self.first, self.back, self.play, self.forward):
+            row.addWidget(part)
+        row.addWidget(self.slider, 1)
+        row.addWidget(self.clock)
+        row.addWidget(self.speed)

@@ -1,0 +1,128 @@
+"""Formulas set by matplotlib's mathtext and drawn as outlines: sharp at any size, in the theme's ink."""
+
+from functools import lru_cache
+
+from matplotlib.path import Path as OutlinePath
+from matplotlib.textpath import TextPath
+from PySide6.QtCore import QRectF, QSize, Qt
+from PySide6.QtGui import QPainter, QPainterPath, QPaintEvent
+from PySide6.QtWidgets import QSizePolicy, QWidget
+
+EM = 100.0
+"""Size at which outlines are made; they are scaled when drawn."""
+LEADING = 0.62
+"""Space between two lines in units of the letters."""
+SMALLEST = 0.55
+"""A formula shrinks to the room it has, but not below this share of its size."""
+
+
+class FormulaLabel(QWidget):
+    """Lines of mathtext, one below the other, as large as the font of the widget says.
+
+    Parameters
+    ----------
+    words
+        What the formula says, for screen readers.
+    factor
+        Size of the letters in units of the font.
+    """
+
+    def __init__(self, words: str, factor: float = 1.25, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._words, self._factor = words, factor
+        self._lines: tuple[str, ...] = ()
+        self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+        self.setAccessibleName(words)
+
+    def lines(self) -> tuple[str, ...]:
+        """What is shown, as mathtext."""
+        return self._lines
+
+    def set_lines(self, *lines: str) -> None:
+        """Show other lines.
+
+        Raises
+        ------
+        ValueError
+            If a line is no mathtext.
+        """
+        if lines == self._lines:
+            return
+        for line in lines:
+            outline(line)
+        self._lines = lines
+        self.setToolTip(self._words)
+        self.setAccessibleDescription("; ".join(lines).replace("$", ""))
+        self.updateGeometry()
+        self.update()
+
+    def sizeHint(self) -> QSize:
+        scale = self._scale()
+        widest = max((outline(line).boundingRect().right() for line in self._lines), default=0.0)
+        return QSize(round(widest * scale) + 2, round(self._height() * scale) + 2)
+
+    def minimumSizeHint(self) -> QSize:
+        return QSize(40, self.sizeHint().height())
+
+    def paintEvent(self, event: QPaintEvent) -> None:  # noqa: ARG002
+        if not self._lines:
+            return
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(self.palette().windowText())
+        natural = self._scale()
+        widest = max(outline(line).boundingRect().right() for line in self._lines)
+        scale = natural * max(SMALLEST, min(1.0, (self.width() - 2) / max(widest * natural, 1.0)))
+        painter.translate(1, (self.height() - self._height() * scale) / 2)
+        painter.scale(scale, scale)
+        for line in self._lines:
+            path, box = outline(line), _line_box(line)
+            painter.translate(0, -box.top())
+            painter.drawPath(path)
+            painter.translate(0, box.bottom() + LEADING * EM)
+        painter.end()
+
+    def _scale(self) -> float:
+        """Pixels of the widget for one unit of an outline."""
+        return self._factor * self.fontMetrics().height() / 1.35 / EM
+
+    def _height(self) -> float:
+        """Of all lines, in units of the outlines."""
+        boxes = [_line_box(line).height() for line in self._lines]
+        return sum(boxes) + LEADING * EM * max(0, len(boxes) - 1)
+
+
+@lru_cache(maxsize=512)
+def outline(line: str) -> QPainterPath:
+    """The outlines of a line of mathtext, the base line at y = 0, y downwards.
+
+    Raises
+    ------
+    ValueError
+        If it is no mathtext.
+    """
+    made = QPainterPath()
+    made.setFillRule(Qt.FillRule.WindingFill)
+    if not line:
+        return made
+    for points, code in TextPath((0, 0), line, size=EM).iter_segments():
+        x = [float(each) for each in points[0::2]]
+        y = [-float(each) for each in points[1::2]]
+        if code == OutlinePath.MOVETO:
+            made.moveTo(x[0], y[0])
+        elif code == OutlinePath.LINETO:
+            made.lineTo(x[0], y[0])
+        elif code == OutlinePath.CURVE3:
+            made.quadTo(x[0], y[0], x[1], y[1])
+        elif code == OutlinePath.CURVE4:
+            made.cubicTo(x[0], y[0], x[1], y[1], x[2], y[2])
+        elif code == OutlinePath.CLOSEPOLY:
+            made.closeSubpath()
+    return made
+
+
+def _line_box(line: str) -> QRectF:
+    """Of a line, at least as high as a letter with a descender."""
+    least = QRectF(0.0, -0.75 * EM, 1.0, 0.95 * EM)
+    return outline(line).boundingRect().united(least)

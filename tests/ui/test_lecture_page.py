@@ -1,0 +1,194 @@
+"""The page "Lecture": played, stepped, drawn anew; every formula can be set."""
+
+import numpy as np
+import pytest
+from PySide6.QtCore import QPointF, Qt
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QWidget
+
+from regolith_studio.geometry.directions import icosphere
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.jobs.runners.inline import InlineRunner
+from regolith_studio.scene.moves import FACET_OLD, FRAME_NEW
+from regolith_studio.session.session import Session
+from regolith_studio.ui.commands import Commands
+from regolith_studio.ui.page import PageContext
+from regolith_studio.ui.pages.lecture import PAGE, words
+from regolith_studio.ui.theme import DARK
+from regolith_studio.ui.widgets.formula import FormulaLabel, outline
+from regolith_studio.ui.widgets.toast import Toast
+from regolith_studio.ui.wiring import Wiring
+
+EGG = icosphere(3).moved(rotation=np.diag([30.0, 20.0, 45.0]))
+CIGAR = icosphere(2).moved(rotation=np.diag([10.0, 12.0, 60.0]))
+
+
+@pytest.fixture
+def page(shown, preferences):
+    session = Session(InlineRunner())
+    session.choose(n_faces=12, method="annealing", settings=(("iterations", 25),), l_max=4)
+    session.adopt([Particle(name="egg", mesh=EGG), Particle(name="cigar", mesh=CIGAR)])
+    window = shown(QWidget())
+    toast = Toast(window)
+    wiring = Wiring(session, toast.problem, window)
+    commands = Commands(session, preferences, toast, window)
+    context = PageContext(
+        "lecture", session, wiring, preferences, toast, commands, "image", lambda _key: None
+    )
+    made = shown(PAGE.build(context))
+    made.resize(1200, 760)
+    yield made
+    wiring.cut()
+    made.release()
+    session.close()
+
+
+def actor(frame, name):
+    found = frame.view._plotter.actors.get(name)
+    return found if found is not None and found.GetVisibility() else None
+
+
+def test_that_every_step_of_the_annealing_is_shown_said_and_set(page):
+    lesson = page.annealing._lesson
+    assert len(lesson.steps) == 26
+    transport, moods = page.annealing.transport, set()
+    for number, step in enumerate(lesson.steps):
+        transport.go(number)
+        mood = words.mood_of(step)
+        moods.add(mood)
+        said = page.annealing.sentence.text()
+        assert {"refused": "Refused", "accepted": "accepted", "lucky": "luck", "start": "start"}[mood] in said
+        if step.move is not None:
+            assert f"Plane {step.move.plane + 1} of 12" in said
+            frame = page.annealing.frames["annealing"]
+            other = step.before if step.move.accepted else step.proposal
+            assert (actor(frame, FRAME_NEW) is not None) == (other is not None)
+            facet = step.proposed_facet if step.move.accepted else step.facet
+            assert (actor(frame, FACET_OLD) is not None) == (facet is not None)
+    assert {"start", "refused", "accepted"} <= moods
+    assert len(page.annealing.loss.curves[0].x) == 26
+    assert page.annealing.loss.curves[-1].y[0] == lesson.exact.loss
+
+
+def test_that_the_numbers_of_the_loss_add_up_to_the_loss(page):
+    lesson = page.annealing._lesson
+    for step in lesson.steps:
+        terms = words.terms_of(lesson.weights, step.evaluation)
+        assert sum(terms.values()) == pytest.approx(step.evaluation.loss)
+        line = " ".join(words.loss_lines(lesson.weights, step.evaluation))
+        numbers = [float(part.split("_")[0]) for part in line.split(r"\cdot")[1:]]
+        assert sum(numbers) == pytest.approx(step.evaluation.loss, rel=0.01, abs=4e-4)
+
+
+def test_that_it_plays_by_itself_pauses_and_steps_back(page, wait):
+    transport = page.annealing.transport
+    transport.speed.setValue(20)
+    commands = page.commands()
+    commands["play"]()
+    wait(lambda: transport.step >= 3, 10.0)
+    commands["back"]()
+    here = transport.step
+    assert not transport.playing
+    QTest.qWait(150)
+    assert transport.step == here
+    commands["forward"]()
+    assert transport.step == here + 1
+    transport.go(25)
+    commands["play"]()  # at the end: from the beginning
+    assert transport.playing
+    assert transport.step < 25
+    page.left()
+    assert not transport.playing
+
+
+def test_that_another_seed_is_another_run_and_a_project_remembers_it(page):
+    before = page.annealing._lesson.steps
+    page.commands()["another"]()
+    after = page.annealing._lesson.steps
+    assert [step.evaluation.loss for step in before] != [step.evaluation.loss for step in after]
+    state = page.state()
+    page.commands()["another"]()
+    page.restore(state)
+    assert [s.evaluation.loss for s in page.annealing._lesson.steps] == [s.evaluation.loss for s in after]
+
+
+def test_that_the_lesson_follows_the_particle_and_the_choices(page, wait):
+    page.particle.setCurrentIndex(1)
+    assert page._session.choices.selected == "cigar"
+    wait(lambda: page.annealing._lesson.imitated is page._session.results.surface, 20.0)
+    page._session.choose(n_faces=8)
+    wait(lambda: page.annealing._lesson.n_faces == 8)
+    page._session.choose(settings=(("iterations", 5000),))
+    wait(lambda: "at most 2,000" in page.annealing.sentence.text())
+
+
+def test_that_the_degrees_grow_from_a_sphere(page):
+    page.tabs.setCurrentIndex(1)
+    transport = page.degrees.transport
+    assert transport.slider.maximum() == 30
+    for degree in (0, 5, 30):
+        transport.go(degree)
+        assert f"l_max = {degree}:" in page.degrees.sentence.text()
+        assert f"={(degree + 1) ** 2}$" in page.degrees.formula.lines()[1]
+        assert len(page.degrees.errors.curves[0].x) == degree + 1
+    spread = page.degrees.frames["fit"].view._plotter.actors["surface"].mapper.dataset
+    assert np.ptp(spread.points[:, 2]) == pytest.approx(90.0, rel=0.02)
+
+
+def test_that_a_dragged_bar_changes_the_field_and_a_button_draws_it_anew(page):
+    page.tabs.setCurrentIndex(2)
+    field = page.field
+    first = field.drawn.values.copy()
+    page.commands()["another"]()
+    assert np.abs(field.drawn.values - first).max() > 0.01
+    spread = field.drawn.values.std()
+    editor = field.spectrum
+    view = editor.canvas.plotItem.vb
+    place = editor.canvas.mapFromScene(view.mapViewToScene(QPointF(2, np.log10(30.0))))
+    viewport = editor.canvas.viewport()
+    QTest.mousePress(viewport, Qt.MouseButton.LeftButton, pos=place)
+    QTest.mouseRelease(viewport, Qt.MouseButton.LeftButton, pos=place)
+    assert field.drawn.values.std() > 1.5 * spread
+    assert "30\\%_{\\,2}" in field.formula.lines()[1] or "29\\%_{\\,2}" in field.formula.lines()[1]
+    assert "Degree 2 is the strongest" in field.sentence.text()
+    field.reset.click()
+    assert field.drawn.values.std() == pytest.approx(spread)
+
+
+def test_that_letters_and_formulas_grow_and_the_theme_changes(page):
+    before, high = page.annealing.sentence.fontMetrics().height(), page.annealing.rule.sizeHint().height()
+    page.commands()["larger"]()
+    page.commands()["larger"]()
+    assert page.annealing.sentence.fontMetrics().height() > before
+    assert page.annealing.rule.sizeHint().height() > high
+    page.set_theme(DARK)
+    assert page._context.recall("letters") > 1.5
+
+
+def test_that_a_formula_is_drawn_in_ink_and_shrinks_to_its_room(shown):
+    label = shown(FormulaLabel("energy"))
+    label.set_lines(r"$E=m\,c^2$", r"$\frac{1}{2}\sum_i x_i$")
+    label.resize(label.sizeHint())
+    wide = label.grab().toImage()
+    ground = wide.pixelColor(0, 0)
+    inked = [
+        (x, y)
+        for x in range(wide.width())
+        for y in range(wide.height())
+        if wide.pixelColor(x, y).lightness() < ground.lightness() - 80
+    ]
+    assert len(inked) > 100
+    assert max(x for x, _ in inked) > 0.8 * wide.width()
+    label.resize(label.sizeHint().width() * 2 // 3, label.sizeHint().height())
+    narrow = label.grab().toImage()
+    right = [narrow.pixelColor(narrow.width() - 1, y) for y in range(narrow.height())]
+    assert all(colour == ground for colour in right)
+
+
+def test_that_what_is_no_formula_is_refused(app):  # noqa: ARG001
+    with pytest.raises(ValueError, match="Unknown symbol"):
+        outline(r"$\nonsense$")
+
+
+def test_that_the_height_of_a_fraction_is_that_of_its_outline(app):  # noqa: ARG001
+    assert outline(r"$\frac{1}{2}$").boundingRect().height() > outline("$1$").boundingRect().height()
