@@ -71,7 +71,7 @@ def one(particles: int, jobs: int) -> Run:
 
     wish = recipe_of(
         inputs=[],
-        population={"card": "ma165", "n": particles, "l_max": 10},
+        population={"sources": ["ma165"], "n": particles, "l_max": 10},
         target="particle",
         method="exact",
         settings={"level": "fast"},

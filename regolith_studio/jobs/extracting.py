@@ -246,9 +246,7 @@ def _collected(steps: _Extracting) -> Generator[Step, None, Extraction]:
     return (yield from _handed(steps, lambda _particle: None))
 
 
-def _measured(
-    steps: _Extracting, sink: Sink, workers: int | Crew
-) -> Generator[Step, None, Extraction]:
+def _measured(steps: _Extracting, sink: Sink, workers: int | Crew) -> Generator[Step, None, Extraction]:
     """Measure particles by other processes while the next ones are extracted."""
     waiting: deque[ExtractionProgress] = deque()
     ended: list[Extraction] = []

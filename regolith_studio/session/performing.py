@@ -23,9 +23,11 @@ from regolith_studio.jobs.chunked import JOURNAL, LOST, Batch, work_through
 from regolith_studio.jobs.crew import Crew, hired
 from regolith_studio.jobs.events import Job, Progress, Started, Step, Steps
 from regolith_studio.jobs.journal import Journal
+from regolith_studio.jobs.loading import free_name
 from regolith_studio.jobs.shards import Record
 from regolith_studio.jobs.studying import study_coarsening, study_lmax
 from regolith_studio.session.batch.items import Items
+from regolith_studio.session.batch.prepared import Prepared, clear_prepared, prepare
 from regolith_studio.session.batch.sinks import (
     Sink,
     Tally,
@@ -39,13 +41,14 @@ from regolith_studio.session.batch.sinks import (
 )
 from regolith_studio.session.batch.working import Wish, work_on
 from regolith_studio.session.choices import Choices
+from regolith_studio.session.outputs.extraction import RECIPE as EXTRACTION
 from regolith_studio.session.outputs.staging import staged_folder, write_bytes
 from regolith_studio.session.outputs.studies import STUDIES
 from regolith_studio.session.outputs.summary import Summary, write_summary
 from regolith_studio.session.recipe import Recipe
 
 Part = Generator[Step, None, Any]
-JOURNAL_FOLDER = "journal"
+JOURNAL_FOLDER, PREPARED_FOLDER = "journal", "prepared"
 
 
 @dataclass
@@ -115,25 +118,44 @@ def perform(
         If no input can be read, the folder cannot be written, or holds an unfinished run that is not to
         be resumed or is of another recipe.
     """
-    done = Performed(folder, recipe, recipe.choices(), Items.of(recipe, base))
+    choices, place = recipe.choices(), folder / JOURNAL_FOLDER
+    over = (place / JOURNAL).exists() and _has_ended(place)
+    if (place / JOURNAL).exists() and not (over or resume):
+        raise FileError(
+            f"{folder} holds a run that has not ended; go on with --resume, or remove {place} to begin anew."
+        )
+    if recipe.outputs.dataset and recipe.population is not None:
+        check_count(recipe.population.n, recipe.n_faces)
+    with hired(workers) as crew:
+        prepared: Prepared = yield from prepare(
+            recipe, base, place / PREPARED_FOLDER, crew, over=over and resume
+        )
+        done = Performed(folder, recipe, choices, Items.of(recipe, base, prepared))
+        _check(done)
+        with _opened(done, resume, chunk) as batch:
+            if (ended := _ending(batch)) is not None:
+                done.problems = ended
+                return done
+            yield from _worked(done, batch, crew)
+            yield from _assembled(done, batch)
+            _tell_of_volumes(done, prepared)
+            yield from _studied(done, crew)
+            if recipe.outputs.summary:
+                write_summary(folder, done.recipe, done.summary, done.studies, done.problems)
+            write_bytes(folder / "recipe.json", recipe.to_json().encode("utf-8"))
+            batch.note({"ended": done.problems})
+            batch.clear()
+            clear_prepared(prepared)
+    return done
+
+
+def _check(done: Performed) -> None:
+    """Refuse before the work what could not be done after it."""
     if not done.items.members:
         sentences = [problem.sentence for problem in done.items.problems]
         raise FileError(sentences[0] if sentences else "There is no file to read.")
-    if recipe.outputs.dataset:
-        check_count(len(done.items.members), recipe.n_faces)
-    with _opened(done, resume, chunk) as batch, hired(workers) as crew:
-        if (ended := _ending(batch)) is not None:
-            done.problems = ended
-            return done
-        yield from _worked(done, batch, crew)
-        yield from _assembled(done, batch)
-        yield from _studied(done, crew)
-        if recipe.outputs.summary:
-            write_summary(folder, done.recipe, done.summary, done.studies, done.problems)
-        write_bytes(folder / "recipe.json", recipe.to_json().encode("utf-8"))
-        batch.note({"ended": done.problems})
-        batch.clear()
-    return done
+    if done.recipe.outputs.dataset:
+        check_count(len(done.items.members), done.recipe.n_faces)
 
 
 def _opened(done: Performed, resume: bool, chunk: int | None) -> Batch:
@@ -145,20 +167,14 @@ def _opened(done: Performed, resume: bool, chunk: int | None) -> Batch:
         "set of input files": marks,
         "set of program versions": software_versions(),
     }
-    if (place / JOURNAL).exists():
-        if resume:
-            return Batch.resume(place, len(items.members), subject)
-        _check_ended(place, done.folder)
+    if resume and (place / JOURNAL).exists():
+        return Batch.resume(place, len(items.members), subject)
     return Batch.begin(place, len(items.members), subject, chunk)
 
 
-def _check_ended(place: Path, folder: Path) -> None:
+def _has_ended(place: Path) -> bool:
     with contextlib.closing(Journal.reopen(place / JOURNAL)) as journal:
-        if not any("ended" in entry for entry in journal.entries):
-            raise FileError(
-                f"{folder} holds a run that has not ended; go on with --resume, or remove {place} to begin "
-                "anew."
-            )
+        return any("ended" in entry for entry in journal.entries)
 
 
 def _ending(batch: Batch) -> list[str] | None:
@@ -229,6 +245,14 @@ def _records(done: Performed, batch: Batch) -> Iterator[Record]:
             name = done.items.members[record.index].name
             record = dataclasses.replace(record, values={"name": name, "group": "", "failures": failures})
         yield record
+
+
+def _tell_of_volumes(done: Performed, prepared: Prepared) -> None:
+    """Write beside the results how the grains of each volume were found, and which were left out."""
+    taken: set[str] = set()
+    for entry, source in zip(done.recipe.volumes, prepared.volumes, strict=True):
+        name = free_name(Path(entry.file).stem, "", taken)
+        write_bytes(done.folder / "volumes" / f"{name}.json", (source / EXTRACTION).read_bytes())
 
 
 def _write_dataset(done: Performed, batch: Batch) -> None:

@@ -7,8 +7,16 @@ import pytest
 
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.errors import FileError, InputError
+from regolith_studio.resources import resource
 from regolith_studio.session.choices import Choices
-from regolith_studio.session.recipe import Outputs, Recipe, read_recipe, recipe_of
+from regolith_studio.session.recipe import (
+    Outputs,
+    Population,
+    Recipe,
+    read_recipe,
+    recipe_of,
+    recipe_schema,
+)
 
 
 def written(folder: Path, text: str) -> Path:
@@ -48,13 +56,50 @@ def test_that_an_empty_recipe_means_the_defaults(tmp_path: Path) -> None:
         ('{"l_max": 3.5}', "l_max"),
         ('{"inputs": []}', "inputs"),
         ('{"outputs": {"hologram": true}}', "outputs.hologram"),
-        ('{"version": 2}', "version"),
+        ('{"version": 3}', "version"),
+        ('{"inputs": [], "volumes": []}', "inputs"),
+        ('{"population": {"sources": [], "n": 3}}', "population.sources"),
+        ('{"population": {"sources": ["ma165"], "n": 0}}', "population.n"),
+        ('{"volumes": [{"file": "a.tif", "voxel": 2}]}', "volumes.0.voxel"),
+        ('{"volumes": [{"file": "a.tif", "kind": "gray"}]}', "volumes.0.kind"),
+        ('{"volumes": [{"file": "a.tif", "recipe": "e.json", "extraction": {"min_voxels": 9}}]}', "not both"),
         ('{"weights": {"volume": NaN}}', "not a recipe"),
     ],
 )
 def test_that_a_bad_recipe_is_refused_with_the_entry_named(tmp_path: Path, text: str, words: str) -> None:
     with pytest.raises(FileError, match=words):
         read_recipe(written(tmp_path, text))
+
+
+def test_that_a_recipe_of_version_1_means_what_it_meant(tmp_path: Path) -> None:
+    text = '{"version": 1, "population": {"card": "ma165", "n": 7, "l_max": 6}, "n_faces": 12}'
+    recipe = read_recipe(written(tmp_path, text))
+    assert recipe.version == 2
+    assert recipe.inputs == ["sample:all"]
+    assert recipe.population == Population(sources=["ma165"], n=7, l_max=6)
+
+
+def test_that_volumes_and_a_population_stand_alone_unless_inputs_are_named(tmp_path: Path) -> None:
+    entries = '"volumes": [{"file": "scan.tif", "voxel_size": [2, 2, 5]}]'
+    assert read_recipe(written(tmp_path, f"{{{entries}}}")).inputs == []
+    both = read_recipe(written(tmp_path, f'{{{entries}, "inputs": ["grains"]}}'))
+    assert both.inputs == ["grains"]
+    assert both.volumes[0].voxel_size == [2.0, 2.0, 5.0]
+    assert read_recipe(written(tmp_path, both.to_json())) == both
+
+
+def test_that_the_shipped_schema_is_that_of_recipes_and_takes_what_the_program_writes() -> None:
+    schema = json.loads(resource("schema", "recipe.schema.json").read_text())
+    assert schema == recipe_schema()
+    jsonschema = pytest.importorskip("jsonschema")
+    full = recipe_of(
+        volumes=[{"file": "a.raw", "raw": {"shape": [2, 3, 4]}}], population={"sources": ["ma165"], "n": 3}
+    )
+    validator = jsonschema.Draft202012Validator(schema)
+    for recipe in (Recipe(), full):
+        assert not list(validator.iter_errors(json.loads(recipe.to_json())))
+    assert list(validator.iter_errors({"l_max": "ten"}))
+    assert list(validator.iter_errors({"hologram": True}))
 
 
 def test_that_a_missing_recipe_is_a_sentence(tmp_path: Path) -> None:

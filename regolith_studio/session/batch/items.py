@@ -1,19 +1,24 @@
 """The particles of a recipe before anybody has read them: small, picklable, in a fixed order."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
-from typing import Protocol, Self
+from typing import Any, Protocol, Self
 
-from regolith_studio.errors import InputError
 from regolith_studio.geometry.particle import Particle
+from regolith_studio.jobs.generating import PAPER_DEGREE, groups_of
 from regolith_studio.jobs.loading import Problem, files_in, free_name
 from regolith_studio.model.draws import Draws, virtual_mesh
 from regolith_studio.model.materials import materials
+from regolith_studio.model.protocol import FittedModel
 from regolith_studio.readers.registry import MeshFile, read_file
 from regolith_studio.readers.sample import sample_particles
+from regolith_studio.readers.shape_files import read_shape_source
+from regolith_studio.session.batch.prepared import MODEL, Prepared, read_grain, read_index
 from regolith_studio.session.recipe import SAMPLE, Population, Recipe
+
+NOTHING = Prepared()
 
 
 class Item(Protocol):
@@ -78,24 +83,51 @@ class SampleItem:
 
 
 @dataclass(frozen=True)
+class GrainItem:
+    """A grain of a CT volume that has been extracted."""
+
+    name: str
+    folder: Path
+    entry: Mapping[str, Any]
+
+    @property
+    def mark(self) -> str:
+        """The folder, which is named by all that its grains depend on, and the grain."""
+        return f"{self.folder.name} {self.entry['file']}"
+
+    def particle(self) -> Particle:
+        """The grain."""
+        return replace(read_grain(self.folder, self.entry), name=self.name)
+
+
+@dataclass(frozen=True)
 class DrawnItem:
-    """A virtual particle."""
+    """A virtual particle.
+
+    Parameters
+    ----------
+    model
+        Folder of the fitted model; ``None`` where a shipped card is one.
+    """
 
     name: str
     population: Population
     seed: int
     index: int
     level: int
+    model: Path | None = None
 
     @property
     def mark(self) -> str:
         """What it is drawn from, and its number."""
-        return f"{self.population.model_dump_json()} {self.seed} {self.index} {self.level}"
+        known = self.model.name if self.model else ""
+        return f"{self.population.model_dump_json()} {known} {self.seed} {self.index} {self.level}"
 
     def particle(self) -> Particle:
         """The particle's surface."""
-        draws = _draws(self.population, self.seed)
-        return Particle(self.name, virtual_mesh(draws, self.index, self.level), self.population.card)
+        draws, groups = _draws(self.population, self.model, self.seed)
+        group = groups[self.index] or title_of(self.population)
+        return Particle(self.name, virtual_mesh(draws, self.index, self.level), group)
 
 
 @dataclass(frozen=True)
@@ -112,15 +144,15 @@ class Items:
     problems: tuple[Problem, ...] = ()
 
     @classmethod
-    def of(cls, recipe: Recipe, base: Path) -> Self:
+    def of(cls, recipe: Recipe, base: Path, prepared: Prepared = NOTHING) -> Self:
         """What the inputs of `recipe` stand for; relative ones are looked up in `base`.
 
         Raises
         ------
         InputError
-            If there is no such material card, or it does not reach the degree asked for.
+            If the material card does not reach the degree asked for.
         """
-        problems: list[Problem] = []
+        problems: list[Problem] = list(prepared.problems)
         members: list[Item] = []
         taken: set[str] = set()
         if SAMPLE in recipe.inputs:
@@ -129,8 +161,11 @@ class Items:
         files = [base / name for name in recipe.inputs if name != SAMPLE]
         for file in files_in(files, problems):
             members.append(FileItem(free_name(file.path.stem, file.group, taken), file, recipe.unit))
+        for folder in prepared.volumes:
+            for entry in read_index(folder):
+                members.append(GrainItem(free_name(entry["name"], entry["group"], taken), folder, entry))
         if recipe.population is not None:
-            members += _drawn(recipe, recipe.population, taken)
+            members += _drawn(recipe, recipe.population, prepared.model, taken)
         return cls(tuple(members), tuple(problems))
 
     def marks(self) -> Iterable[str]:
@@ -138,21 +173,40 @@ class Items:
         return (member.mark for member in self.members)
 
 
-def _drawn(recipe: Recipe, population: Population, taken: set[str]) -> Sequence[Item]:
-    if population.card not in materials():
-        raise InputError(
-            f"There is no material card {population.card!r}; there are {', '.join(sorted(materials()))}."
-        )
-    materials()[population.card].model(population.l_max)
+def title_of(population: Population) -> str:
+    """What its particles are called: the card, or the first source."""
+    (first, *_) = population.sources
+    return first if first in materials() else Path(first).stem or "virtual"
+
+
+def _drawn(recipe: Recipe, population: Population, model: Path | None, taken: set[str]) -> Sequence[Item]:
+    if model is None:
+        _model(population, None)
     digits = max(4, len(str(population.n - 1)))
-    names = (f"{population.card}-{index:0{digits}d}" for index in range(population.n))
+    names = (f"{title_of(population)}-{index:0{digits}d}" for index in range(population.n))
     return [
-        DrawnItem(free_name(name, "", taken), population, recipe.seed, index, recipe.level)
+        DrawnItem(free_name(name, "", taken), population, recipe.seed, index, recipe.level, model)
         for index, name in enumerate(names)
     ]
 
 
+def _model(population: Population, folder: Path | None) -> FittedModel:
+    """The model that particles are drawn from."""
+    if folder is None:
+        card = materials()[population.sources[0]]
+        return card.model(population.l_max or min(PAPER_DEGREE, card.l_max))
+    fitted: FittedModel = read_shape_source(str(folder / MODEL)).content  # type: ignore[assignment]
+    return fitted
+
+
+def _draws(population: Population, folder: Path | None, seed: int) -> tuple[Draws, tuple[str, ...]]:
+    """All draws of a population and their groups: a kilobyte each, made once in each process."""
+    return _remembered_draws(population.model_dump_json(), folder, seed)
+
+
 @lru_cache(maxsize=1)
-def _draws(population: Population, seed: int) -> Draws:
-    """All draws of a population: a kilobyte each, made once in each process."""
-    return materials()[population.card].model(population.l_max).draw(population.n, seed)
+def _remembered_draws(population: str, folder: Path | None, seed: int) -> tuple[Draws, tuple[str, ...]]:
+    wish = Population.model_validate_json(population)
+    model = _model(wish, folder)
+    draws = model.draw(wish.n, seed, wish.bounds)
+    return draws, groups_of(draws, model)

@@ -191,10 +191,10 @@ def _problems(problems: Sequence[str]) -> str:
 
 def _provenance(recipe: Recipe) -> str:
     versions = ", ".join(f"{name} {version}" for name, version in software_versions().items())
-    inputs = ", ".join(recipe.inputs)
-    if recipe.population is not None:
-        drawn = f"{recipe.population.n:,} particles of the card {recipe.population.card}"
-        inputs = f"{inputs}, {drawn}" if inputs else drawn
+    told = [*recipe.inputs, *(f"the grains of {volume.file}" for volume in recipe.volumes)]
+    if (population := recipe.population) is not None:
+        told.append(f"{population.n:,} particles drawn like {', '.join(population.sources)}")
+    inputs = ", ".join(told)
     return (
         f"<h2>How to repeat it</h2><p><code>regolith-studio run recipe.json -o FOLDER</code> with the "
         f"recipe beside this page. Inputs: {escape(inputs)}. Software: {escape(versions)}.</p>"

@@ -1,0 +1,256 @@
+"""What must be made of a recipe's inputs before its particles are known: grains of volumes, a fitted model.
+
+Each lies in a folder of its own, named by a hash of all that it depends on, beside the journal: whole or not
+there at all, so that a run that goes on finds it.
+"""
+
+import hashlib
+import json
+import shutil
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from regolith_studio.errors import InputError
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.particle import Particle, Source
+from regolith_studio.imaging.extraction import Extracted
+from regolith_studio.jobs.crew import Crew
+from regolith_studio.jobs.events import Steps
+from regolith_studio.jobs.extracting import VolumeInput, extract_each, fingerprint
+from regolith_studio.jobs.generating import GenerateOrder, expansion_of, fit_model, sample_of_meshes
+from regolith_studio.jobs.grain_recipe import GrainRecipe, read_grain_recipe
+from regolith_studio.jobs.loading import Problem, files_in, load_particles
+from regolith_studio.model.files import write_model
+from regolith_studio.model.materials import materials
+from regolith_studio.readers.hashing import sha256_of
+from regolith_studio.readers.shape_files import is_shape_source, read_shape_source
+from regolith_studio.readers.volume_header import RawLayout
+from regolith_studio.session.outputs.extraction import RECIPE, recipe_document
+from regolith_studio.session.outputs.staging import json_bytes, staged_folder
+from regolith_studio.session.recipe import Population, Recipe, VolumeEntry
+
+INDEX = "grains.json"
+MODEL = "model"
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """What the particles of a recipe are read or drawn from, besides its mesh files.
+
+    Parameters
+    ----------
+    volumes
+        Folder of the grains of each volume.
+    model
+        Folder of the population's model; ``None`` where a shipped card is one.
+    problems
+        Files that could not be used for the model.
+    """
+
+    volumes: tuple[Path, ...] = ()
+    model: Path | None = None
+    problems: tuple[Problem, ...] = ()
+
+
+def prepare(recipe: Recipe, base: Path, place: Path, crew: Crew, over: bool = False) -> Steps:
+    """Extract the grains of all volumes and fit the population's model; returns :class:`Prepared`.
+
+    Parameters
+    ----------
+    base
+        Folder that relative files are relative to.
+    place
+        Where the folders are.
+    over
+        Whether all work on the grains is done, so that what is known of them is enough.
+
+    Raises
+    ------
+    FileError
+        If a file cannot be used.
+    InputError
+        If a setting is wrong, there is no grain, or no such card.
+    """
+    volumes = []
+    for entry in recipe.volumes:
+        volumes.append((yield from _grains(entry, base, place, over)))
+    model, problems = None, ()
+    if recipe.population is not None and not is_card(recipe.population, base):
+        model, problems = yield from _model(recipe, recipe.population, base, place, crew)
+    return Prepared(tuple(volumes), model, problems)
+
+
+def is_card(population: Population, base: Path) -> bool:
+    """Whether a shipped card, as it is, is the model."""
+    (first, *more) = population.sources
+    plain = not (more or population.model or population.settings)
+    return plain and first in materials() and not (base / first).exists()
+
+
+def read_index(folder: Path) -> list[dict[str, Any]]:
+    """What is known of the grains of a volume, in their order."""
+    found: list[dict[str, Any]] = json.loads((folder / INDEX).read_text(encoding="utf-8"))
+    return found
+
+
+def read_grain(folder: Path, entry: Mapping[str, Any]) -> Particle:
+    """One of the grains of :func:`read_index`, bit for bit as it was extracted."""
+    with np.load(folder / entry["file"], allow_pickle=False) as arrays:
+        mesh = Mesh(arrays["vertices"], arrays["faces"])
+    source, notes = entry["source"], tuple(entry["notes"])
+    return Particle(
+        entry["name"], mesh, entry["group"], Source(*source) if source else None, notes, entry["weight"]
+    )
+
+
+def clear_prepared(prepared: Prepared) -> None:
+    """Remove the grains of a run that has ended; what says which there were stays, and the model."""
+    for folder in prepared.volumes:
+        for path in folder.glob("*.npz"):
+            path.unlink()
+
+
+def _grains(entry: VolumeEntry, base: Path, place: Path, over: bool) -> Steps:
+    given, settings = _volume_input(entry, base), _settings(entry, base)
+    if not given.path.exists():
+        raise InputError(f"There is no volume {given.path}.")
+    told = entry.model_dump(mode="json", exclude={"recipe"})
+    folder = place / f"volume-{_digest(told, settings.as_document(), fingerprint(given.path))}"
+    if (folder / INDEX).is_file() and (over or _is_whole(folder)):
+        return folder
+    with _tidy(place), staged_folder(folder) as stage:
+        rows: dict[int, dict[str, Any]] = {}
+
+        def keep(found: Extracted) -> None:
+            rows[found.label] = _stored(stage, found)
+
+        done = yield from extract_each(given, settings, place.parent, keep)
+        (stage / RECIPE).write_bytes(json_bytes(recipe_document(given, settings, done)))
+        (stage / INDEX).write_bytes(json_bytes([rows[label] for label in sorted(rows)]))
+    return folder
+
+
+def _is_whole(folder: Path) -> bool:
+    return all((folder / entry["file"]).is_file() for entry in read_index(folder))
+
+
+def _stored(stage: Path, found: Extracted) -> dict[str, Any]:
+    particle, name = found.particle, f"{found.label:08d}.npz"
+    np.savez(stage / name, vertices=particle.mesh.vertices, faces=particle.mesh.faces)
+    source = particle.source
+    return {
+        "name": particle.name,
+        "group": particle.group,
+        "file": name,
+        "notes": list(particle.notes),
+        "source": None if source is None else [source.path, source.sha256, source.unit],
+        "weight": float(found.weight),
+    }
+
+
+def _model(recipe: Recipe, population: Population, base: Path, place: Path, crew: Crew) -> Steps:
+    order = GenerateOrder(
+        population.model,
+        tuple(population.settings.items()),
+        population.l_max,
+        population.n,
+        recipe.seed,
+        population.bounds,
+    )
+    paths = [base / source for source in population.sources]
+    named = [text for text in map(_named(base), population.sources) if is_shape_source(text)]
+    if named and len(population.sources) > 1:
+        raise InputError(
+            "A population is drawn from one card, fit or model, or from meshes and tables only, got "
+            f"{', '.join(population.sources)}."
+        )
+    problems: list[Problem] = []
+    if named:
+        source = read_shape_source(named[0])
+        marks = [named[0], source.sha256]
+    else:
+        _check_there(population, paths)
+        marks = [sha256_of(file.path) for file in files_in(paths, problems)]
+    told = population.model_dump(mode="json", exclude={"n", "size_range"})
+    folder = place / f"model-{_digest(told, recipe.seed, recipe.unit, marks)}"
+    if not (folder / f"{MODEL}.npz").is_file():
+        if not named:
+            loaded = yield from load_particles(paths, recipe.unit)
+            source = yield from sample_of_meshes(loaded.particles, expansion_of(order), crew)
+        fitted = yield from fit_model(source, order)
+        with _tidy(place), staged_folder(folder) as stage:
+            write_model(stage / MODEL, fitted, {"source": source.name, "notes": list(source.notes)})
+    return folder, tuple(problems)
+
+
+def _named(base: Path) -> Any:
+    """Turns a source into the path beside the recipe, but for the names of shipped cards."""
+
+    def resolved(text: str) -> str:
+        return text if text in materials() and not (base / text).exists() else str(base / text)
+
+    return resolved
+
+
+def _check_there(population: Population, paths: list[Path]) -> None:
+    for text, path in zip(population.sources, paths, strict=True):
+        if not path.exists():
+            raise InputError(
+                f"There is no material card {text!r} and no file or folder of that name beside the recipe; "
+                f"the cards are {', '.join(sorted(materials()))}."
+            )
+
+
+def _volume_input(entry: VolumeEntry, base: Path) -> VolumeInput:
+    raw = (
+        None
+        if entry.raw is None
+        else RawLayout(**{**entry.raw.model_dump(), "shape": tuple(entry.raw.shape)})
+    )
+    return VolumeInput(
+        base / entry.file,
+        entry.voxel_size,
+        entry.unit,
+        entry.kind,
+        entry.dataset,
+        raw,
+        **({} if entry.axes is None else {"axes": entry.axes}),
+    )
+
+
+def _settings(entry: VolumeEntry, base: Path) -> GrainRecipe:
+    if entry.recipe is not None:
+        return read_grain_recipe(base / entry.recipe)
+    given = {"segmentation": entry.segmentation, "extraction": entry.extraction}
+    _check_names(given, GrainRecipe().as_document(), "")
+    return GrainRecipe.from_document(given)
+
+
+def _check_names(given: Mapping[str, Any], known: Mapping[str, Any], place: str) -> None:
+    for name, value in given.items():
+        if name not in known:
+            raise InputError(f"There is no setting {place}{name}; there are {', '.join(known)}.")
+        if isinstance(value, Mapping) and isinstance(known[name], Mapping):
+            _check_names(value, known[name], f"{place}{name}.")
+
+
+def _digest(*parts: Any) -> str:
+    text = json.dumps(parts, sort_keys=True, default=str)
+    return hashlib.sha256(text.encode("utf-8", "surrogateescape")).hexdigest()[:20]
+
+
+@contextmanager
+def _tidy(place: Path) -> Iterator[None]:
+    """If what is made inside fails, no empty folder is left behind."""
+    try:
+        yield
+    except BaseException:
+        for folder in (place, place.parent, place.parent.parent):
+            if folder.is_dir() and not any(folder.iterdir()):
+                shutil.rmtree(folder)
+        raise
