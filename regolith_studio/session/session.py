@@ -296,11 +296,14 @@ class Session:
         def note(seen: tuple[Examined, ...]) -> None:
             rows = list(self.particles)
             for at, facts in enumerate(seen):
-                rows[at] = dataclasses.replace(rows[at], health=facts.health, descriptors=facts.descriptors)
+                if rows[at].health is None:
+                    rows[at] = dataclasses.replace(
+                        rows[at], health=facts.health, descriptors=facts.descriptors
+                    )
             self.particles = tuple(rows)
             self.topics.particles.emit()
 
         job = Job(examine_particles, (self._open_particles(),))
         title = "Measuring particles"
-        reactions = Reactions(lambda _all: None, partial=note, failed=self.tell_failure(title))
+        reactions = Reactions(note, partial=note, failed=self.tell_failure(title))
         self._board.start("inspect", title, job, reactions)

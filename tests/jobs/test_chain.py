@@ -82,6 +82,16 @@ def test_that_partial_results_grow_to_the_result() -> None:
     assert parts[-1] == seen
 
 
+def test_that_what_is_copied_grows_as_the_number_of_particles(monkeypatch: pytest.MonkeyPatch) -> None:
+    known = examine(Particle("a", GRAIN))
+    monkeypatch.setattr("regolith_studio.jobs.examining.examine", lambda *_: known)
+    for count in (500, 5000):
+        heard, seen = played(examine_particles([Particle("a", GRAIN)] * count))
+        copied = sum(len(step.value) for step in heard if isinstance(step, Partial))
+        assert copied < 10 * count
+        assert len(seen) == count
+
+
 def test_that_a_coarsening_shows_a_polyhedron_at_its_first_step() -> None:
     heard, coarsened = played(coarsen_one(GRAIN, ORDER))
     first = next(step.value for step in heard if isinstance(step, Partial))

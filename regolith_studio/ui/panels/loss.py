@@ -3,14 +3,19 @@
 from collections.abc import Mapping
 from typing import Any
 
-from PySide6.QtCore import QSignalBlocker, Signal
-from PySide6.QtWidgets import QComboBox, QGridLayout, QHBoxLayout, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import QGridLayout, QVBoxLayout, QWidget
 
-from regolith_studio.coarsening.weights import JACCARD, WEIGHT_KEYS, LossWeights, presets
+from regolith_studio.coarsening.weights import JACCARD, WEIGHT_KEYS, LossWeights, Preset, presets
 from regolith_studio.descriptors.catalogue import CATALOGUE
+from regolith_studio.errors import InputError
+from regolith_studio.session.own_presets import OwnPresets
 from regolith_studio.ui.widgets.labels import heading, remark, rich_symbol
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
+from regolith_studio.ui.widgets.preset_bar import PresetBar, PresetEntry
 
+OWN = "own:"
+"""Begins the keys of own presets."""
 SLIDER_END = 2.0
 LARGEST = 100.0
 
@@ -27,54 +32,99 @@ def weight_spec(key: str) -> NumberSpec:
 
 
 class LossPanel(QWidget):
-    """Edits the weights, and the preset that they come from."""
+    """Edits the weights, and the shipped preset that they come from.
+
+    An own preset is a set of weights with the shipped preset that it began with: to the rest of the program
+    it is that preset with other weights, so that recipes and projects need nobody's own presets.
+
+    Parameters
+    ----------
+    own
+        Where own presets are kept.
+    """
 
     FIELDS = ("weights", "preset")
     valueChanged = Signal(dict)  # noqa: N815
     editingFinished = Signal()  # noqa: N815
 
-    def __init__(self, parent: QWidget | None = None) -> None:
+    def __init__(self, own: OwnPresets | None = None, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setObjectName("loss")
-        self.preset = QComboBox()
-        self.preset.setObjectName("preset")
-        self.preset.setAccessibleName("Preset of weights")
-        self.preset.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
-        self.preset.setMinimumContentsLength(12)
-        for name, preset in presets().items():
-            self.preset.addItem(preset.label, name)
-            self.preset.setItemData(self.preset.count() - 1, preset.origin, 3)
-        self.reset = QPushButton("Reset")
+        self._own = own or OwnPresets("weights")
+        self._preset = self._chosen = next(iter(presets()))
+        self._known: dict[str, Preset] = {}
+        self.bar = PresetBar("preset", "Preset of weights")
+        self.preset, self.reset = self.bar.box, self.bar.reset
         self.reset.setObjectName("reset_weights")
-        self.reset.setToolTip("Back to the weights of the preset")
         self.sliders = {key: NumberSlider(weight_spec(key)) for key in WEIGHT_KEYS}
         self.origin = remark()
         self._arrange()
         self._connect()
+        self._list()
         self._show_mark()
 
     def value(self) -> dict[str, Any]:
         """Weights and preset."""
         weights = LossWeights.of(**{key: float(each.value()) for key, each in self.sliders.items()})
-        return {"weights": weights, "preset": self.preset.currentData()}
+        return {"weights": weights, "preset": self._preset}
 
     def setValue(self, value: Mapping[str, Any]) -> None:
         """Show other weights."""
         for key, slider in self.sliders.items():
             slider.setValue(value["weights"][key])
-        with QSignalBlocker(self.preset):
-            self.preset.setCurrentIndex(self.preset.findData(value["preset"]))
+        self._preset = value["preset"]
+        self._chosen = self._source(value["weights"])
         self._show_mark()
 
     def is_modified(self) -> bool:
-        """Whether the weights are no longer those of the preset."""
+        """Whether the weights are no longer those of the preset that is shown."""
+        return bool(self.value()["weights"] != self._known[self._chosen].weights)
+
+    def save_as(self, name: str) -> None:
+        """Keep the present weights as an own preset.
+
+        Raises
+        ------
+        RegolithError
+            If the name cannot be taken or the file cannot be written.
+        """
         now = self.value()
-        return bool(now["weights"] != presets()[now["preset"]].weights)
+        self._own.save(name, {"preset": now["preset"], "weights": dict(now["weights"])})
+        self._list()
+        self._chosen = OWN + name
+        self._show_mark()
+
+    def delete(self, key: str) -> None:
+        """Forget an own preset; the weights stay as they are."""
+        self._own.remove(key.removeprefix(OWN))
+        self._list()
+        self._chosen = self._source(self.value()["weights"])
+        self._show_mark()
+
+    def _list(self) -> None:
+        """Read and list shipped and own presets."""
+        found = dict(presets())
+        for name, values in self._own.all().items():
+            try:
+                weights = LossWeights.of(**values["weights"])
+            except (InputError, KeyError, TypeError, ValueError):
+                continue  # of another version, or edited by hand
+            if values.get("preset") in presets():
+                found[OWN + name] = Preset(values["preset"], name, weights, "Own preset")
+        self._known = found
+        self.bar.set_entries(
+            [PresetEntry(key, each.label, each.origin, key.startswith(OWN)) for key, each in found.items()]
+        )
+
+    def _source(self, weights: LossWeights) -> str:
+        """Key of the preset that weights come from: one that has them, or the one that was chosen last."""
+        known = self._known
+        now = [key for key, each in known.items() if each.name == self._preset and each.weights == weights]
+        if self._chosen in now or (not now and self._chosen in known):
+            return self._chosen if known[self._chosen].name == self._preset else self._preset
+        return now[0] if now else self._preset
 
     def _arrange(self) -> None:
-        top = QHBoxLayout()
-        top.addWidget(self.preset, 1)
-        top.addWidget(self.reset)
         grid = QGridLayout()
         grid.setContentsMargins(0, 0, 0, 0)
         grid.setVerticalSpacing(3)
@@ -87,20 +137,23 @@ class LossPanel(QWidget):
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(heading("Weights of the loss (Eq. 9)"))
-        layout.addLayout(top)
+        layout.addWidget(self.bar)
         layout.addLayout(grid)
         layout.addWidget(self.origin)
 
     def _connect(self) -> None:
-        self.preset.activated.connect(self._take_preset)
-        self.reset.clicked.connect(self._take_preset)
+        self.bar.chosen.connect(self._take)
+        self.bar.resetRequested.connect(lambda: self._take(self._chosen))
+        self.bar.saveRequested.connect(self.save_as)
+        self.bar.deleteRequested.connect(self.delete)
         for slider in self.sliders.values():
             slider.valueChanged.connect(self._announce)
             slider.editingFinished.connect(self.editingFinished)
 
-    def _take_preset(self) -> None:
-        name = self.preset.currentData()
-        self.setValue({"weights": presets()[name].weights, "preset": name})
+    def _take(self, key: str) -> None:
+        preset = self._known[key]
+        self._chosen = key
+        self.setValue({"weights": preset.weights, "preset": preset.name})
         self.valueChanged.emit(self.value())
         self.editingFinished.emit()
 
@@ -109,10 +162,5 @@ class LossPanel(QWidget):
         self.valueChanged.emit({"weights": self.value()["weights"]})
 
     def _show_mark(self) -> None:
-        modified = self.is_modified()
-        for row in range(self.preset.count()):
-            label = presets()[self.preset.itemData(row)].label
-            mark = " (modified)" if modified and row == self.preset.currentIndex() else ""
-            self.preset.setItemText(row, label + mark)
-        self.reset.setEnabled(modified)
-        self.origin.setText(presets()[self.preset.currentData()].origin + ".")
+        self.bar.show_state(self._chosen, self.is_modified())
+        self.origin.setText(self._known[self._chosen].origin + ".")

@@ -27,6 +27,7 @@ from regolith_studio.ui.widgets.collapsible import Collapsible
 from regolith_studio.ui.widgets.labels import ElidedLabel, heading, remark
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
 from regolith_studio.ui.widgets.parameter_form import ParameterForm
+from regolith_studio.ui.widgets.preset_form import PresetForm
 
 FIRST = ("rocky", "yade")
 NARROW = 84
@@ -49,8 +50,8 @@ class TargetsPanel(QWidget):
         self.coarse_graining, self.particles = NumberSlider(COARSE_GRAINING), NumberSlider(PARTICLES)
         self.coarse_graining.field.setObjectName("dataset_coarse_graining")
         self.particles.field.setObjectName("dataset_particles")
-        self.contact = ParameterForm(ContactParameters, "export")
-        self.test = ParameterForm(LiftingCylinderTest, "export")
+        self.contact = PresetForm(ContactParameters, "export_contact", "Table 1 of the paper")
+        self.test = PresetForm(LiftingCylinderTest, "export_test", "Table 2 of the paper")
         self.times = ParameterForm(ScriptTimes, "export")
         self.lossy = QCheckBox("Shapes may be changed")
         self.lossy.setObjectName("dataset_lossy")

@@ -23,7 +23,7 @@ from regolith_studio.errors import InputError
 from regolith_studio.jobs.repose import ReposeOrder
 from regolith_studio.ui.widgets.collapsible import Collapsible
 from regolith_studio.ui.widgets.labels import ElidedLabel, heading, remark
-from regolith_studio.ui.widgets.parameter_form import ParameterForm
+from regolith_studio.ui.widgets.preset_form import PresetForm
 from regolith_studio.ui.widgets.settings_form import SettingsForm
 
 PRESETS = {"Teaching": 300, "Usual": 1000, "Fine": 5000}
@@ -74,8 +74,8 @@ class SetupPanel(QWidget):
             "repose_gravity_of",
             "Gravity of",
         )
-        self.test = ParameterForm(LiftingCylinderTest, "test")
-        self.contact = ParameterForm(ContactParameters, "contact")
+        self.test = PresetForm(LiftingCylinderTest, "test", "Table 2 of the paper")
+        self.contact = PresetForm(ContactParameters, "contact", "Table 1 of the paper")
         self.evaluation = SettingsForm(EvaluationSettings)
         self._numerics = {key: SettingsForm(engine.Settings) for key, engine in ENGINES.items()}
         self.told = remark()
