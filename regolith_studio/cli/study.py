@@ -150,13 +150,14 @@ def population(
 ) -> None:
     """Drawn against measured particles: models fitted to one half, judged on the other (Figs. 4-6)."""
     from regolith_studio.cli.generate import shape_source
-    from regolith_studio.cli.terminal import complain
+    from regolith_studio.cli.terminal import complain, print_table
     from regolith_studio.descriptors.catalogue import CATALOGUE
     from regolith_studio.errors import InputError
     from regolith_studio.jobs.generating import GenerateOrder
     from regolith_studio.jobs.studying import study_population
     from regolith_studio.model.sample import Sample
     from regolith_studio.studies.population import KEYS
+    from regolith_studio.studies.population_tables import target_table
 
     with as_bad_use():
         order = GenerateOrder(l_max=l_max, seed=seed)
@@ -177,7 +178,10 @@ def population(
         keys=tuple(CATALOGUE) if descriptors == "all" else _words(descriptors) or KEYS,
         seed=seed,
     )
-    _conclude("population_study", steps, output, json)
+    study = _conclude("population_study", steps, output, json)
+    if not json:
+        typer.echo()
+        print_table(target_table(study))
 
 
 def _words(text: str) -> tuple[str, ...]:

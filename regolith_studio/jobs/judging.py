@@ -23,11 +23,12 @@ from regolith_studio.jobs.generating import (
 )
 from regolith_studio.jobs.studying import study_population
 from regolith_studio.model.draws import Draws, virtual_mesh
+from regolith_studio.model.models import MODELS
 from regolith_studio.model.protocol import FittedModel
 from regolith_studio.model.sample import Sample
 from regolith_studio.readers.shape_files import ShapeSource
 from regolith_studio.studies import population_figures as figures
-from regolith_studio.studies.population import PopulationStudy
+from regolith_studio.studies.population import PopulationStudy, drawn_by_itself
 from regolith_studio.studies.population_distances import WEIGHTINGS
 
 N_EXAMPLES = 6
@@ -36,6 +37,9 @@ LEVEL = 4
 DOTS_PER_INCH = 110
 COLUMNS = 5
 """Panels in a row: a window is wider than a page."""
+
+WORTH_A_POOL = 1500
+"""Particles to be measured beyond which the start of processes pays: some ten seconds of work."""
 
 Origin = ShapeSource | tuple[Particle, ...]
 
@@ -111,8 +115,14 @@ def draw_shapes(model: FittedModel, order: GenerateOrder) -> Steps:
 
 
 def judge_shapes(sample: Sample, models: Sequence[str] | None, **options: Any) -> Steps:
-    """The study of models with its figures; partial results and the result are :class:`JudgedShapes`."""
-    steps = study_population(sample, models, **options)
+    """The study of models with its figures; partial results and the result are :class:`JudgedShapes`.
+
+    Long ones are shared out to one process a core. The options are those of
+    :func:`~regolith_studio.studies.population.population_study`.
+    """
+    rounds = options.get("n_splits", 5) * options.get("n_repeats", 5) * len(models or MODELS)
+    n_measured = len(sample) + rounds * drawn_by_itself(len(sample))
+    steps = study_population(sample, models, 0 if n_measured > WORTH_A_POOL else 1, **options)
     while True:
         try:
             step: Step = next(steps)

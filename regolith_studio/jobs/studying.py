@@ -1,12 +1,14 @@
 """The studies of sections 3.1 and 3.2 over a whole sample."""
 
-from collections.abc import Generator, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from functools import partial
 from typing import Any
 
 from regolith_studio.geometry.particle import Particle
+from regolith_studio.jobs.batch import call, value_of
 from regolith_studio.jobs.coarsening import CoarseningOrder
 from regolith_studio.jobs.crew import Crew, hired
-from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
+from regolith_studio.jobs.events import Job, Partial, Progress, Started, Step, Steps
 from regolith_studio.model.sample import Sample
 from regolith_studio.studies.coarsening import TargetChoice, coarsening_study
 from regolith_studio.studies.lmax import lmax_study
@@ -47,7 +49,14 @@ def study_population(
     """
     yield Started("Judging models", 0)
     with hired(workers) as crew:
-        return (yield from told(population_study(sample, models, mapper=crew.map, **options)))
+        mapper = partial(_mapped, crew)
+        return (yield from told(population_study(sample, models, mapper=mapper, **options)))
+
+
+def _mapped(crew: Crew, function: Callable[[Any], Any], items: Iterable[Any]) -> Iterator[Any]:
+    """As :meth:`Crew.map`, but with ``None`` while a result is waited for: the study can then be stopped."""
+    for ending in crew.endings(Job(call, (function, item)) for item in items):
+        yield None if ending is None else value_of(ending)
 
 
 def study_coarsening(

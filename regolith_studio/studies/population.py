@@ -39,8 +39,9 @@ STEP = 25
 """Particles that one process measures at a time."""
 MOST_DRAWS = 1000
 
-Mapper = Callable[[Callable[[Draws], FloatArray], Iterable[Draws]], Iterable[FloatArray]]
-"""Anything that maps a picklable function in order: ``map``, or ``imap`` of a process pool."""
+Mapper = Callable[[Callable[[Draws], FloatArray], Iterable[Draws]], Iterable[FloatArray | None]]
+"""Anything that maps a picklable function in order: ``map``, or ``imap`` of a process pool. It may yield
+``None`` while a result is waited for, so that the study can be stopped."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,7 +159,7 @@ def population_study(
         If a model, descriptor or the degree is unknown, there are fewer than 20 particles or draws.
     """
     chosen = tuple(MODELS) if models is None else tuple(models)
-    drawn = max(FEWEST, min(MOST_DRAWS, len(sample) // 2)) if n_draws is None else n_draws
+    drawn = drawn_by_itself(len(sample)) if n_draws is None else n_draws
     _check(sample, chosen, keys, (drawn, n_splits, n_repeats))
     measure = _Measure(tuple(keys), level, mapper, len(sample) + len(chosen) * n_splits * n_repeats * drawn)
     known = Draws(sample.truncated(l_max).coefficients, "radius", "measured", seed, sample.unit)
@@ -180,6 +181,11 @@ def population_study(
         )
         yield StudyProgress(measure.done, measure.total, f"split {split + 1} of {n_splits}", study)
     return study
+
+
+def drawn_by_itself(n_measured: int) -> int:
+    """Particles of each drawing where no number is given: half of those measured, 20 to 1,000."""
+    return max(FEWEST, min(MOST_DRAWS, n_measured // 2))
 
 
 def _check(
@@ -212,8 +218,9 @@ class _Measure:
         tables = [np.empty((0, len(self.keys)))]
         parts = (draws.chosen(range(i, min(i + STEP, len(draws)))) for i in range(0, len(draws), STEP))
         for table in self.mapper(partial(descriptors_of, keys=self.keys, level=self.level), parts):
-            tables.append(table)
-            self.done += len(table)
+            if table is not None:
+                tables.append(table)
+                self.done += len(table)
             yield StudyProgress(self.done, self.total, message)
         return np.concatenate(tables)
 

@@ -16,7 +16,12 @@ from regolith_studio.model.models import MODELS
 from regolith_studio.studies.figure_files import write_figure
 from regolith_studio.studies.population import PopulationStudy
 from regolith_studio.studies.population_distances import WEIGHTINGS, class_weights
-from regolith_studio.studies.population_tables import distance_table, pair_table, ranking_table
+from regolith_studio.studies.population_tables import (
+    distance_table,
+    pair_table,
+    ranking_table,
+    target_table,
+)
 from regolith_studio.studies.tables import write_table
 
 COLOURS = ("#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
@@ -124,9 +129,10 @@ def components_figure(study: PopulationStudy) -> Figure | None:
 def write_population_study(
     study: PopulationStudy, folder: Path, stem: str = "population"
 ) -> tuple[Path, ...]:
-    """Tables (CSV, JSON) of distances, pairs and ranking, and the figures (PNG, SVG)."""
+    """Tables (CSV, JSON) of ranking, targets, distances and pairs, and the figures (PNG, SVG)."""
     files = [
         *write_table(ranking_table(study), folder, f"{stem}_ranking"),
+        *write_table(target_table(study), folder, f"{stem}_targets"),
         *write_table(distance_table(study), folder, f"{stem}_distances"),
         *write_table(pair_table(study), folder, f"{stem}_pairs"),
     ]

@@ -1,8 +1,10 @@
 """The numbers of Figs. 4 to 6: how far each model is from the sample, and which is nearest."""
 
+from collections.abc import Iterator
+
 import numpy as np
 
-from regolith_studio.studies.population import N_FLOOR_SPLITS, PopulationStudy
+from regolith_studio.studies.population import N_FLOOR_SPLITS, JudgedModel, PopulationStudy
 from regolith_studio.studies.population_distances import CONFIDENCE, N_RESAMPLES, WEIGHTINGS
 from regolith_studio.studies.tables import Column, Table
 
@@ -18,6 +20,11 @@ PERCENTAGES = (
     "kolmogorov_smirnov_high",
     "kolmogorov_smirnov_floor",
 )
+
+PAPERS_MODEL = "gaussian_field"
+AT_NOISE = ("equivalent_radius", "surface_area", "aspect_ratio", "sphericity")
+PAPERS_PAIRS = AT_NOISE[:3]
+LEAST_GAIN, MOST_FLOORS, MOST_ENERGY, LEAST_NOVELTY = 8.0, 2.0, 0.3, 0.6
 
 
 def distance_table(study: PopulationStudy) -> Table:
@@ -86,6 +93,40 @@ def ranking_table(study: PopulationStudy) -> Table:
     )
     ranked = tuple(sorted(rows, key=lambda row: row[1]))
     return Table("Models by their distance to held-out particles", columns, ranked, _notes(study))
+
+
+def target_table(study: PopulationStudy) -> Table:
+    """What a model of a real sample should reach, and what each of the models does."""
+    rows = [
+        (model.key, name, value, f"{sign} {limit:g}", "yes" if reached else "no")
+        for model in study.models
+        for name, value, sign, limit in _targets(study, model)
+        for reached in [value >= limit if sign == "at least" else value <= limit]
+    ]
+    columns = tuple(map(Column, ("model", "target", "value", "wanted", "reached")))
+    return Table("What a model should reach on held-out particles", columns, tuple(rows), _notes(study))
+
+
+def _targets(study: PopulationStudy, model: JudgedModel) -> Iterator[tuple[str, float, str, float]]:
+    """Name, value, sense and limit of what can be told from what was measured."""
+    far, noise = model.distances.wasserstein.mean(axis=0), study.floor.wasserstein
+    paper = next((each for each in study.models if each.key == PAPERS_MODEL), None)
+    if paper is not None and paper is not model and "aspect_ratio" in study.keys:
+        column = study.keys.index("aspect_ratio")
+        gain = paper.distances.wasserstein.mean(axis=0)[0, column] / far[0, column]
+        yield "aspect ratio, times nearer than the paper's model", gain, "at least", LEAST_GAIN
+    if columns := [study.keys.index(key) for key in AT_NOISE if key in study.keys]:
+        worst = (far / np.percentile(noise, 95, axis=0))[:, columns].max()
+        yield "r_eq, A, AR, S: the worst, over the 95th percentile of noise", worst, "at most", 1.0
+    if "convexity" in study.keys:
+        column = study.keys.index("convexity")
+        gap = model.distances.kolmogorov[:, 0, column].mean() / study.floor.kolmogorov[:, 0, column].mean()
+        yield "V/CH: Kolmogorov-Smirnov distance in floors", gap, "at most", MOST_FLOORS
+    if pairs := [i for i, pair in enumerate(study.pairs) if set(pair) <= set(PAPERS_PAIRS)]:
+        worst = 100 * model.distances.energy.mean(axis=0)[pairs].max()
+        yield "pairs of r_eq, A, AR: the largest energy distance [%]", worst, "at most", MOST_ENERGY
+    yield "draws thrown away [%]", 100 * model.rejected.mean(), "at most", 0.0
+    yield "median novelty", model.novelty.mean(), "at least", LEAST_NOVELTY
 
 
 def _notes(study: PopulationStudy) -> tuple[str, ...]:

@@ -12,7 +12,12 @@ from regolith_studio.harmonics.coefficients import degrees, orders
 from regolith_studio.model.sample import Sample
 from regolith_studio.studies.population import KEYS, PopulationStudy, population_study
 from regolith_studio.studies.population_figures import components_figure, write_population_study
-from regolith_studio.studies.population_tables import distance_table, pair_table, ranking_table
+from regolith_studio.studies.population_tables import (
+    distance_table,
+    pair_table,
+    ranking_table,
+    target_table,
+)
 from regolith_studio.studies.progress import StudyProgress
 
 SMALL_MODELS = ("gaussian_field", "mixture_field", "sample_matched")
@@ -151,3 +156,34 @@ def test_that_the_default_model_reaches_the_noise_of_sampling(real_data: Callabl
     assert matched.accuracy.mean() < 0.56 < 0.8 < paper.accuracy.mean()
     assert study.models[1].rejected.max() == 0.0
     assert study.models[1].novelty.min() > 0.6
+
+
+def test_that_targets_compare_with_the_papers_model_and_the_noise(
+    small: tuple[list[StudyProgress], PopulationStudy],
+) -> None:
+    study = small[1]
+    table = target_table(study)
+    assert {row[0] for row in table.rows} == {model.key for model in study.models}
+    model = next(each for each in study.models if each.key != "gaussian_field")
+    rows = {row[1]: row for row in table.rows if row[0] == model.key}
+    thrown = rows["draws thrown away [%]"]
+    assert (thrown[4] == "yes") == (model.rejected.sum() == 0)
+    column = study.keys.index("convexity")
+    ratio = model.distances.kolmogorov[:, 0, column].mean() / study.floor.kolmogorov[:, 0, column].mean()
+    found = rows["V/CH: Kolmogorov-Smirnov distance in floors"]
+    assert found[2] == pytest.approx(ratio)
+    assert (found[3], found[4]) == ("at most 2", "yes" if ratio <= 2 else "no")
+
+
+def test_that_waiting_for_results_changes_nothing_and_lets_the_study_be_stopped() -> None:
+    def slow(function, items):  # type: ignore[no-untyped-def]
+        for item in items:
+            yield None
+            yield function(item)
+
+    options = {"l_max": 2, "n_draws": 20, "n_splits": 1, "n_repeats": 1, "level": 1}
+    steps, waited = run(rough_sample(24), ["log_field"], mapper=slow, **options)
+    np.testing.assert_array_equal(
+        waited.models[0].table, run(rough_sample(24), ["log_field"], **options)[1].models[0].table
+    )
+    assert steps[0].done == 0

@@ -6,12 +6,14 @@ from PySide6.QtCore import QPointF, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QFileDialog, QWidget
 
+from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.harmonics.coefficients import degrees
 from regolith_studio.jobs.runners.inline import InlineRunner
 from regolith_studio.model.models import MODELS
 from regolith_studio.model.sample import Sample
 from regolith_studio.readers.shape_files import ShapeSource, read_shape_source
 from regolith_studio.session.session import Session
+from regolith_studio.studies.population import KEYS
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.model import PAGE
@@ -135,6 +137,13 @@ def test_that_models_are_judged_on_the_sample_that_was_fitted(page):
     assert page.judgement.ranking.item(0, 0).text() == MODELS["gaussian_field"].label
     assert not page.judgement.pictures["number"].is_empty()
     assert page.judgement.pictures["components"].is_empty()
+    tables = page.judgement.tables
+    assert tables["distances"].rowCount() == 2 * len(KEYS)
+    headers = [tables["distances"].horizontalHeaderItem(at).text() for at in range(6)]
+    assert headers == ["Model", "Weighting", "Descriptor", "W [%]", "from [%]", "to [%]"]
+    assert tables["distances"].item(0, 2).text() == CATALOGUE[KEYS[0]].label
+    assert tables["targets"].item(0, 4).text() in ("yes", "no")
+    assert tables["energies"].rowCount() == 10
 
 
 def test_that_the_parts_of_a_mixture_are_named(page):

@@ -1,6 +1,6 @@
 """How near the drawn particles are to the measured ones: the ranking and the figures of a study."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from PySide6.QtCore import Signal
@@ -20,8 +20,11 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.jobs.judging import JudgedShapes
 from regolith_studio.model.models import MODELS
-from regolith_studio.studies.population_tables import ranking_table
+from regolith_studio.studies.population import PopulationStudy
+from regolith_studio.studies.population_tables import distance_table, pair_table, ranking_table, target_table
+from regolith_studio.studies.tables import Table
 from regolith_studio.ui.layout import tabs
+from regolith_studio.ui.pages.model.table_view import TableView
 from regolith_studio.ui.widgets.labels import remark
 from regolith_studio.ui.widgets.picture_label import PictureLabel
 from regolith_studio.ui.widgets.study_frame import StudyFrame
@@ -33,6 +36,11 @@ FIGURES = {
     "pairs": "Pairs (Fig. 6)",
     "quantiles": "Quantiles",
     "components": "Parts",
+}
+TABLES: dict[str, tuple[str, Callable[[PopulationStudy], Table]]] = {
+    "targets": ("Targets", target_table),
+    "distances": ("Distances", distance_table),
+    "energies": ("Pairs in numbers", pair_table),
 }
 HEADERS = ("Model", "W / floor", "KS / floor", "Energy", "Classifier", "Novelty", "Rejected")
 TIPS = (
@@ -61,6 +69,9 @@ class JudgementPanel(QWidget):
         self.notes = remark()
         self.pictures = {name: PictureLabel(WAITING) for name in FIGURES}
         self.tabs = tabs("model_figures", [(self._ranked(), "Ranking")])
+        self.tables = {name: TableView(f"model_{name}", title) for name, (title, _) in TABLES.items()}
+        for name, (title, _) in TABLES.items():
+            self.tabs.addTab(self.tables[name], title)
         for name, title in FIGURES.items():
             self.tabs.addTab(self.pictures[name], title)
         inside = QWidget()
@@ -102,6 +113,10 @@ class JudgementPanel(QWidget):
             label.set_picture(judged.pictures.get(name) if judged else None)
             at = self.tabs.indexOf(label)
             self.tabs.setTabVisible(at, name != "components" or (judged is not None and not label.is_empty()))
+        for name, view in self.tables.items():
+            self.tabs.setTabVisible(self.tabs.indexOf(view), judged is not None)
+            if judged is not None:
+                view.show_table(TABLES[name][1](judged.study))
         self._stack.setCurrentIndex(1 if judged else 0)
         if judged is None:
             return
