@@ -2,7 +2,9 @@
 
 import json
 import runpy
+from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,6 +16,7 @@ from regolith_studio.dataset.exporters import EXPORTERS
 from regolith_studio.dataset.exporting import ExportOptions, write_export
 from regolith_studio.dataset.simulation_case import particle_count, solid_fraction
 from regolith_studio.dataset.size_distribution import PAPER_CLASSES_UM, DiscreteSizes, LogNormalSizes
+from regolith_studio.readers.positions import read_positions
 
 from .conftest import entry
 from .rocky_recorder import Recorder
@@ -185,6 +188,43 @@ def test_that_the_simulation_waits_for_the_user(tmp_path: Path) -> None:
     study = recorded(paper_dataset(1), tmp_path / "x").of("study")[0]
     assert all(name != "StartSimulation" for name, _ in study.calls)
     assert json.loads((tmp_path / "x" / "case.json").read_text())["project"].endswith(".rocky")
+
+
+class SimulatedApp:
+    """Rocky's ``app`` with a finished simulation, by the names of the scripting manual."""
+
+    def __init__(self, rows: np.ndarray) -> None:
+        self.rows = rows
+
+    def GetStudy(self) -> "SimulatedApp":  # noqa: N802
+        return self
+
+    def GetParticles(self) -> "SimulatedApp":  # noqa: N802
+        return self
+
+    def GetCurve(self, name: str) -> "SimulatedApp":  # noqa: N802
+        assert name == "Particles Count"
+        return self
+
+    def GetY(self) -> np.ndarray:  # noqa: N802
+        return np.array([0, 1, len(self.rows)])
+
+    def IterParticles(self, time_step: int) -> Iterator[SimpleNamespace]:  # noqa: N802
+        assert time_step == 2
+        return (SimpleNamespace(x=x, y=y, z=z, size=size) for x, y, z, size in self.rows)
+
+
+@pytest.mark.parametrize("told", [1.0, 10.0])
+def test_that_positions_come_back_from_rocky_enlarged_once(tmp_path: Path, told: float) -> None:
+    """Whether Rocky tells sizes with the coarse graining or without, the largest asked for decides."""
+    folder = write_export(paper_dataset(1), EXPORTERS["rocky"], tmp_path / "x").folder
+    places = np.random.default_rng(0).uniform(-0.01, 0.01, (50, 3))
+    diameters = 1e-6 * np.resize(PAPER_CLASSES_UM, 50)
+    application = SimulatedApp(np.column_stack([places, told * diameters]))
+    runpy.run_path(str(folder / "rocky_positions.py"), {"app": application}, "script")
+    found = read_positions(folder / "positions.csv", "mm")
+    assert found.points == pytest.approx(places)
+    assert found.diameters == pytest.approx(10 * diameters)
 
 
 def _refusing(answer):

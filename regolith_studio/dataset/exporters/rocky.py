@@ -18,6 +18,8 @@ that is lifted off a plate. About {count:,.0f} particles of {mass:.4g} g in all,
 Rocky counts sizes by mass: the percentages in case.json are cumulative mass percentages, converted
 from the dataset's, and each shape is filled in with its share of the mass. Sizes are equivalent diameters,
 so that the STL files need no unit. Restitution, wall friction and lifting speed are not given in the paper.
+When it has been simulated, rocky_positions.py writes the particles' positions for the measurement of the
+angle of repose.
 Method names are those of the interface's public reference for 2024 R2 to 2026 R1; the script is tested
 against a recorder that knows these names, not against the licensed program. Compare one shape by
 GetExportToolkit().ExportParticleToStl before you trust a long run."""
@@ -34,6 +36,7 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
     notes = _NOTE.format(count=count, mass=test.mass * 1e3, factor=factor)
     return meshes | {
         "rocky_case.py": resource("exports", "rocky_case.py").read_bytes(),
+        "rocky_positions.py": resource("exports", "rocky_positions.py").read_bytes(),
         "case.json": tidy_json(_case(dataset, options, keys)).encode("utf-8"),
         "walls/tube.stl": stl_bytes(tube_mesh(test.diameter, test.height), "regolith-studio tube, metres"),
         "walls/plate.stl": stl_bytes(box_mesh(_plate(options)), "regolith-studio plate, metres"),
