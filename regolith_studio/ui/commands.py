@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QDialog, QFileDialog, QWidget
 
 from regolith_studio.errors import RegolithError
 from regolith_studio.session.choices import Choices
+from regolith_studio.session.opening import FileKind, kind_of_all
 from regolith_studio.session.plan import Kind
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.session.project import inputs_of
@@ -51,7 +52,7 @@ class Commands(QObject):
     def __init__(self, session: Session, preferences: Preferences, toast: Toast, window: QWidget) -> None:
         super().__init__(window)
         self._session, self._preferences, self._toast, self._window = session, preferences, toast, window
-        self.openers: dict[str, Callable[[Path], object]] = {".json": self._open_recipe}
+        self.openers: dict[FileKind, Callable[[Path], object]] = {FileKind.RECIPE: self._open_recipe}
         self._export: ExportDialog | None = None
         self._export_task = 0
 
@@ -71,10 +72,11 @@ class Commands(QObject):
 
     def open_paths(self, paths: Sequence[Path], unit: str | None = None) -> None:
         """Open meshes and folders, or one file of another kind; asks for the unit of meshes if need be."""
-        if not paths:
+        kind = self._try(lambda: kind_of_all(paths)) if paths else None
+        if kind is None:
             return
-        opener = self.openers.get(paths[0].suffix.lower())
-        if opener is not None and len(paths) == 1:
+        opener = self.openers.get(kind)
+        if opener is not None:
             self._try(lambda: opener(paths[0]))
             self._preferences.remember_opened(paths[0], unit or self._session.choices.unit)
             return

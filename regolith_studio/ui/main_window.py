@@ -9,8 +9,8 @@ from PySide6.QtCore import QTimer
 from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QGuiApplication
 from PySide6.QtWidgets import QApplication, QMainWindow
 
+from regolith_studio.session.opening import FileKind
 from regolith_studio.session.preferences import Preferences
-from regolith_studio.session.project import SUFFIX
 from regolith_studio.session.session import Session
 from regolith_studio.ui.actions import Actions
 from regolith_studio.ui.activity import ActivityDock
@@ -116,7 +116,7 @@ class MainWindow(QMainWindow):
     def _wire(self) -> None:
         session, wiring = self.session, self.wiring
         self.activity.wire(session, wiring, self.toast)
-        self.commands.openers[SUFFIX] = self.projects.open
+        self.commands.openers[FileKind.PROJECT] = self.projects.open
         for page in self.pages.pages.values():
             self.commands.openers |= dict.fromkeys(page.opens, partial(self._open_in, page.key))
         self.pages.built.connect(lambda key: self.memory.restore_parts(self.pages.widgets[key]))

@@ -8,6 +8,7 @@ from typing import Any
 from PySide6.QtWidgets import QWidget
 
 from regolith_studio.jobs.events import Failed, Job
+from regolith_studio.session.opening import FileKind
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.session.session import Session
 from regolith_studio.ui.action_spec import ActionSpec
@@ -34,7 +35,7 @@ class PageWidget(QWidget):
         """Another page is seen from now on."""
 
     def open_path(self, path: Path) -> None:
-        """Open a file whose suffix is one of :attr:`Page.opens`: dropped, chosen, or named at start."""
+        """Open a file whose kind is one of :attr:`Page.opens`: dropped, chosen, or named at start."""
 
     def busy(self) -> str:
         """One sentence on what closing would lose or stop, or nothing; tasks need not be named."""
@@ -144,7 +145,7 @@ class Page:
     build
         Makes the widget at the first visit; imports its modules inside, so that the window starts fast.
     opens
-        Suffixes of files, such as ``.tif``, that :meth:`PageWidget.open_path` of this page opens.
+        Kinds of files that :meth:`PageWidget.open_path` of this page opens.
     actions
         Commands of the page, in menus and tool bar while it is seen, in the command palette always.
     """
@@ -156,4 +157,4 @@ class Page:
     tip: str
     build: Callable[[PageContext], PageWidget]
     actions: tuple[ActionSpec, ...] = ()
-    opens: tuple[str, ...] = ()
+    opens: tuple[FileKind, ...] = ()

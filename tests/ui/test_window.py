@@ -12,6 +12,7 @@ from PySide6.QtWidgets import QApplication, QLineEdit, QSlider, QWidget
 
 from regolith_studio.errors import EnvironmentProblem, InputError
 from regolith_studio.geometry.directions import icosphere
+from regolith_studio.resources import resource
 from regolith_studio.ui.app import open_window, telling_hook
 from regolith_studio.ui.dialogs.export import ExportDialog
 from regolith_studio.ui.dialogs.unit import UnitDialog
@@ -138,6 +139,38 @@ def test_that_dropped_files_are_opened_in_the_unit_that_is_answered(window, wait
     assert np.ptp(window.session.particles[0].particle.mesh.vertices[:, 2]) == pytest.approx(4000.0)
     assert window.preferences.unit_for(path) == "mm"
     assert window.preferences.recent == (str(path),)
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        (("thesis.docx",), "thesis.docx is nothing"),
+        (("a.stl", "b.tif"), "several kinds"),
+        (("a.tif", "b.tif"), "2 files"),
+    ],
+)
+def test_that_what_cannot_be_opened_is_said_without_a_question(window, tmp_path, name, words):
+    before = window.session.particles
+    for each in name:
+        (tmp_path / each).write_bytes(b"x")
+    window.commands.open_paths([tmp_path / each for each in name])
+    assert words in window.toast.sentence.text()
+    assert window.session.particles == before
+
+
+def test_that_volumes_datasets_and_cards_go_to_their_pages(window, tmp_path):
+    opened = []
+    for key in ("scan", "dataset", "model"):
+        page = window.go(key)
+        page.open_path = lambda path, key=key: opened.append((key, path.name))
+    window.go("explore")
+    (tmp_path / "scan.nii.gz").touch()
+    (tmp_path / "shapes").mkdir()
+    (tmp_path / "shapes" / "dataset.json").touch()
+    for path in (tmp_path / "scan.nii.gz", tmp_path / "shapes", resource("materials", "ma165.json")):
+        window.commands.open_paths([path])
+    assert opened == [("scan", "scan.nii.gz"), ("dataset", "shapes"), ("model", "ma165.json")]
+    assert window.pages.current == "model"
 
 
 def test_that_a_broken_file_costs_one_sentence_and_nothing_else(window, wait, tmp_path):

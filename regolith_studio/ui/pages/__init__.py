@@ -66,8 +66,8 @@ What a page can rely on
 * **Memory**: ``context.remember(name, value)``, ``context.recall(name, default)`` between sittings;
   :meth:`PageWidget.state` and ``restore`` for project files. A splitter made by ``ui.layout`` that has
   an object name is remembered by itself.
-* **Files**: a page that names suffixes in ``opens=(".tif",)`` gets dropped and opened files of that kind
-  by ``open_path(path)``.
+* **Files**: a page that names kinds in ``opens=(FileKind.VOLUME,)`` gets dropped and opened files of that
+  kind by ``open_path(path)``.
 * **Closing**: the window asks when tasks run or when :meth:`PageWidget.busy` says a sentence;
   :meth:`PageWidget.release` comes last.
 * Widgets, plots and themes: ``ui.widgets`` (``Plot``, ``CurvePlot``, ``BarPlot``, ``HeatTable``,

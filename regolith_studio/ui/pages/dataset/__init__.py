@@ -1,5 +1,6 @@
 """Page "Dataset": particles that stand for all, their sizes, the folder, and its way to DEM programs."""
 
+from regolith_studio.session.opening import FileKind
 from regolith_studio.ui.action_spec import BREAK, PAGE_MENU, ActionSpec
 from regolith_studio.ui.page import Page, PageContext, PageWidget
 
@@ -18,6 +19,7 @@ PAGE = Page(
     order=60,
     tip="Choose representative particles, build a dataset, export it to DEM programs",
     build=build,
+    opens=(FileKind.DATASET,),
     actions=(
         ActionSpec(PAGE_MENU, "find", "&Find representatives"),
         ActionSpec(PAGE_MENU, "build", "&Build the dataset …"),

@@ -156,6 +156,9 @@ class DatasetPage(PageWidget):
             "Reading the dataset", Job(open_dataset_folder, (folder,)), self._take_read, lane=BUILD
         )
 
+    def open_path(self, path: Path) -> None:
+        self.open_folder(path if path.is_dir() else path.parent)
+
     def show_library(self) -> None:
         """Show the library; ask for its folder if there is none yet."""
         self._shapes.setCurrentWidget(self.library)

@@ -1,5 +1,6 @@
 """Page "Shape model": fit a stochastic model to a sample, draw virtual particles, judge both."""
 
+from regolith_studio.session.opening import FileKind
 from regolith_studio.ui.action_spec import BREAK, PAGE_MENU, ActionSpec
 from regolith_studio.ui.page import Page, PageContext, PageWidget
 
@@ -18,6 +19,7 @@ PAGE = Page(
     order=40,
     tip="Draw virtual particles with the shapes and sizes of a sample",
     build=build,
+    opens=(FileKind.SHAPES,),
     actions=(
         ActionSpec(PAGE_MENU, "open_source", "Open a &fit, model or card …", tip="Open what to draw from"),
         ActionSpec(PAGE_MENU, BREAK, ""),

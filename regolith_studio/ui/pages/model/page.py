@@ -112,6 +112,9 @@ class ModelPage(PageWidget):
         """Choose a fit, model or card in a file."""
         self._try(lambda: self._add(read_shape_source(str(path))))
 
+    def open_path(self, path: Path) -> None:
+        self.add_source(path)
+
     def fit_model(self) -> None:
         """Fit the chosen model to the chosen sample, or take what the source brings."""
         self._try(self._fit)

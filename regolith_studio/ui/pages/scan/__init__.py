@@ -1,5 +1,6 @@
 """Page "Scan": from a volume of grey values or labels to particles."""
 
+from regolith_studio.session.opening import FileKind
 from regolith_studio.ui.action_spec import BREAK, PAGE_MENU, ActionSpec
 from regolith_studio.ui.page import Page, PageContext, PageWidget
 
@@ -18,7 +19,7 @@ PAGE = Page(
     order=30,
     tip="Find the grains in a CT volume and make particles of them",
     build=build,
-    opens=(".tif", ".tiff", ".h5", ".hdf5", ".nrrd", ".mha", ".mhd", ".nii", ".npy"),
+    opens=(FileKind.VOLUME,),
     actions=(
         ActionSpec(PAGE_MENU, "open_volume", "Open &volume …", "open", "Ctrl+Alt+O", "Open a CT volume"),
         ActionSpec(PAGE_MENU, "open_slices", "Open a folder of s&lices …"),

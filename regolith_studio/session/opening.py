@@ -1,0 +1,110 @@
+"""What a file or folder is that somebody drops, chooses or names: by its name, and JSON by its content."""
+
+import re
+from collections.abc import Sequence
+from enum import StrEnum
+from pathlib import Path
+
+from regolith_studio.errors import InputError
+from regolith_studio.readers.formats import mesh_suffixes
+from regolith_studio.readers.table_particles import TABLE_SUFFIXES, TEXT_SUFFIXES
+from regolith_studio.session.project import SUFFIX
+
+_SNIFFED = 200_000
+_MOST_LOOKED_AT = 5_000
+_FORMAT = re.compile(rb'"format"\s*:\s*"([^"]{1,60})"')
+
+
+class FileKind(StrEnum):
+    """Kinds of input, as a sentence names them."""
+
+    PARTICLES = "particles"
+    VOLUME = "volume"
+    PROJECT = "project"
+    RECIPE = "recipe"
+    DATASET = "dataset"
+    SHAPES = "fit, model or material card"
+    UNKNOWN = "unknown"
+
+
+_BY_FORMAT = {
+    b"regolith-studio recipe": FileKind.RECIPE,
+    b"regolith-studio project": FileKind.PROJECT,
+    b"regolith-studio-dataset": FileKind.DATASET,
+    b"regolith-studio fit": FileKind.SHAPES,
+    b"regolith-studio model": FileKind.SHAPES,
+}
+
+
+def volume_suffixes() -> tuple[str, ...]:
+    """Endings of the files that hold a volume; those of tables of coefficients are not among them."""
+    from regolith_studio.readers import volume_formats  # loads every one of them
+    from regolith_studio.readers.announced import announced
+
+    rows = announced(volume_formats.__name__, volume_formats.__path__).values()
+    return tuple(ending for row in rows for ending in row.suffixes if ending not in TEXT_SUFFIXES)
+
+
+def kind_of(path: Path) -> FileKind:
+    """What a path leads to; what is not there or cannot be read has the kind of its name."""
+    name = path.name.lower()
+    if path.is_dir():
+        return _kind_of_folder(path)
+    if name.endswith(SUFFIX):
+        return FileKind.PROJECT
+    if name.endswith(".json"):
+        return _kind_of_json(path)
+    if name.endswith((*mesh_suffixes(), *TABLE_SUFFIXES, *TEXT_SUFFIXES)):
+        return FileKind.PARTICLES
+    return FileKind.VOLUME if name.endswith(volume_suffixes()) else FileKind.UNKNOWN
+
+
+def kind_of_all(paths: Sequence[Path]) -> FileKind:
+    """The one kind that all of these are.
+
+    Raises
+    ------
+    InputError
+        If one is unknown, or they are of several kinds, or of a kind that is opened one at a time.
+    """
+    kinds = [kind_of(path) for path in paths]
+    if FileKind.UNKNOWN in kinds:
+        lost = paths[kinds.index(FileKind.UNKNOWN)].name
+        raise InputError(
+            f"{lost} is nothing that can be opened here: meshes, tables of coefficients, volumes, datasets, "
+            "projects, recipes, fits and models can."
+        )
+    if len(set(kinds)) > 1:
+        raise InputError(
+            f"These are of several kinds ({', '.join(sorted(set(kinds)))}): open one kind at once."
+        )
+    if len(paths) > 1 and kinds[0] is not FileKind.PARTICLES:
+        raise InputError(f"There are {len(paths)} files of the kind {kinds[0]}: open one after the other.")
+    return kinds[0]
+
+
+def _kind_of_folder(folder: Path) -> FileKind:
+    if (folder / "dataset.json").is_file():
+        return FileKind.DATASET
+    from regolith_studio.readers.volume_formats.slices import SLICE_SUFFIXES
+
+    try:
+        slices = [path for path in folder.iterdir() if path.suffix.lower() in SLICE_SUFFIXES]
+        if len(slices) < 2:
+            return FileKind.PARTICLES
+        inside = (path for _, path in zip(range(_MOST_LOOKED_AT), folder.rglob("*"), strict=False))
+        meshes = {*mesh_suffixes(), *TABLE_SUFFIXES}
+        return FileKind.PARTICLES if any(p.suffix.lower() in meshes for p in inside) else FileKind.VOLUME
+    except OSError:
+        return FileKind.PARTICLES
+
+
+def _kind_of_json(path: Path) -> FileKind:
+    try:
+        with path.open("rb") as file:
+            content = file.read(_SNIFFED)
+    except OSError:
+        return FileKind.RECIPE  # whose reader says what is wrong
+    if found := _FORMAT.search(content):
+        return _BY_FORMAT.get(found[1], FileKind.UNKNOWN)
+    return FileKind.SHAPES if b'"relative_amplitudes"' in content else FileKind.RECIPE
