@@ -1,55 +1,81 @@
-"""Search for the minimum-volume box of a convex solid.
+"""Search for the minimum-volume box of a convex solid, and for all boxes that come near it.
 
-O'Rourke (1985): two adjacent sides of a minimum-volume box are each flush with an edge of the hull. A
-side that is flush with an edge has its normal on the edge's Gauss arc, the arc between the normals of
-the two faces that meet there.
+O'Rourke (1985): two adjacent sides of a minimum-volume box are each flush with an edge of the hull. So every
+pair of edges is asked: the boxes flush with both are a curve or two
+(:mod:`regolith_studio.geometry.box_curve`), and branch and bound along it either proves that no box is
+smaller than the best so far or finds it. The ends of the curves are boxes with a side on a facet; these are
+looked at first.
 
-So all arcs are searched, by branch and bound with the bounds of :mod:`regolith_studio.geometry.box_view`:
-a piece of an arc that could hold a smaller box is halved, or cut where a face turns its back. Once no face
-does so within the piece, and only one edge or two could be flush with a second side there, the least volume
-along it is found by descent. Of solids with many faces, whole neighbourhoods of normals are ruled out first.
+The vertices held fast for a bound come from a table by direction; they need not be the farthest.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 
-from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
-from regolith_studio.geometry.box_arc import Arc, Search, box_on, box_on_arc, descend
-from regolith_studio.geometry.box_view import (
-    View,
-    bound_after_turn,
-    bound_within_cap,
-    empty_view,
-    flush_after_turn,
+from regolith_studio.geometry.arrays import FloatArray, IntArray
+from regolith_studio.geometry.box_branch import least_on_curve
+from regolith_studio.geometry.box_curve import (
+    all_positive,
+    curve_between,
+    denominator,
+    factors_of,
+    frame_on,
+    nowhere_below,
+    numerator,
+    unit,
 )
-from regolith_studio.geometry.compiled import kernel
-from regolith_studio.geometry.hull_graph import HullGraph, hull_graph
+from regolith_studio.geometry.box_record import TIE, Found, drop_far, keep, note, nothing_below
+from regolith_studio.geometry.box_widths import (
+    SpanTable,
+    between,
+    ends_along,
+    lowest,
+    span_near,
+    span_table,
+)
+from regolith_studio.geometry.compiled import kernel, leaf
+from regolith_studio.geometry.hull_graph import HullGraph, after, hull_graph
 from regolith_studio.geometry.vectors import along, cross, dot, length, mixed, row
 
-MANY_FACES = 100
-FIRST_FACES = 16
-"""Solids with more faces than MANY_FACES are first seen along so many normals, to know a good box soon."""
+SIDEWAYS = 1e-9
+"""Scalar products of unit normals below this are 0: the facets are at right angles."""
 
-STRIDES = 8
-CAPS = np.radians(np.array([24.0, 16.0, 11.0, 7.5, 5.0, 3.3, 2.2, 1.5, 1.0]))
-"""Neighbourhoods of a normal that are tried, in radians."""
 
-NARROW = np.radians(8.0)
-"""Pieces of an arc wider than this are halved."""
-WIDEST = np.radians(20.0)
-"""Arcs are searched in pieces that are no wider."""
-UNIMODAL = np.radians(3.0)
-"""Widest piece along which is descended."""
-FINEST = 1e-10
-"""Angle down to which pieces are halved, in radians."""
-MANY_PIECES = 500
-"""After so many pieces of one arc, needed only where the volume hardly changes along it, FINEST grows."""
+class Facets(NamedTuple):
+    """A convex solid of size about 1 near the origin.
 
-SAME_NORMAL = 1e-8
-EDGE_ON = 1e-10
-EQUAL = 1e-11
-"""Boxes whose volumes differ by a smaller share are not told apart."""
+    Parameters
+    ----------
+    points
+        Vertices, shape (3, v).
+    normals
+        Of the facets, shape (n, 3); no two neighbours lie in one plane.
+    edges
+        Rows (from, to, facet, other facet), shape (e, 4).
+    """
 
-DEPTH = 256
+    points: FloatArray
+    normals: FloatArray
+    edges: IntArray
+
+
+class Work(NamedTuple):
+    """Scratch.
+
+    Parameters
+    ----------
+    dots
+        Scalar products of two normals with those of all n facets, shape (2, n).
+    side
+        How many of them are not negative, shape (n,).
+    ends
+        Of at most two curves: piece, end, place on either arc; shape (2, 2, 2).
+    """
+
+    dots: FloatArray
+    side: IntArray
+    ends: FloatArray
 
 
 @kernel
@@ -63,167 +89,207 @@ def minimum_box(points: FloatArray, faces: IntArray) -> FloatArray:
     faces
         Its outward triangles, shape (m, 3).
     """
-    return least_box(hull_graph(points, faces))
-
-
-@kernel
-def least_box(graph: HullGraph) -> FloatArray:
-    """Axes of the minimum-volume box of a solid, one a row, shape (3, 3); zeros if it does not close."""
-    search = Search(empty_view(len(graph.points)), np.full(2, np.inf), np.zeros((3, 3)), np.empty((DEPTH, 2)))
+    graph = hull_graph(points, faces)
     if not graph.closed:
-        return search.axes
-    done = np.zeros(len(graph.twin), np.bool_)
-    if len(graph.normals) > MANY_FACES:
-        _rule_out(graph, done, search)
-    else:
-        for f in range(len(graph.normals)):
-            if graph.facet[f] == f:
-                box_on(graph, row(graph.normals, f), search)
+        return np.zeros((3, 3))
+    return boxes_near_least(facets_of(graph), TIE, np.inf).axes
+
+
+@kernel
+def facets_of(graph: HullGraph) -> Facets:
+    """Facets and the edges between them; triangles in one plane are one facet."""
+    number, n = np.full(len(graph.facet), -1), 0
+    for f in range(len(graph.facet)):
+        if graph.facet[f] == f:
+            number[f] = n
+            n += 1
+    normals, edges, count = np.empty((n, 3)), np.empty((len(graph.twin) // 2, 4), np.int64), 0
+    for f in range(len(graph.facet)):
+        if number[f] >= 0:
+            normals[number[f]] = graph.normals[f]
     for h in range(len(graph.twin)):
-        if h < graph.twin[h] and not done[h]:
-            search_arc(graph, h, search)
-    return search.axes
+        one, two = graph.facet[h // 3], graph.facet[graph.twin[h] // 3]
+        if h < graph.twin[h] and one != two:
+            edges[count, 0], edges[count, 1] = graph.origin[h], graph.origin[after(h)]
+            edges[count, 2], edges[count, 3] = number[one], number[two]
+            count += 1
+    return Facets(np.ascontiguousarray(graph.points.T), normals, edges[:count])
 
 
 @kernel
-def _rule_out(graph: HullGraph, done: BoolArray, search: Search) -> None:
-    """Mark the half-edges whose arcs hold no smaller box, by what is seen along some of the normals."""
-    m = len(graph.normals)
-    for k in range(FIRST_FACES):
-        box_on(graph, row(graph.normals, k * m // FIRST_FACES), search)
-    known, seen, stack = np.zeros(m, np.bool_), np.full(m, -1), np.empty(m, np.int64)
-    for start in range(STRIDES):
-        for f in range(start, m, STRIDES):
-            if known[f]:
-                continue
-            axis = row(graph.normals, f)
-            n = abs(box_on(graph, axis, search))
-            event, reach = 0, 0.0
-            for angle in CAPS:
-                event = bound_within_cap(search.sight, n, angle, search.record[0] * (1.0 - EQUAL), event)
-                if event < 0:
-                    reach = angle
-                    break
-            near = np.cos(reach)
-            seen[f], stack[0], count = f, f, 1
-            i = 0
-            while i < count:
-                for h in range(3 * stack[i], 3 * stack[i] + 3):
-                    g = graph.twin[h] // 3
-                    if seen[g] != f and along(graph.normals, g, axis) >= near:
-                        seen[g], stack[count] = f, g
-                        count += 1
-                i += 1
-            for i in range(count):
-                known[stack[i]] = True
-                for h in range(3 * stack[i], 3 * stack[i] + 3):
-                    if seen[graph.twin[h] // 3] == f:
-                        done[h] = done[graph.twin[h]] = True
+def boxes_near_least(facets: Facets, margin: float, known: float) -> Found:
+    """The least box of all, and that of every curve where it is at most (1 + margin) times as large.
 
-
-@kernel
-def search_arc(graph: HullGraph, h: int, search: Search) -> None:
-    """Branch and bound along the Gauss arc of half-edge `h`."""
-    start, end = row(graph.normals, h // 3), row(graph.normals, graph.twin[h] // 3)
-    across = mixed(end, 1.0, start, -dot(start, end))
-    sine = length(across)
-    if sine < SAME_NORMAL:
-        return
-    angle = np.arctan2(sine, dot(start, end))
-    across = mixed(across, 1.0 / sine, start, 0.0)
-    across = mixed(across, 1.0, start, -dot(across, start))
-    across = mixed(across, 1.0 / length(across), start, 0.0)
-    arc = Arc(start, across, cross(across, start), angle)
-    todo = search.todo
-    n = int(np.ceil(angle / WIDEST))
-    for i in range(n):
-        todo[i, 0], todo[i, 1] = angle * i / n, angle * (i + 1) / n
-    pieces, finest = 0, FINEST
-    while n > 0:
-        n -= 1
-        low, high = todo[n, 0], todo[n, 1]
-        cut = _look_into(graph, arc, low, high, search)
-        pieces += 1
-        if pieces % MANY_PIECES == 0:
-            finest *= 100.0
-        if cut >= 0.0 and n + 2 <= DEPTH and high - low > finest:
-            todo[n, 0], todo[n, 1] = low, cut
-            todo[n + 1, 0], todo[n + 1, 1] = cut, high
-            n += 2
-
-
-@kernel
-def _look_into(graph: HullGraph, arc: Arc, low: float, high: float, search: Search) -> float:
-    """Search a piece of an arc; where to cut it if it may still hold a smaller box, else -1."""
-    middle, half = (low + high) / 2.0, (high - low) / 2.0
-    n, _ = box_on_arc(graph, arc, middle, search)
-    view, limit = search.sight, search.record[0] * (1.0 - EQUAL)
-    cosine, sine = np.cos(half), np.sin(half)
-    bound = bound_after_turn(view, abs(n), cosine, -sine)
-    if bound >= limit:
-        bound = bound_after_turn(view, abs(n), cosine, sine)
-    if bound >= limit:
-        return -1.0
-    if n < 0 or high - low > NARROW:
-        return middle
-    turn = _next_flip(graph, arc, middle, half, n, view)
-    if turn != 0.0:
-        return middle + turn
-    count, one, two = _flush_edges(view, n, half, limit)
-    if count == 0:
-        return -1.0
-    if count > 2 or high - low > UNIMODAL:
-        return middle
-    descend(graph, arc, low, high, one, search)
-    if count == 2:
-        descend(graph, arc, low, high, two, search)
-    return -1.0
-
-
-@kernel
-def _next_flip(graph: HullGraph, arc: Arc, middle: float, half: float, n: int, view: View) -> float:
-    """Least turn from the middle at which a face beside the outline turns its back; 0 if none does."""
-    axis = mixed(arc.start, np.cos(middle), arc.across, np.sin(middle))
-    second = mixed(arc.across, np.cos(middle), arc.start, -np.sin(middle))
-    nearest = np.inf
-    for i in range(n):
-        for side in range(2):
-            f = (view.rim[i] if side == 0 else graph.twin[view.rim[i]]) // 3
-            up, rise = along(graph.normals, f, axis), along(graph.normals, f, second)
-            if abs(up) < abs(rise) * 1.1 * half:
-                turn = np.arctan(-up / rise)
-                if abs(turn) < half - EDGE_ON and abs(turn) < abs(nearest):
-                    nearest = turn
-    return nearest if nearest < np.inf else 0.0
-
-
-@kernel
-def _flush_edges(view: View, n: int, half: float, limit: float) -> tuple[int, int, int]:
-    """How many edges of the outline could be flush with a second side of a box below `limit`; the last two.
-
-    The outline must keep its edges. Over half a piece the volume with the touched vertices held fast lies
-    above its chord, less what its curvature allows. Three, where an edge is seen so nearly end-on that
-    nothing is known.
+    Parameters
+    ----------
+    known
+        Volume of some box; infinite if none is known. Only smaller ones are kept in `record`.
     """
-    cosine, sine = np.cos(half), np.sin(half)
-    count, one, two = 0, -1, -1
-    for i in range(n):
-        j = i + 1 if i + 1 < n else 0
-        here, squared = flush_after_turn(view, n, i, 1.0, 0.0)
-        deep = view.z[j] - view.z[i]
-        before, squared_before = flush_after_turn(view, n, i, cosine, -sine)
-        after, squared_after = flush_after_turn(view, n, i, cosine, sine)
-        lever = min(squared, squared_before, squared_after)
-        if lever == 0.0 or lever < 16.0 * half * half * (squared + deep * deep):
-            return 3, one, two
-        dip = here * (4.0 * (squared + deep * deep) / lever + 12.0) * half * half
-        if min(_least_under(before, here, dip), _least_under(here, after, dip)) < limit:
-            count, one, two = count + 1, i, one
-    return count, one, two
+    found = nothing_below(known)
+    points, normals, _ = facets
+    table, arcs, n = span_table(points), _arcs(facets), len(normals)
+    work = Work(np.empty((2, n)), np.empty(n, np.int8), np.empty((2, 2, 2)))
+    _on_facets(facets, arcs, table, work, margin, found)
+    _on_curves(facets, arcs, table, work, margin, found)
+    drop_far(margin, found)
+    return found
+
+
+@leaf
+def _on_curves(
+    facets: Facets, arcs: FloatArray, table: SpanTable, work: Work, margin: float, found: Found
+) -> None:
+    """Boxes flush with any two edges."""
+    _, normals, edges = facets
+    dots, side, ends = work
+    least_width = np.inf
+    for e in range(len(edges)):
+        least_width = min(least_width, arcs[e, 6])
+    for i in range(len(edges)):
+        one, two = row(normals, edges[i, 2]), row(normals, edges[i, 3])
+        for g in range(len(normals)):
+            dots[0, g], dots[1, g] = along(normals, g, one), along(normals, g, two)
+            side[g] = (dots[0, g] >= 0.0) + (dots[1, g] >= 0.0)
+        for k in range(i, len(edges)):
+            if side[edges[k, 2]] == side[edges[k, 3]] != 1 or (k == i and dots[0, edges[i, 3]] >= 0.0):
+                continue
+            limit = found.record[0] * (1.0 + margin)
+            if arcs[i, 6] * arcs[k, 6] * least_width >= limit:
+                continue
+            for branch in range(_branches(dots, edges[k, 2], edges[k, 3], ends)):
+                _search_curve(facets, arcs, table, i, k, ends[branch], margin, found)
 
 
 @kernel
-def _least_under(one: float, two: float, dip: float) -> float:
-    """Least value of the parabola through both values that hangs ``dip / 4`` below their chord."""
-    rise = abs(two - one)
-    return min(one, two) if rise >= dip else min(one, two) - (dip - rise) ** 2 / (4.0 * dip)
+def _arcs(facets: Facets) -> FloatArray:
+    """For each edge its unit direction, a span across the solid, and a bound on the width along its arc.
+
+    The span runs from the vertex opposite to the edge to the edge; shape (e, 7).
+    """
+    points, normals, edges = facets
+    arcs = np.empty((len(edges), 7))
+    for e in range(len(edges)):
+        one, two = row(normals, edges[e, 2]), row(normals, edges[e, 3])
+        direction = unit(between(points, edges[e, 1], edges[e, 0]))
+        span = between(points, edges[e, 0], lowest(points, mixed(one, 1.0, two, 1.0)))
+        for c in range(3):
+            arcs[e, c], arcs[e, 3 + c] = direction[c], span[c]
+        arcs[e, 6] = min(dot(span, one), dot(span, two))
+    return arcs
+
+
+@leaf
+def _on_facets(
+    facets: Facets, arcs: FloatArray, table: SpanTable, work: Work, margin: float, found: Found
+) -> None:
+    """Boxes with one side on a facet and another flush with an edge of the shadow."""
+    points, normals, edges = facets
+    for f in range(len(normals)):
+        a = row(normals, f)
+        top, bottom = ends_along(points, a)
+        height = dot(between(points, top, bottom), a)
+        for g in range(len(normals)):
+            work.dots[0, g] = along(normals, g, a)
+        for e in range(len(edges)):
+            one, two = work.dots[0, edges[e, 2]], work.dots[0, edges[e, 3]]
+            if one * two > 0.0 and min(abs(one), abs(two)) > SIDEWAYS:
+                continue
+            b = cross(row(arcs, e), a)
+            lever = length(b)
+            if lever < SIDEWAYS:
+                continue
+            b = mixed(b, 1.0 / lever, b, 0.0)
+            c = cross(a, b)
+            limit = found.record[0] * (1.0 + margin) / height
+            if abs(dot(span_near(table, b), b) * dot(span_near(table, c), c)) < limit:
+                top, bottom = ends_along(points, b)
+                wide = dot(between(points, top, bottom), b)
+                top, bottom = ends_along(points, c)
+                volume = keep(height, wide, dot(between(points, top, bottom), c), a, b, c, found)
+                if margin > TIE:
+                    note(volume, a, b, c, margin, found)
+
+
+@leaf
+def _branches(dots: FloatArray, three: int, four: int, ends: FloatArray) -> int:
+    """Ends of the curves on which a of one arc and b of another are orthogonal; how many there are.
+
+    With a = one + s (two - one) and b likewise with t, a . b is bilinear in (s, t): a hyperbola, that the
+    square of (s, t) cuts into at most two pieces.
+
+    Parameters
+    ----------
+    dots
+        Of the facets of the first arc with all facets.
+    three, four
+        Facets of the second arc.
+    ends
+        Filled: piece, end, (s, t).
+    """
+    s00, s01, s10, s11 = dots[0, three], dots[0, four], dots[1, three], dots[1, four]
+    p00, p01, p10, p11 = s00 >= 0.0, s01 >= 0.0, s10 >= 0.0, s11 >= 0.0
+    n = 0
+    both = p00 == p11 and p00 != p01 and p00 != p10
+    around = both and ((s00 * s11 - s01 * s10) / (s00 + s11 - s01 - s10) >= 0.0) == p00
+    for side in range(4):
+        if side == 0:
+            if p00 == p01:
+                continue
+            s, t, piece = 0.0, s00 / (s00 - s01), 0
+        elif side == 1:
+            if p10 == p11:
+                continue
+            s, t, piece = 1.0, s10 / (s10 - s11), 1
+        elif side == 2:
+            if p00 == p10:
+                continue
+            s, t, piece = s00 / (s00 - s10), 0.0, 1 if around else 0
+        else:
+            if p01 == p11:
+                continue
+            s, t, piece = s01 / (s01 - s11), 1.0, 0 if around else 1
+        if both:
+            end = 0 if side < 2 else 1
+        else:
+            piece, end = 0, n
+        ends[piece, end, 0], ends[piece, end, 1] = s, t
+        n += 1
+    return n // 2
+
+
+@leaf
+def _search_curve(
+    facets: Facets,
+    arcs: FloatArray,
+    table: SpanTable,
+    i: int,
+    k: int,
+    ends: FloatArray,
+    margin: float,
+    found: Found,
+) -> None:
+    """Least box on one curve, if it is below the limit."""
+    points, normals, edges = facets
+    one, two, three, four = edges[i, 2], edges[i, 3], edges[k, 2], edges[k, 3]
+    a_from = unit(mixed(row(normals, one), 1.0 - ends[0, 0], row(normals, two), ends[0, 0]))
+    a_to = unit(mixed(row(normals, one), 1.0 - ends[1, 0], row(normals, two), ends[1, 0]))
+    b_from = unit(mixed(row(normals, three), 1.0 - ends[0, 1], row(normals, four), ends[0, 1]))
+    b_to = unit(mixed(row(normals, three), 1.0 - ends[1, 1], row(normals, four), ends[1, 1]))
+    if dot(a_from, a_to) > dot(b_from, b_to):
+        i, k, a_from, b_from, a_to, b_to = k, i, b_from, a_from, b_to, a_to
+    curve = curve_between(row(arcs, i), row(arcs, k), a_from, b_from, a_to, b_to)
+    if curve.q == 0.0 or curve.low >= curve.high:
+        return
+    bottom = denominator(curve)
+    limit = found.record[0] * (1.0 + margin)
+    first = (arcs[i, 3], arcs[i, 4], arcs[i, 5])
+    second = (arcs[k, 3], arcs[k, 4], arcs[k, 5])
+    factors = factors_of(curve, first, second, span_near(table, cross(curve.a, curve.b)), 0.0)
+    if all_positive(factors, curve.low, curve.high) and nowhere_below(
+        numerator(factors), bottom, limit, curve.low, curve.high
+    ):
+        return
+    volume, x = least_on_curve(points, table, curve, edges[i, 0], edges[k, 0], margin, found)
+    if volume < np.inf and margin > TIE:
+        a, b, c = frame_on(curve, x)
+        note(volume, a, b, c, margin, found)

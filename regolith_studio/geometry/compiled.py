@@ -19,13 +19,28 @@ import numba
 
 F = TypeVar("F", bound=Callable[..., object])
 
+OPTIONS: Any = {"cache": True, "nogil": True, "error_model": "numpy", "fastmath": False}
+
 _PACKAGE = Path(__file__).resolve().parents[1]
-_MARKS = (b"@kernel", b"@inlined")
+_MARKS = (b"@kernel", b"@leaf", b"@inlined")
 
 
 def kernel(function: F) -> F:
     """Compile `function` with numba: cached on disk, no interpreter lock, IEEE arithmetic."""
-    compiled = numba.njit(cache=True, nogil=True, error_model="numpy", fastmath=False)(function)
+    compiled = numba.njit(**OPTIONS)(function)
+    _mark_cache(compiled, Path(function.__code__.co_filename))
+    return cast(F, compiled)
+
+
+def leaf(function: F) -> F:
+    """Compile a function that allocates no memory, as :func:`kernel` does, but without counting references.
+
+    Every look at an array of a named tuple counts references up and down, each an atomic operation that
+    costs more than the arithmetic around it. Numba refuses to compile a leaf that allocates; it may call
+    other leaves only.
+    """
+    options: Any = {**OPTIONS, "_nrt": False}
+    compiled = numba.njit(**options)(function)
     _mark_cache(compiled, Path(function.__code__.co_filename))
     return cast(F, compiled)
 

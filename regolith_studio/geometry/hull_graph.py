@@ -1,9 +1,4 @@
-"""Walks over the surface of a triangulated convex solid.
-
-Extreme vertices by hill climbing (on a convex solid no other maximum can stop it), and the shadow's
-outline by walking along the edges between faces that look up and faces that look down. Both take about
-the square root of the number of faces.
-"""
+"""How the triangles of a convex solid hang together, and which of them make up one plane facet."""
 
 from typing import NamedTuple
 
@@ -12,7 +7,7 @@ import numpy as np
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.compiled import kernel
 from regolith_studio.geometry.inlined import inlined
-from regolith_studio.geometry.vectors import Vector, along, cross, length, mixed, row
+from regolith_studio.geometry.vectors import cross, length, mixed, row
 
 SLIVER = 1e-9
 """A triangle of less height, at solid size 1, has no normal of its own."""
@@ -22,9 +17,6 @@ EPSILON = 1e-15
 
 COPLANAR = 1e-9
 """Neighbouring faces whose normals differ by less, in radians, are one facet."""
-
-EDGE_ON = 1e-9
-"""A face whose normal times the axis is below this is seen edge-on."""
 
 
 class HullGraph(NamedTuple):
@@ -164,84 +156,3 @@ def _facets(normals: FloatArray, blur: FloatArray, twin: IntArray) -> IntArray:
 def after(h: int) -> int:
     """The next half-edge around the face of half-edge `h`."""
     return h - 2 if h % 3 == 2 else h + 1
-
-
-@inlined
-def climb(graph: HullGraph, axis: Vector, first: Vector, near: IntArray) -> None:
-    """Find the vertices farthest along `axis`, ``-axis``, `first` and ``-first``.
-
-    By hill climbing from the vertices in `near`, shape (4,), which receives them.
-    """
-    for target in range(4):
-        direction = axis if target < 2 else first
-        if target % 2 == 1:
-            direction = (-direction[0], -direction[1], -direction[2])
-        near[target] = _extreme_vertex(graph, direction, near[target])
-
-
-@inlined
-def _extreme_vertex(graph: HullGraph, direction: Vector, start: int) -> int:
-    here = start
-    height = along(graph.points, here, direction)
-    climbing = True
-    while climbing:
-        climbing = False
-        first = graph.outgoing[here]
-        h = first
-        while True:
-            there = graph.origin[after(h)]
-            value = along(graph.points, there, direction)
-            if value > height:
-                here, height, climbing = there, value, True
-                break
-            h = graph.twin[after(after(h))]
-            if h == first:
-                break
-    return here
-
-
-@inlined
-def walk_rim(graph: HullGraph, axis: Vector, start: int, rim: IntArray) -> int:
-    """Outline of the shadow along `axis`, counter-clockwise seen from its tip.
-
-    Parameters
-    ----------
-    start
-        A vertex of the outline.
-    rim
-        Receives the half-edges, each with its face above and its twin's below; as long as there are vertices.
-
-    Returns
-    -------
-    int
-        Number of half-edges; negative if a face is edge-on, so that the outline may run back on itself;
-        0 where rounding hides it.
-    """
-    h = graph.outgoing[start]
-    while not (_up(graph, axis, h) > 0.0 and _up(graph, axis, graph.twin[h]) <= 0.0):
-        h = graph.twin[after(after(h))]
-        if h == graph.outgoing[start]:
-            return 0
-    first = h
-    n, way = 0, 1
-    while n < len(rim):
-        rim[n] = h
-        n += 1
-        h = after(h)
-        for _ in range(len(rim)):
-            beyond = graph.twin[h]
-            up = _up(graph, axis, beyond)
-            if abs(up) < EDGE_ON:
-                way = -1
-            if up <= 0.0:
-                break
-            h = after(beyond)
-        if h == first:
-            return way * n
-    return 0
-
-
-@inlined
-def _up(graph: HullGraph, axis: Vector, h: int) -> float:
-    """How far the face of half-edge `h` looks along `axis`."""
-    return along(graph.normals, h // 3, axis)

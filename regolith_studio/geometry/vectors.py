@@ -42,19 +42,3 @@ def length(a: Vector) -> float:
 def mixed(a: Vector, share: float, b: Vector, other: float) -> Vector:
     """``share * a + other * b``."""
     return share * a[0] + other * b[0], share * a[1] + other * b[1], share * a[2] + other * b[2]
-
-
-@inlined
-def frame(axis: Vector) -> tuple[Vector, Vector]:
-    """Two unit vectors that make a right-handed frame with the unit vector `axis`: first, second, axis."""
-    x, y, z = axis
-    if abs(x) <= min(abs(y), abs(z)):
-        shrink = 1.0 / np.sqrt(y * y + z * z)
-        first = (0.0, z * shrink, -y * shrink)
-    elif abs(y) <= abs(z):
-        shrink = 1.0 / np.sqrt(x * x + z * z)
-        first = (-z * shrink, 0.0, x * shrink)
-    else:
-        shrink = 1.0 / np.sqrt(x * x + y * y)
-        first = (y * shrink, -x * shrink, 0.0)
-    return first, cross(axis, first)

@@ -1,0 +1,94 @@
+"""Widths of a convex solid: how far its vertices reach along directions."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.compiled import kernel, leaf
+from regolith_studio.geometry.inlined import inlined
+from regolith_studio.geometry.vectors import Vector
+
+FEWEST_CELLS, MOST_CELLS = 9, 64
+"""Directions are told apart by a grid of so many cells along the edge of a cube: as many as the square root
+of the number of vertices."""
+
+
+class SpanTable(NamedTuple):
+    """A vector across the solid for each cell of directions.
+
+    Parameters
+    ----------
+    spans
+        Between the vertices farthest along and against the cell's middle, shape (3 cells^2, 3).
+    cells
+        Along the edge of a cube; those of one direction and of its opposite are the same.
+    """
+
+    spans: FloatArray
+    cells: int
+
+
+@leaf
+def lowest(points: FloatArray, direction: Vector) -> int:
+    """The vertex that is farthest against `direction`; points of shape (3, n)."""
+    x, y, z = direction
+    low, at = np.inf, 0
+    for i in range(points.shape[1]):
+        here = points[0, i] * x + points[1, i] * y + points[2, i] * z
+        if here < low:
+            low, at = here, i
+    return at
+
+
+@leaf
+def ends_along(points: FloatArray, direction: Vector) -> tuple[int, int]:
+    """The vertices farthest along and against `direction`; points of shape (3, n)."""
+    x, y, z = direction
+    low, high, bottom, top = np.inf, -np.inf, 0, 0
+    for i in range(points.shape[1]):
+        here = points[0, i] * x + points[1, i] * y + points[2, i] * z
+        if here < low:
+            low, bottom = here, i
+        if here > high:
+            high, top = here, i
+    return top, bottom
+
+
+@inlined
+def between(points: FloatArray, one: int, two: int) -> Vector:
+    """Vector from vertex `two` to vertex `one`."""
+    return points[0, one] - points[0, two], points[1, one] - points[1, two], points[2, one] - points[2, two]
+
+
+@kernel
+def span_table(points: FloatArray) -> SpanTable:
+    """Look along the middle of every cell; points of shape (3, n)."""
+    cells = min(MOST_CELLS, max(FEWEST_CELLS, int(np.sqrt(points.shape[1]))))
+    table = np.empty((3 * cells * cells, 3))
+    for k in range(3):
+        for i in range(cells):
+            for j in range(cells):
+                u, v = (2.0 * i + 1.0) / cells - 1.0, (2.0 * j + 1.0) / cells - 1.0
+                direction = (1.0, u, v) if k == 0 else ((v, 1.0, u) if k == 1 else (u, v, 1.0))
+                top, bottom = ends_along(points, direction)
+                for c in range(3):
+                    table[(k * cells + i) * cells + j, c] = points[c, top] - points[c, bottom]
+    return SpanTable(table, cells)
+
+
+@inlined
+def span_near(table: SpanTable, direction: Vector) -> Vector:
+    """A vector between two vertices that is nearly as long along `direction` as the solid is wide."""
+    x, y, z = direction
+    if abs(x) >= abs(y) and abs(x) >= abs(z):
+        k, u, v = 0, y / x, z / x
+    elif abs(y) >= abs(z):
+        k, u, v = 1, z / y, x / y
+    else:
+        k, u, v = 2, x / z, y / z
+    spans, cells = table
+    i = min(cells - 1, int((u + 1.0) * (0.5 * cells)))
+    j = min(cells - 1, int((v + 1.0) * (0.5 * cells)))
+    at = (k * cells + i) * cells + j
+    return spans[at, 0], spans[at, 1], spans[at, 2]

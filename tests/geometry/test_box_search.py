@@ -1,0 +1,138 @@
+"""Curves of boxes flush with two edges, and the bounds along them, against plain arithmetic."""
+
+import numpy as np
+import pytest
+
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.box_branch import least_on_curve
+from regolith_studio.geometry.box_curve import (
+    Curve,
+    Quartic,
+    all_positive,
+    crossing,
+    curve_between,
+    denominator,
+    factors_of,
+    frame_on,
+    least_ratio,
+    nowhere_below,
+    numerator,
+    value,
+)
+from regolith_studio.geometry.box_record import note, nothing_below
+from regolith_studio.geometry.box_search import boxes_near_least, facets_of, minimum_box
+from regolith_studio.geometry.box_widths import ends_along, span_near, span_table
+from regolith_studio.geometry.hull_graph import hull_graph
+from tests.geometry.solids import random_polyhedron
+
+
+def unit(vector: FloatArray) -> FloatArray:
+    return np.asarray(vector / np.linalg.norm(vector))
+
+
+def random_curve(seed: int) -> tuple[Curve, FloatArray, FloatArray]:
+    """A curve about two random edges, and their directions."""
+    rng = np.random.default_rng(seed)
+    edge_a, edge_b = unit(rng.normal(size=3)), unit(rng.normal(size=3))
+    start = unit(np.cross(edge_a, rng.normal(size=3)))
+    angle = rng.uniform(0.05, 0.5)
+    end = np.cos(angle) * start + np.sin(angle) * np.cross(edge_a, start)
+    ends = [unit(np.cross(edge_b, each)) for each in (start, end)]
+    frames = [tuple(v.tolist()) for v in (edge_a, edge_b, start, ends[0], end, ends[1])]
+    return curve_between(*frames), edge_a, edge_b
+
+
+def on(points: FloatArray) -> FloatArray:
+    return np.ascontiguousarray(points.T)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_that_every_frame_on_a_curve_is_flush_with_both_edges(seed: int) -> None:
+    curve, edge_a, edge_b = random_curve(seed)
+    for x in np.linspace(curve.low, curve.high, 7):
+        frame = np.array(frame_on(curve, x))
+        assert frame @ frame.T == pytest.approx(np.eye(3), abs=1e-12)
+        assert abs(frame[0] @ edge_a) + abs(frame[1] @ edge_b) < 1e-12
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_that_the_ratio_of_the_quartics_is_the_product_of_three_distances(seed: int) -> None:
+    curve, _, _ = random_curve(seed)
+    spans = np.random.default_rng(seed).normal(size=(3, 3))
+    factors = factors_of(curve, *(tuple(span.tolist()) for span in spans), curve.low)
+    for x in np.linspace(curve.low, curve.high, 7):
+        distances = [axis @ span for axis, span in zip(np.array(frame_on(curve, x)), spans, strict=True)]
+        ratio = value(numerator(factors), x) / value(denominator(curve), x)
+        assert abs(ratio) == pytest.approx(abs(np.prod(distances)), rel=1e-9, abs=1e-12)
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_that_what_is_proven_is_true_on_a_fine_grid(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    curve, _, _ = random_curve(seed)
+    spans = (tuple(v) for v in np.array(frame_on(curve, 0.0)) + 0.3 * rng.normal(size=(3, 3)))
+    factors, x = factors_of(curve, *spans, 0.0), np.linspace(curve.low, curve.high, 500)
+    top, bottom = numerator(factors), denominator(curve)
+    ratio = value.py_func(top, x) / value.py_func(bottom, x)  # type: ignore[attr-defined]
+    limit = float(ratio.min() * rng.uniform(0.8, 1.2))
+    if all_positive(factors, curve.low, curve.high):
+        assert ratio.min() > 0.0
+        assert not nowhere_below(top, bottom, limit, curve.low, curve.high) or ratio.min() >= limit
+        assert not nowhere_below(top, bottom, 1.001 * ratio.min(), curve.low, curve.high)
+        assert nowhere_below.py_func(top, bottom, 0.0, curve.low, curve.high)  # type: ignore[attr-defined]
+        best = least_ratio(top, bottom, curve.low, curve.high)
+        at = value(top, best) / value(bottom, best)
+        assert at == pytest.approx(ratio.min(), rel=1e-4)
+
+
+def test_that_two_polynomials_meet_where_they_are_equal() -> None:
+    one, two = Quartic(0.0, 1.0, 0.0, 0.0, 0.0), Quartic(0.25, 0.0, 0.0, 0.0, 0.0)
+    assert crossing(one, two, 0.0, 1.0) == pytest.approx(0.25, abs=1e-13)
+    assert crossing(one, two, 0.5, 1.0) == 0.75
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_that_no_span_of_the_table_is_longer_than_the_solid_is_wide(seed: int) -> None:
+    points = random_polyhedron(seed, 20).vertices
+    table = span_table(on(points))
+    for direction in np.random.default_rng(seed).normal(size=(200, 3)):
+        way = unit(direction)
+        top, bottom = ends_along(on(points), tuple(way))
+        width = np.ptp(points @ way)
+        assert way @ (points[top] - points[bottom]) == pytest.approx(width, rel=1e-14)
+        assert 0.9 * width < abs(way @ np.array(span_near(table, tuple(way)))) <= width * (1 + 1e-14)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_that_the_least_box_on_a_curve_is_that_of_a_fine_grid(seed: int) -> None:
+    points = random_polyhedron(seed, 12).vertices
+    curve, _, _ = random_curve(seed)
+    x = np.linspace(curve.low, curve.high, 2_001)
+    volumes = [np.prod(np.ptp(points @ np.array(frame_on(curve, each)).T, axis=0)) for each in x]
+    for search in (least_on_curve, least_on_curve.py_func):  # type: ignore[attr-defined]
+        volume, _ = search(on(points), span_table(on(points)), curve, 0, 0, 0.0, nothing_below(np.inf))
+        assert volume == pytest.approx(min(volumes), rel=1e-4)
+        assert volume <= min(volumes) * (1 + 1e-12)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_that_all_boxes_on_the_list_hold_the_solid_and_come_near_the_least(seed: int) -> None:
+    hull = random_polyhedron(seed, 20).hull
+    vertices = np.array(hull.vertices)
+    found = boxes_near_least(facets_of(hull_graph(vertices, hull.faces)), 0.05, np.inf)
+    least = np.prod(np.ptp(vertices @ minimum_box(vertices, hull.faces).T, axis=0))
+    count = int(found.record[2])
+    assert count > 0
+    assert found.volumes[:count].min() == pytest.approx(least, rel=1e-9)
+    for volume, frame in zip(found.volumes[:count], found.frames[:count], strict=True):
+        assert volume == pytest.approx(np.prod(np.ptp(vertices @ frame.T, axis=0)), rel=1e-9)
+        assert volume <= found.record[0] * 1.05 * (1 + 1e-9)
+
+
+def test_that_of_too_many_boxes_the_largest_goes() -> None:
+    found = nothing_below(1.0)
+    for k in range(100):
+        angle = 0.01 * k
+        a, b = (np.cos(angle), np.sin(angle), 0.0), (-np.sin(angle), np.cos(angle), 0.0)
+        note(2.0 - 0.01 * k, a, b, (0.0, 0.0, 1.0), 2.0, found)
+    assert np.sort(found.volumes) == pytest.approx(1.01 + 0.01 * np.arange(64))
