@@ -9,6 +9,7 @@ from regolith_studio.dataset.dataset import CoarseningRecord, Dataset, Provenanc
 from regolith_studio.dataset.folder import write_dataset
 from regolith_studio.dataset.size_distribution import Weighting
 from regolith_studio.dataset.size_spec import Sizing, parse_sizes
+from regolith_studio.dataset.streaming import check_count
 from regolith_studio.errors import DatasetError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.coefficients import ShCoefficients
@@ -81,9 +82,12 @@ def build_dataset_folder(
     DatasetError
         If the folder holds a dataset that may not be replaced, or no particle could be coarsened.
     InputError
-        If more representatives are asked for than there are particles, or the sizes make no sense.
+        If more representatives are asked for than there are particles, the sizes make no sense, or the
+        dataset would be too large to be read again.
     """
     check_place(folder, options.overwrite)
+    chosen_count = len(particles) if options.representatives is None else options.representatives.count
+    check_count(chosen_count, order.n_faces)
     sizing = parse_sizes(options.sizes)
     if options.representatives is None:
         chosen, outcomes = None, (yield from coarsen_sample(particles, order, options.workers))

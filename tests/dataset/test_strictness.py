@@ -181,8 +181,8 @@ def test_that_a_mesh_behind_a_link_out_of_the_folder_is_refused(folder: Path, tm
 
 
 def test_that_huge_files_are_not_read(folder: Path) -> None:
-    os.truncate(folder / "dataset.json", 300_000_000)
-    assert "larger than 200 MB" in refused(folder)
+    os.truncate(folder / "dataset.json", 400_000_000)
+    assert "larger than 320 MB" in refused(folder)
 
 
 def put_mesh(folder: Path, mesh: Mesh) -> None:

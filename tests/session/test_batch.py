@@ -233,7 +233,7 @@ def test_that_a_worker_killed_in_mid_run_changes_no_byte(
 
 
 def test_that_a_dataset_too_large_to_be_read_again_is_refused_before_the_work(tmp_path: Path) -> None:
-    wish = recipe_of(inputs=[], population={"card": "ma165", "n": 100_000}, n_faces=20)
-    with pytest.raises(InputError, match="make several of at most 65,"):
+    wish = recipe_of(inputs=[], population={"card": "ma165", "n": 120_000}, n_faces=20)
+    with pytest.raises(InputError, match="make several of at most 104,"):
         done(wish, tmp_path, tmp_path / "out")
     assert not (tmp_path / "out").exists()
