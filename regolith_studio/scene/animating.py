@@ -1,14 +1,20 @@
-"""The animation of Fig. 2 as a job, drawn in a process of its own: OpenGL belongs to the window's thread."""
+"""Pictures and animations as jobs, drawn in a process of their own: OpenGL belongs to the window's thread."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
+from regolith_studio.coarsening.result import Coarsened
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.jobs.batch import value_of
 from regolith_studio.jobs.crew import hired
 from regolith_studio.jobs.events import Job, Started, Steps
+from regolith_studio.scene.cameras import CameraPose
 from regolith_studio.scene.degrees import degree_animation
+from regolith_studio.scene.figure import three_views
+from regolith_studio.scene.shapes import Shape
+from regolith_studio.scene.turntable import turntable
 
 LEVEL = 4
 _PROCESSES = 2
@@ -16,14 +22,59 @@ _PROCESSES = 2
 
 
 def animate(particle: Mesh, fit: HarmonicFit, degrees: Sequence[int], path: Path) -> Steps:
-    """Write a GIF of the fit growing through `degrees`; returns its path."""
-    yield Started("Drawing the animation")
+    """Write a GIF or WebP of the fit growing through `degrees`; returns its path."""
+    yield from _apart(
+        "Drawing the animation", path, degree_animation, particle, fit, tuple(degrees), path, LEVEL
+    )
+    return path
+
+
+def turn(shapes: Sequence[Shape], pose: CameraPose | None, path: Path, scale: int = 1) -> Steps:
+    """Write a GIF or WebP of the bodies turning once; returns its path."""
+    yield from _apart("Drawing the turntable", path, _turn, tuple(shapes), pose, path, scale)
+    return path
+
+
+def draw_figure(
+    particle: Mesh,
+    fit: Mesh,
+    coarsened: Coarsened,
+    titles: tuple[str, str, str],
+    path: Path,
+    scale: int,
+    pose: CameraPose,
+    transparent: bool,
+) -> Steps:
+    """Write the figure of the three views as PNG; returns its path."""
+    arguments = (particle, fit, coarsened, titles, path, scale, pose, transparent)
+    yield from _apart("Drawing the figure", path, _figure, *arguments)
+    return path
+
+
+def _apart(title: str, path: Path, draw: Callable[..., None], *arguments: Any) -> Steps:
+    yield Started(title)
     with hired(_PROCESSES) as crew:
-        endings = yield from crew.all([Job(_draw, (particle, fit, tuple(degrees), path))], [path.name])
+        endings = yield from crew.all([Job(_call, (title, draw, arguments))], [path.name])
     return value_of(endings[0])
 
 
-def _draw(particle: Mesh, fit: HarmonicFit, degrees: Sequence[int], path: Path) -> Steps:
-    yield Started("Drawing the animation")
-    degree_animation(particle, fit, degrees, path, LEVEL)
-    return path
+def _call(title: str, draw: Callable[..., None], arguments: tuple[Any, ...]) -> Steps:
+    yield Started(title)
+    draw(*arguments)
+
+
+def _turn(shapes: tuple[Shape, ...], pose: CameraPose | None, path: Path, scale: int) -> None:
+    turntable(shapes, pose, path, scale=scale)
+
+
+def _figure(
+    particle: Mesh,
+    fit: Mesh,
+    coarsened: Coarsened,
+    titles: tuple[str, str, str],
+    path: Path,
+    scale: int,
+    pose: CameraPose,
+    transparent: bool,
+) -> None:
+    three_views(particle, fit, coarsened, titles, path, scale=scale, pose=pose, transparent=transparent)

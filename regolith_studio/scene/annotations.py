@@ -43,7 +43,8 @@ class ScaleBar:
     """A bar at the lower left that keeps its meaning while the camera zooms and the picture is resized.
 
     It is there while anything is shown that could be measured with it, and exact because the cameras use
-    parallel projection.
+    parallel projection. It must be ``suspended`` for pictures that are put together from tiles, which have
+    the size and the camera of a part.
 
     Parameters
     ----------
@@ -53,17 +54,26 @@ class ScaleBar:
         Whose ink it is drawn with.
     unit
         ``True`` for micrometres, ``False`` for a dimensionless scene.
+    factor
+        Size of letters and line; pictures of several times the usual size want larger ones.
     """
 
     def __init__(
-        self, plotter: Any, surroundings: Surroundings = palette.LIGHT, *, unit: bool = True
+        self,
+        plotter: Any,
+        surroundings: Surroundings = palette.LIGHT,
+        *,
+        unit: bool = True,
+        factor: float = 1.0,
     ) -> None:
         self._renderer = plotter.renderer
         self._unit = unit
         self._line = pv.PolyData()
-        self._bar = flat_actor(self._line)
+        self._factor = factor
+        self.suspended = False
+        self._bar = flat_actor(self._line, 2.0 * factor)
         self._label = vtkTextActor()
-        self._label.GetTextProperty().SetFontSize(12)
+        self._label.GetTextProperty().SetFontSize(round(12 * factor))
         self._label.GetTextProperty().SetFontFamilyToArial()
         self._label.GetTextProperty().SetJustificationToCentered()
         self.set_ink(surroundings)
@@ -87,7 +97,7 @@ class ScaleBar:
         """Fit the bar to the camera; called by itself before every picture."""
         width, height = self._renderer.GetSize()
         low, high = self._renderer.ComputeVisiblePropBounds()[:2]
-        measurable = low <= high  # the other way round, there is no surface
+        measurable = low <= high and not self.suspended  # the other way round, there is no surface
         self._bar.SetVisibility(measurable)
         self._label.SetVisibility(measurable)
         if not (width and height and measurable):
@@ -96,7 +106,7 @@ class ScaleBar:
         now = (width, height, per_pixel)
         if now != self._shown:
             self._shown = now
-            self._draw(16.0, 14.0, bar_length(width * per_pixel), per_pixel)
+            self._draw(16.0 * self._factor, 14.0 * self._factor, bar_length(width * per_pixel), per_pixel)
 
     def remove(self) -> None:
         """Take it out of the picture and stop listening to the renderer."""
@@ -106,10 +116,11 @@ class ScaleBar:
 
     def _draw(self, x: float, y: float, length: float, per_pixel: float) -> None:
         end = x + length / per_pixel
-        points = [(x, y + 5, 0), (x, y, 0), (end, y, 0), (end, y + 5, 0)]
+        high = y + 5 * self._factor
+        points = [(x, high, 0), (x, y, 0), (end, y, 0), (end, high, 0)]
         self._line.copy_from(pv.PolyData(points, lines=[4, 0, 1, 2, 3]))
         self._label.SetInput(length_text(length) if self._unit else f"{length:.4g}")
-        self._label.SetPosition((x + end) / 2, y + 7)
+        self._label.SetPosition((x + end) / 2, y + 7 * self._factor)
 
 
 class _Updated(Protocol):

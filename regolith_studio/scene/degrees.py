@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 import pyvista as pv
-from PIL import Image
 
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.surface import gallery
 from regolith_studio.scene import annotations, cameras, palette, stage, surfaces
 from regolith_studio.scene.figure import Picture
+from regolith_studio.scene.moving_picture import save_animation
 
 CELL_SIZE = (420, 400)
 """Width and height of one particle in pixels."""
@@ -84,7 +84,7 @@ def degree_animation(
     level: int = 5,
     direction: str = "isometric",
 ) -> None:
-    """Write a GIF of the fit growing through `degrees` beside the particle; the last frame stays longer.
+    """Write a GIF or WebP of the fit growing through `degrees` beside the particle; the last frame lasts.
 
     Degrees with a negative radius are left out.
 
@@ -93,12 +93,9 @@ def degree_animation(
     InputError
         If a degree is negative or above that of the fit.
     """
-    frames = [Image.fromarray(picture) for picture in _frames(particle, fit, degrees, level, direction)]
-    durations = [int(1000 * FRAME_SECONDS)] * (len(frames) - 1) + [int(1000 * LAST_FRAME_SECONDS)]
-    # One palette for all frames: else the background flickers from frame to frame.
-    colours = frames[-1].quantize(256, method=Image.Quantize.MEDIANCUT)
-    reduced = [frame.quantize(palette=colours, dither=Image.Dither.NONE) for frame in frames]
-    reduced[0].save(path, save_all=True, append_images=reduced[1:], duration=durations, loop=0)
+    frames = list(_frames(particle, fit, degrees, level, direction))
+    seconds = [FRAME_SECONDS] * (len(frames) - 1) + [LAST_FRAME_SECONDS]
+    save_animation(frames, seconds, path)
 
 
 def degree_title(fit: HarmonicFit, degree: int) -> str:

@@ -42,7 +42,7 @@ def three_views(
     direction
         A key of :data:`regolith_studio.scene.cameras.DIRECTIONS`.
     scale
-        Whole factor on the size in pixels.
+        Whole factor on the size in pixels, of letters and lines too.
     pose
         Where the cameras stand, instead of a standard direction.
     transparent
@@ -53,7 +53,7 @@ def three_views(
     The picture, shape (height, width, 3 or 4), uint8.
     """
     stage.choose_off_screen_window()
-    width, height = VIEW_SIZE
+    width, height = (scale * each for each in VIEW_SIZE)
     plotter = pv.Plotter(off_screen=True, shape=(1, 3), window_size=[3 * width, height], border=False)
     try:
         pose = pose or cameras.framing_pose(particle.vertices, direction, width / height)
@@ -63,10 +63,11 @@ def three_views(
             stage.set_stage(plotter, palette.PAPER)
             plotter.renderer.SetGradientBackground(not transparent)
             _fill(plotter, column, particle, fit, polyhedron)
-            annotations.show_title(plotter, title)
-            bars.append(annotations.ScaleBar(plotter, palette.PAPER))
+            surfaces.widen_lines(plotter, scale)
+            annotations.show_title(plotter, title, size=11 * scale)
+            bars.append(annotations.ScaleBar(plotter, palette.PAPER, factor=scale))
             cameras.apply_pose(plotter, pose)
-        picture = plotter.screenshot(path, return_img=True, scale=scale, transparent_background=transparent)
+        picture = plotter.screenshot(path, return_img=True, transparent_background=transparent)
         for bar in bars:
             bar.remove()
     finally:

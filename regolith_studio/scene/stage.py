@@ -4,10 +4,14 @@ import os
 import sys
 from typing import Any
 
+import numpy as np
 import pyvista as pv
+from numpy.typing import NDArray
 
 from regolith_studio.scene import palette
 from regolith_studio.scene.palette import Surroundings
+
+Picture = NDArray[np.uint8]
 
 _SOFTWARE_NAMES = ("llvmpipe", "softpipe", "swrast", "software", "swiftshader")
 
@@ -38,6 +42,34 @@ def smooth_edges(plotter: Any) -> None:
         plotter.enable_anti_aliasing("fxaa")
     else:
         plotter.enable_anti_aliasing("msaa", multi_samples=4)
+
+
+def picture_of(plotter: Any, scale: int = 1, transparent: bool = False) -> Picture:
+    """What a plotter with one renderer shows, at a multiple of its size.
+
+    Shape (height, width, 3), or 4 with transparency, which is told from pictures on black and on white:
+    the frame buffers of windows keep none. It is put together from tiles: nothing may be shown that is laid
+    out in pixels.
+    """
+    plotter.render_window.Render()
+    if not transparent:
+        return np.array(plotter.screenshot(return_img=True, scale=scale)[..., :3], dtype=np.uint8)
+    renderer = plotter.renderer
+    gradient, before = renderer.GetGradientBackground(), renderer.GetBackground()
+    renderer.SetGradientBackground(False)
+    try:
+        seen = []
+        for grey in (0.0, 1.0):
+            renderer.SetBackground(grey, grey, grey)
+            plotter.render_window.Render()
+            seen.append(plotter.screenshot(return_img=True, scale=scale)[..., :3].astype(np.float64))
+    finally:
+        renderer.SetBackground(*before)
+        renderer.SetGradientBackground(gradient)
+    on_black, on_white = seen
+    alpha = np.clip(1.0 - (on_white - on_black).mean(axis=2, keepdims=True) / 255.0, 0.0, 1.0)
+    colour = np.clip(on_black / np.maximum(alpha, 1e-3), 0.0, 255.0)
+    return np.concatenate([colour, 255.0 * alpha], axis=2).round().astype(np.uint8)
 
 
 def is_software(capabilities: str) -> bool:

@@ -18,6 +18,8 @@ from regolith_studio.scene.palette import Material, Surroundings
 
 SURFACE = "surface"
 OUTLINE = "outline"
+LINE_WIDTH = 1.6
+"""Of the outlines of facets, in pixels."""
 
 
 def show_particle(plotter: Any, mesh: Mesh) -> None:
@@ -117,6 +119,13 @@ def set_opacity(plotter: Any, opacity: float, layer: str = "") -> None:
         actor.prop.opacity = opacity
 
 
+def widen_lines(plotter: Any, factor: float) -> None:
+    """Draw the outlines of facets `factor` times as wide as usual, for larger pictures."""
+    actor = plotter.actors.get(OUTLINE)
+    if actor is not None:
+        actor.prop.line_width = LINE_WIDTH * factor
+
+
 def set_wireframe(plotter: Any, wireframe: bool) -> None:
     """Draw the surface as its triangle mesh, or filled."""
     actor = plotter.actors.get(SURFACE)
@@ -152,7 +161,7 @@ def _show_lines(plotter: Any, data: pv.PolyData, colour: str, layer: str = "") -
         actor = plotter.add_mesh(
             data,
             name=layer + OUTLINE,
-            line_width=1.6,
+            line_width=LINE_WIDTH,
             lighting=False,
             copy_mesh=False,
             reset_camera=False,

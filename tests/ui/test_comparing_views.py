@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
-from PySide6.QtCore import QPoint, Qt
+from PySide6.QtCore import QEvent, QPoint, QPointF, Qt
+from PySide6.QtGui import QMouseEvent
 from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication
 
 from regolith_studio.geometry.plane_cut import plane_cut
 from regolith_studio.scene import facets, sectioning
@@ -38,6 +40,16 @@ def pull(widget, start, end):
     QTest.mousePress(widget, Qt.MouseButton.LeftButton, pos=QPoint(*start))
     QTest.mouseMove(widget, QPoint(*end))
     QTest.mouseRelease(widget, Qt.MouseButton.LeftButton, pos=QPoint(*end))
+
+
+def hover(widget, x, y):
+    """As the mouse does that rests; where the real one is does not matter."""
+    none = Qt.MouseButton.NoButton
+    here = QPointF(x, y)
+    event = QMouseEvent(
+        QEvent.Type.MouseMove, here, widget.mapToGlobal(here), none, none, Qt.KeyboardModifier.NoModifier
+    )
+    QApplication.sendEvent(widget, event)
 
 
 def test_that_any_two_bodies_are_wiped_along_one_line_that_is_dragged(window):
@@ -110,7 +122,7 @@ def test_that_the_frame_of_the_section_is_dragged_in_a_view(window):
 def test_that_the_facet_under_the_mouse_is_outlined_numbered_and_told(window):
     views = window.page.triptych
     widget = views.views["polyhedron"].widget
-    QTest.mouseMove(widget, QPoint(widget.width() // 2, widget.height() // 2))
+    hover(widget, widget.width() // 2, widget.height() // 2)
     solid = window.session.results.coarsened.polyhedron
     number = int(actor(window, "polyhedron", facets.NUMBER).GetInput())
     words = facets.facet_of(solid, number - 1).words
@@ -118,7 +130,7 @@ def test_that_the_facet_under_the_mouse_is_outlined_numbered_and_told(window):
     assert window.statusBar().currentMessage() == words
     towards = -Sight(views.views["polyhedron"].pose, 1, 1).axes[2]
     assert solid.half_spaces.normals[number - 1] @ towards > 0.0
-    QTest.mouseMove(widget, QPoint(2, 2))
+    hover(widget, 2, 2)
     assert actor(window, "polyhedron", facets.FACET) is None
     assert "vertices" in views.frames["polyhedron"].detail.text()
     assert window.statusBar().currentMessage() == ""
@@ -134,3 +146,19 @@ def test_that_one_view_after_the_other_gets_all_the_room(window):
     assert [name for name, frame in frames.items() if not frame.isHidden()] == ["fit"]
     QTest.mouseDClick(frames["fit"], Qt.MouseButton.LeftButton, pos=title)
     assert not any(frame.isHidden() for frame in frames.values())
+
+
+def test_that_the_picture_of_what_is_seen_has_bar_line_and_titles_at_any_scale(window):
+    views = window.page.triptych
+    switch(window, "wipe")
+    one, two = views.snapshot(1, False), views.snapshot(2, False)
+    assert (two.width(), two.height()) == (2 * one.width(), 2 * one.height())
+    assert all(divider.shown for divider in list(views.comparison.dividers.values())[1:])
+    first = views.views["particle"]
+    left, width = first.widget.width() + 8, views.views["fit"].widget.width()
+    line = one.pixelColor(left + width // 2, one.height() - 40)
+    assert line.lightness() < 90
+    bare = views.snapshot(1, True)
+    assert bare.pixelColor(5, bare.height() // 2).alpha() == 0
+    inked = [bare.pixelColor(x, y).alpha() for x in range(4, 120) for y in range(4, 22)]
+    assert max(inked) == 255  # the title

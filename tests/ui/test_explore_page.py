@@ -58,9 +58,9 @@ def test_that_the_picture_is_written_at_its_scale_and_without_background(window,
     target = tmp_path / "views"
     monkeypatch.setattr(ASKED, lambda *_: (str(target), ""))
     monkeypatch.setattr(PictureDialog, "exec", lambda _self: 1)
-    monkeypatch.setattr(PictureDialog, "value", lambda _self: (1, True))
+    monkeypatch.setattr(PictureDialog, "value", lambda _self: ("figure", 1, True))
     window.menus.by_name["explore.save_picture"].trigger()
-    wait(target.with_suffix(".png").exists)
+    wait(lambda: not window.session.tasks and target.with_suffix(".png").exists(), 100.0)
     with Image.open(target.with_suffix(".png")) as file:
         picture = np.array(file)
     assert picture.shape == (560, 1860, 4)
@@ -72,7 +72,9 @@ def test_that_the_picture_dialog_keeps_what_is_written_into_it(shown):
     dialog = shown(PictureDialog())
     dialog.scale.setValue(4)
     dialog.transparent.setChecked(True)
-    assert dialog.value() == (4, True)
+    assert dialog.value() == ("seen", 4, True)
+    dialog.kind.setCurrentIndex(1)
+    assert dialog.value() == ("figure", 4, True)
 
 
 @pytest.mark.slow

@@ -1,6 +1,7 @@
 """Two bodies in one view: as a veil over each other, or side by side along a line that can be dragged."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from functools import partial
 from typing import Any
 
@@ -99,6 +100,18 @@ class Comparison:
         plane, divider = self._sections.plane, self.dividers[name]
         kept = plane is None or float(place @ np.asarray(plane.normal)) <= plane.offset
         return kept and (self.overlay or not divider.shown or x_share <= divider.share)
+
+    @contextmanager
+    def lines_taken_away(self) -> Iterator[list[float | None]]:
+        """No lines while it lasts, though everything ends where they stood: where, for each view."""
+        shown = {name: divider for name, divider in self.dividers.items() if divider.shown}
+        for divider in shown.values():
+            divider.set_shown(False)
+        try:
+            yield [shown[name].share if name in shown else None for name in self._frames]
+        finally:
+            for divider in shown.values():
+                divider.set_shown(True)
 
     def release(self) -> None:
         """Stop listening to the views."""

@@ -64,6 +64,15 @@ class ImageView(QWidget):
         rows = np.frombuffer(image.constBits(), dtype=np.uint8).reshape(image.height(), image.bytesPerLine())
         return rows[:, : 3 * image.width()].reshape(image.height(), image.width(), 3).copy()
 
+    def shot(self, scale: int = 1, transparent: bool = False) -> Picture:
+        self._render()
+        self._scale_bar.suspended = True
+        try:
+            return stage.picture_of(self._plotter, scale, transparent)
+        finally:
+            self._scale_bar.suspended = False
+            self._ask()
+
     def release(self) -> None:
         self._moved.clear()
         self.mouse.forget()

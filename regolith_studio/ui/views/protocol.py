@@ -52,6 +52,13 @@ class SceneView(Protocol):
         """What the view shows now, shape (height, width, 3)."""
         ...
 
+    def shot(self, scale: int = 1, transparent: bool = False) -> Picture:
+        """What the view shows at a multiple of its size, shape (height, width, 3), or 4 if transparent.
+
+        Without what is laid out in pixels: the scale bar.
+        """
+        ...
+
     def release(self) -> None:
         """Give the graphics memory back; the view is of no use afterwards."""
         ...

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 from PySide6.QtCore import Qt, Signal
+from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QSplitter, QWidget
 
 from regolith_studio.geometry.arrays import BoolArray, FloatArray
@@ -23,6 +24,7 @@ from regolith_studio.ui.views.comparison import Comparison, partners_of
 from regolith_studio.ui.views.facet_pointer import FacetPointer
 from regolith_studio.ui.views.factory import make_view
 from regolith_studio.ui.views.sections import Sections
+from regolith_studio.ui.views.snapshot import snapshot
 from regolith_studio.ui.views.view_frame import ViewFrame
 
 
@@ -168,6 +170,17 @@ class Triptych(QSplitter):
             self.frames[seen[0]].hide()
             self.frames[NAMES[NAMES.index(seen[0]) + 1]].show()
             self.reset_cameras()
+
+    @property
+    def shapes(self) -> tuple[Shape, ...]:
+        """What is shown, from left to right."""
+        return tuple(self._shapes[name] for name in NAMES if name in self._shapes)
+
+    def snapshot(self, scale: int, transparent: bool) -> QImage:
+        """The views as they are seen."""
+        frames = list(self.frames.values())
+        with self.comparison.lines_taken_away() as lines:
+            return snapshot(frames, self._theme, scale, transparent, lines)
 
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""

@@ -67,6 +67,11 @@ class ViewFrame(QFrame):
         self.set_detail(detail)
         self.view.widget.setAccessibleName(f"{title}. {detail}")
 
+    @property
+    def title(self) -> str:
+        """The title in rich text, at its full length."""
+        return self._titles[0]
+
     def set_detail(self, detail: str) -> None:
         """Another quiet line."""
         self._detail = detail

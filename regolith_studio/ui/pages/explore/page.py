@@ -53,6 +53,7 @@ class ExplorePage(PageWidget):
             "section": self._set_section,
             "enlarge": views.enlarge_next,
             "save_picture": self.pictures.save_picture,
+            "save_turntable": self.pictures.save_turntable,
             "save_animation": self.pictures.save_animation,
         }
 

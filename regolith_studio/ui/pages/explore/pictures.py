@@ -1,8 +1,10 @@
-"""The views as files: a picture of what is seen, an animation of the fit through all degrees."""
+"""The views as files: what is seen, the figure of the three views, a turntable, all degrees of the fit."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 from PySide6.QtCore import QObject
+from PySide6.QtGui import QImage
 from PySide6.QtWidgets import (
     QCheckBox,
     QDialog,
@@ -14,12 +16,16 @@ from PySide6.QtWidgets import (
 )
 
 from regolith_studio.jobs.events import Job
-from regolith_studio.scene.animating import animate
-from regolith_studio.scene.figure import three_views, view_titles
+from regolith_studio.scene.animating import animate, draw_figure, turn
+from regolith_studio.scene.figure import view_titles
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.views.triptych import Triptych
+from regolith_studio.ui.widgets.choice_box import ChoiceBox
 
 LARGEST_SCALE = 6
+SEEN, FIGURE = "seen", "figure"
+KINDS = {SEEN: "The views as they are seen", FIGURE: "A figure on white, 1860 × 560 times the scale"}
+MOVING = "GIF (*.gif);;WebP (*.webp)"
 
 
 class Pictures(QObject):
@@ -38,32 +44,39 @@ class Pictures(QObject):
         self._context, self._triptych, self._window = context, triptych, parent
 
     def save_picture(self) -> None:
-        """Ask for scale and file, and write the three views as they are seen."""
+        """Ask for kind, scale and file, and write the three views."""
         results, entry = self._context.session.results, self._context.session.selected
         if entry is None or results.surface is None or results.coarsened is None:
             self._context.toast.problem("Wait until the three views are drawn.")
             return
         asked = PictureDialog(self._window)
         accepted = asked.exec() == QDialog.DialogCode.Accepted
-        scale, transparent = asked.value()
+        kind, scale, transparent = asked.value()
         asked.deleteLater()
         name = self._ask("Save picture", f"{entry.id}.png", "Pictures (*.png)") if accepted else ""
         if not name:
             return
+        path = Path(name).with_suffix(".png")
+        if kind == SEEN:
+            self._write(self._triptych.snapshot(scale, transparent), path)
+            return
         titles = view_titles(results.surface_l_max, results.coarsened)
         pose = self._triptych.views["particle"].pose
-        path = Path(name).with_suffix(".png")
-        three_views(
-            entry.particle.mesh,
-            results.surface,
-            results.coarsened,
-            titles,
-            path,
-            scale=scale,
-            pose=pose,
-            transparent=transparent,
-        )
-        self._context.toast.note(f"The picture is in {path}.")
+        surfaces = (entry.particle.mesh, results.surface, results.coarsened)
+        job = Job(draw_figure, (*surfaces, titles, path, scale, pose, transparent))
+        self._context.start("Drawing the figure", job, self._told("picture", path))
+
+    def save_turntable(self) -> None:
+        """Ask for a file and write the bodies turning once, in the background."""
+        entry = self._context.session.selected
+        if entry is None or not self._triptych.shapes:
+            self._context.toast.problem("Wait until the views are drawn.")
+            return
+        name, ending = self._ask_moving("Save turntable", f"{entry.id}-turning")
+        if name:
+            path = Path(name).with_suffix(ending)
+            job = Job(turn, (self._triptych.shapes, self._triptych.views["particle"].pose, path))
+            self._context.start("Drawing the turntable", job, self._told("turntable", path), lane="turntable")
 
     def save_animation(self) -> None:
         """Ask for a file and write the fit growing from degree 0 to 30, in the background."""
@@ -71,14 +84,24 @@ class Pictures(QObject):
         if entry is None or fit is None:
             self._context.toast.problem("Wait until the particle is fitted.")
             return
-        name = self._ask("Save animation", f"{entry.id}.gif", "Animations (*.gif)")
-        if not name:
-            return
-        path = Path(name).with_suffix(".gif")
-        degrees = tuple(range(fit.l_max + 1))
-        job = Job(animate, (entry.particle.mesh, fit, degrees, path))
-        told = f"The animation is in {path}."
-        self._context.start("Drawing the animation", job, lambda _: self._context.toast.note(told))
+        name, ending = self._ask_moving("Save animation", entry.id)
+        if name:
+            path = Path(name).with_suffix(ending)
+            job = Job(animate, (entry.particle.mesh, fit, tuple(range(fit.l_max + 1)), path))
+            self._context.start("Drawing the animation", job, self._told("animation", path), lane="animation")
+
+    def _told(self, what: str, path: Path) -> Callable[[object], None]:
+        return lambda _: self._context.toast.note(f"The {what} is in {path}.")
+
+    def _write(self, picture: QImage, path: Path) -> None:
+        if picture.save(str(path)):
+            self._context.toast.note(f"The picture is in {path}.")
+        else:
+            self._context.toast.problem(f"The picture {path} cannot be written.")
+
+    def _ask_moving(self, title: str, name: str) -> tuple[str, str]:
+        chosen = self._ask(title, f"{name}.gif", MOVING)
+        return chosen, ".webp" if chosen.lower().endswith(".webp") else ".gif"
 
     def _ask(self, title: str, name: str, kinds: str) -> str:
         start = str(Path(str(self._context.recall("pictures", Path.home()))) / name)
@@ -89,12 +112,14 @@ class Pictures(QObject):
 
 
 class PictureDialog(QDialog):
-    """Asks how large a picture shall be, and whether its background is left out."""
+    """Asks what is drawn, how large, and whether the background is left out."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setWindowTitle("Save picture")
         self.setObjectName("picture_dialog")
+        self.kind = ChoiceBox("picture_kind", "Kind of picture", KINDS)
+        self.kind.setMinimumContentsLength(30)
         self.scale = QSpinBox()
         self.scale.setObjectName("picture_scale")
         self.scale.setAccessibleName("Scale of the picture")
@@ -108,10 +133,11 @@ class PictureDialog(QDialog):
         buttons.accepted.connect(self.accept)
         buttons.rejected.connect(self.reject)
         form = QFormLayout(self)
-        form.addRow("Scale (1 is 1860 × 560 pixels)", self.scale)
+        form.addRow("Picture", self.kind)
+        form.addRow("Scale", self.scale)
         form.addRow("", self.transparent)
         form.addRow(buttons)
 
-    def value(self) -> tuple[int, bool]:
-        """Scale, and whether the background is transparent."""
-        return self.scale.value(), self.transparent.isChecked()
+    def value(self) -> tuple[str, int, bool]:
+        """Kind of picture, scale, and whether the background is transparent."""
+        return self.kind.value(), self.scale.value(), self.transparent.isChecked()

@@ -1,0 +1,74 @@
+"""Bodies that turn, larger pictures whose scale bar stays true, transparency."""
+
+import numpy as np
+import pytest
+import pyvista as pv
+from PIL import Image
+
+from regolith_studio.errors import InputError
+from regolith_studio.geometry.directions import icosphere
+from regolith_studio.scene import stage, surfaces
+from regolith_studio.scene.cameras import apply_pose, framing_pose
+from regolith_studio.scene.figure import VIEW_SIZE, three_views
+from regolith_studio.scene.moving_picture import save_animation
+from regolith_studio.scene.shapes import FIT, PARTICLE, Shape
+from regolith_studio.scene.turntable import SIZE, turntable
+
+STICK = icosphere(2).moved(rotation=np.diag([40.0, 6.0, 6.0]))
+
+
+def dark_width(picture):
+    """Pixels from the first to the last column that is not white."""
+    columns = np.flatnonzero((picture[..., :3] < 215).any(axis=(0, 2)))
+    return int(np.ptp(columns)) + 1
+
+
+@pytest.mark.parametrize("ending", [".gif", ".webp"])
+def test_that_a_stick_is_long_from_the_side_and_short_from_its_end(tmp_path, ending):
+    path = tmp_path / f"turning{ending}"
+    shapes = (Shape(PARTICLE, STICK), Shape(FIT, STICK))
+    turntable(shapes, framing_pose(STICK.vertices, "front"), path, frames=8)
+    widths = []
+    with Image.open(path) as file:
+        assert file.n_frames == 8
+        assert file.size == (2 * SIZE[0], SIZE[1])
+        for frame in (0, 2, 4):
+            file.seek(frame)
+            body = np.array(file.convert("RGB"))[60:300, : SIZE[0]]
+            widths.append(dark_width(body))
+    assert widths[1] < 0.25 * widths[0]
+    assert abs(widths[2] - widths[0]) <= 3
+
+
+def test_that_an_animation_of_an_unknown_kind_is_refused(tmp_path):
+    with pytest.raises(InputError, match=r"\.gif or \.webp"):
+        save_animation([np.zeros((4, 4, 3), dtype=np.uint8)], [0.1], tmp_path / "a.avi")
+
+
+@pytest.mark.parametrize("scale", [1, 3])
+def test_that_the_scale_bar_of_a_figure_is_true_at_any_scale(ball, cube, scale):
+    picture = three_views(ball, ball, cube, ("a", "b", "c"), scale=scale, direction="front")
+    width, height = (scale * each for each in VIEW_SIZE)
+    assert picture.shape == (height, 3 * width, 3)
+    view = picture[:, :width].astype(int).sum(axis=2)
+    bar = (view[round(0.94 * height) :] < 300).sum(axis=1).max()
+    wide = dark_width(picture[height // 2 - 2 : height // 2 + 2, :width])
+    assert bar / wide * 60.0 == pytest.approx(20.0, rel=0.03)  # 20 um beside a ball of 60 um
+
+
+@pytest.mark.parametrize("scale", [1, 2])
+def test_that_a_picture_without_background_covers_the_body_only(ball, scale):
+    stage.choose_off_screen_window()
+    plotter = pv.Plotter(off_screen=True, window_size=[120, 100])
+    stage.set_stage(plotter)
+    surfaces.show_particle(plotter, ball)
+    apply_pose(plotter, framing_pose(ball.vertices))
+    found = stage.picture_of(plotter, scale, transparent=True)
+    plain = stage.picture_of(plotter, scale)
+    plotter.close()
+    assert found.shape == (100 * scale, 120 * scale, 4)
+    covered = (found[..., 3] > 128).mean()
+    radius = 50 / 1.16
+    assert covered == pytest.approx(np.pi * radius**2 / (120 * 100), rel=0.03)
+    middle = (slice(40 * scale, 60 * scale), slice(50 * scale, 70 * scale))
+    assert np.abs(found[middle][..., :3].astype(int) - plain[middle]).max() <= 2
