@@ -31,6 +31,6 @@ def pores_filled(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
     is_open = np.zeros(count + 1, dtype=bool)
     for axis in range(3):
         for end in (0, -1):
-            is_open[np.unique(np.take(hollows, end, axis=axis))] = True
+            is_open[np.unique(np.moveaxis(hollows, axis, 0)[end])] = True
     is_open[0] = False
     return np.asarray(~is_open[hollows]) if not is_open[1:].all() else mask

@@ -38,7 +38,7 @@ class Sections:
         """The slice `number` along `axis`; along x one of every `step`-th voxel."""
         if axis == 0 and self.coarse is not None:
             return np.asarray(self.coarse[min(number // self.step, len(self.coarse) - 1)])
-        return np.asarray(np.take(self.array, number, axis=axis))
+        return np.array(np.moveaxis(self.array, axis, 0)[number])  # take would copy all the volume first
 
     @property
     def sample(self) -> NDArray[Any]:

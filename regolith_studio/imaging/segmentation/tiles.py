@@ -164,7 +164,7 @@ def _inside(sites: IntArray, box: Box) -> BoolArray:
 def _touching(grains: IntArray, ends: Continued) -> IntArray:
     """Grains that touch the marked ends of their array."""
     faces = [
-        np.take(grains, end, axis=axis).ravel()
+        np.moveaxis(grains, axis, 0)[end].ravel()
         for axis, marks in enumerate(ends)
         for end, marked in zip((0, -1), marks, strict=True)
         if marked
