@@ -4,7 +4,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import wasserstein_distance
 
 from regolith_studio.dataset.build import ShapeClass
 from regolith_studio.dataset.medoids import medoid_series
@@ -163,8 +162,7 @@ def sampling_noise(
         order = generator.permutation(len(counted))
         one, other = order[: len(order) // 2], order[len(order) // 2 :]
         for key, each in values.items():
-            distance = wasserstein_distance(each[one], each[other], counted[one], counted[other])
-            total[key] += float(distance) / _spread(each) / repeats
+            total[key] += _distance(each[one], each[other], counted[one], counted[other], each) / repeats
     return total
 
 
@@ -181,9 +179,17 @@ def _compared(
 
 
 def _distance(
-    values: FloatArray, chosen: FloatArray, counted: FloatArray, weights: Sequence[float] | FloatArray
+    values: FloatArray,
+    chosen: FloatArray,
+    counted: FloatArray,
+    weights: Sequence[float] | FloatArray,
+    spread_of: FloatArray | None = None,
 ) -> float:
-    return float(wasserstein_distance(values, chosen, counted, weights)) / _spread(values)
+    """Wasserstein distance over the spread of all values."""
+    from scipy.stats import wasserstein_distance  # 30 MB that a window need not hold from its start
+
+    apart = float(wasserstein_distance(values, chosen, counted, weights))
+    return apart / _spread(values if spread_of is None else spread_of)
 
 
 def _spread(values: FloatArray) -> float:

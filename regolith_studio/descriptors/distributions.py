@@ -9,7 +9,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.stats import wasserstein_distance
 
 from regolith_studio.geometry.arrays import FloatArray, locked_floats
 
@@ -112,4 +111,6 @@ def distribution(
 
 def wasserstein_1(one: Distribution, other: Distribution) -> float:
     """Wasserstein-1 distance, in the unit of the values: the area between the two ECDFs."""
+    from scipy.stats import wasserstein_distance  # 30 MB that a window need not hold from its start
+
     return float(wasserstein_distance(one.values, other.values, one.weights, other.weights))

@@ -8,7 +8,6 @@ from pathlib import Path
 from regolith_studio.jobs.chunked import JOURNAL
 from regolith_studio.jobs.events import Partial, Started, Steps
 from regolith_studio.jobs.hiring import Hiring
-from regolith_studio.session.performing import JOURNAL_FOLDER, perform
 from regolith_studio.session.recipe import Recipe
 
 
@@ -33,6 +32,8 @@ def perform_hired(recipe: Recipe, base: Path, folder: Path, hiring: Hiring, resu
 
     The first partial result is :class:`Hired`.
     """
+    from regolith_studio.session.performing import perform  # with all that a batch needs, figures included
+
     yield Started("Looking for the cluster" if hiring.runner == "dask" else "Starting the workers")
     with contextlib.closing(hiring.crew()) as crew:
         yield Partial(Hired(crew.workers, crew.dashboard))
@@ -41,6 +42,8 @@ def perform_hired(recipe: Recipe, base: Path, folder: Path, hiring: Hiring, resu
 
 def is_unfinished(folder: Path) -> bool:
     """Whether a run into `folder` was begun and has not ended."""
+    from regolith_studio.session.performing import JOURNAL_FOLDER
+
     try:
         lines = (folder / JOURNAL_FOLDER / JOURNAL).read_text(encoding="utf-8").splitlines()
     except (OSError, UnicodeDecodeError):

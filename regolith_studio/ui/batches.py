@@ -1,6 +1,7 @@
 """Runs recipes from the window, on this machine or on a cluster."""
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject
 from PySide6.QtWidgets import QWidget
@@ -8,13 +9,15 @@ from PySide6.QtWidgets import QWidget
 from regolith_studio.errors import RegolithError
 from regolith_studio.jobs.events import Failed, Job
 from regolith_studio.session.hired import Hired, perform_hired
-from regolith_studio.session.performing import Performed
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.session.project import inputs_of, without_file
 from regolith_studio.session.recipe import Recipe, read_recipe
 from regolith_studio.session.session import Session
 from regolith_studio.ui.dialogs.batch import BatchDialog, BatchOrder
 from regolith_studio.ui.widgets.toast import Toast
+
+if TYPE_CHECKING:  # what it brings is loaded when a batch runs
+    from regolith_studio.session.performing import Performed
 
 TITLE = "Running the recipe"
 
@@ -89,7 +92,7 @@ class Batches(QObject):
         if isinstance(value, Hired) and self._dialog is not None:
             self._dialog.show_hired(value)
 
-    def _done(self, done: Performed) -> None:
+    def _done(self, done: "Performed") -> None:
         failed = f" {len(done.problems)} problems are listed in failed.csv." if done.problems else ""
         self._end(f"Done: {len(done.files)} files in {done.folder}.{failed}", report=True)
 

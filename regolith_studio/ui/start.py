@@ -6,7 +6,7 @@ from pathlib import Path
 
 from PySide6.QtCore import Qt, QTimer
 from PySide6.QtGui import QColor, QFont, QPainter, QPixmap
-from PySide6.QtWidgets import QSplashScreen
+from PySide6.QtWidgets import QLabel
 
 from regolith_studio import __version__
 from regolith_studio.ui.application import make_application
@@ -42,15 +42,18 @@ def run(paths: Sequence[str | Path] = (), unit: str | None = None) -> int:
     window = open_window(paths, unit)
     sys.excepthook = telling_hook(window.toast.problem)
     window.show()
-    splash.finish(window)
+    splash.close()
     QTimer.singleShot(0, window, lambda: welcome(window))
     code = app.exec()
     sys.excepthook = sys.__excepthook__
     return code
 
 
-def make_splash() -> QSplashScreen:
-    """Mark, name and version."""
+def make_splash() -> QLabel:
+    """Mark, name and version.
+
+    No ``QSplashScreen``: that one waits a second for a window manager's answer before it goes on.
+    """
     picture = QPixmap(_WIDTH, _HEIGHT)
     picture.fill(QColor(_GROUND))
     painter = QPainter(picture)
@@ -65,4 +68,9 @@ def make_splash() -> QSplashScreen:
     painter.setPen(QColor(_QUIET))
     painter.drawText(150, 108, f"{__version__}   from CT scans to DEM particles")
     painter.end()
-    return QSplashScreen(picture, Qt.WindowType.WindowStaysOnTopHint)
+    splash = QLabel()
+    splash.setWindowFlags(Qt.WindowType.SplashScreen | Qt.WindowType.WindowStaysOnTopHint)
+    splash.setPixmap(picture)
+    splash.resize(picture.size())
+    splash.move(splash.screen().availableGeometry().center() - splash.rect().center())
+    return splash
