@@ -1,10 +1,13 @@
 """Thousands of virtual particles drawn, measured, coarsened to 20 faces and written as a dataset.
 
-    python -m benchmarks.scale [--particles 300 1000] [--jobs 2] [--json FILE]
+    python -m benchmarks.scale [--particles 300 1000] [--jobs 2] [--json FILE] [--markdown FILE]
 
 Each count is a whole run of the recipe that a user would give, in a process of its own. Printed are wall
 time, processor time of all processes (what a quiet machine would need on one core), its parts, memory and
 bytes on disk; from two or more counts, what a particle costs and what the run costs before the first one.
+The whole measurement for ``docs/speed.md``, on a machine that does nothing else:
+
+    python -m benchmarks.scale --particles 1000 10000 --jobs 2 --json scale.json --markdown scale.md
 """
 
 import argparse
@@ -23,6 +26,8 @@ from pathlib import Path
 import numpy as np
 
 STAGES = ("reading", "measuring", "fitting", "coarsening", "writing")
+SHOWN = ("reading", "measuring", "coarsening", "writing")
+"""Stages of this recipe; virtual particles are drawn where others are read."""
 TARGET = (10_000, 6 * 60.0, 1.5)
 """Particles, seconds on two quiet cores, GiB."""
 
@@ -53,6 +58,11 @@ class Run:
     stages: dict[str, float]
     memory: int
     disk: int
+
+    @property
+    def share(self) -> float:
+        """Of the cores that the run had: near 1 on a quiet machine, where the wall time counts."""
+        return self.processor / (self.wall * self.jobs)
 
 
 def measured(particles: int, jobs: int) -> Run:
@@ -158,12 +168,30 @@ def report(runs: Sequence[Run]) -> None:
     print(f"wanted: {count:,} in {seconds / 60:.0f} min on two quiet cores and {gib} GiB")
 
 
+def markdown(runs: Sequence[Run]) -> str:
+    """The table of ``docs/speed.md``."""
+    head = (
+        "| particles | processes | wall, s | processor, s | share of the cores | memory, GiB | results, MB | "
+        + " | ".join(f"{stage}, ms" for stage in SHOWN)
+        + " |"
+    )
+    rows = [
+        f"| {run.particles:,} | {run.jobs} | {run.wall:,.0f} | {run.processor:,.0f} | {run.share:.0%} | "
+        f"{run.memory / 2**30:.2f} | {run.disk / 1e6:.1f} | "
+        + " | ".join(f"{1e3 * run.stages[stage]:.1f}" for stage in SHOWN)
+        + " |"
+        for run in runs
+    ]
+    return "\n".join([head, "|" + " ---: |" * (7 + len(SHOWN)), *rows]) + "\n"
+
+
 def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--particles", type=int, nargs="+", default=[300, 1000])
     parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--json", type=Path)
+    parser.add_argument("--json", type=Path, help="write all numbers")
+    parser.add_argument("--markdown", type=Path, help="write the table of docs/speed.md")
     parser.add_argument("--one", type=int, help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.one:
@@ -177,6 +205,8 @@ def main() -> None:
     report(runs)
     if options.json:
         options.json.write_text(json.dumps([asdict(run) for run in runs], indent=1) + "\n")
+    if options.markdown:
+        options.markdown.write_text(markdown(runs))
 
 
 if __name__ == "__main__":
