@@ -25,39 +25,25 @@ from regolith_studio.geometry.box_curve import (
     numerator,
     unit,
 )
+from regolith_studio.geometry.box_facets import Facets, arcs_of, facets_of, worth_asking
 from regolith_studio.geometry.box_record import TIE, Found, drop_far, keep, note, nothing_below
 from regolith_studio.geometry.box_widths import (
     SpanTable,
     between,
     ends_along,
-    lowest,
     span_near,
     span_table,
 )
 from regolith_studio.geometry.compiled import kernel, leaf
-from regolith_studio.geometry.hull_graph import HullGraph, after, hull_graph
+from regolith_studio.geometry.hull_graph import hull_graph
 from regolith_studio.geometry.vectors import along, cross, dot, length, mixed, row
 
 SIDEWAYS = 1e-9
 """Scalar products of unit normals below this are 0: the facets are at right angles."""
 
 
-class Facets(NamedTuple):
-    """A convex solid of size about 1 near the origin.
-
-    Parameters
-    ----------
-    points
-        Vertices, shape (3, v).
-    normals
-        Of the facets, shape (n, 3); no two neighbours lie in one plane.
-    edges
-        Rows (from, to, facet, other facet), shape (e, 4).
-    """
-
-    points: FloatArray
-    normals: FloatArray
-    edges: IntArray
+MANY_FACETS, FIRST_FACETS = 100, 16
+"""Of solids with more facets, edges are first ruled out one by one, after so many facets were looked at."""
 
 
 class Work(NamedTuple):
@@ -96,27 +82,6 @@ def minimum_box(points: FloatArray, faces: IntArray) -> FloatArray:
 
 
 @kernel
-def facets_of(graph: HullGraph) -> Facets:
-    """Facets and the edges between them; triangles in one plane are one facet."""
-    number, n = np.full(len(graph.facet), -1), 0
-    for f in range(len(graph.facet)):
-        if graph.facet[f] == f:
-            number[f] = n
-            n += 1
-    normals, edges, count = np.empty((n, 3)), np.empty((len(graph.twin) // 2, 4), np.int64), 0
-    for f in range(len(graph.facet)):
-        if number[f] >= 0:
-            normals[number[f]] = graph.normals[f]
-    for h in range(len(graph.twin)):
-        one, two = graph.facet[h // 3], graph.facet[graph.twin[h] // 3]
-        if h < graph.twin[h] and one != two:
-            edges[count, 0], edges[count, 1] = graph.origin[h], graph.origin[after(h)]
-            edges[count, 2], edges[count, 3] = number[one], number[two]
-            count += 1
-    return Facets(np.ascontiguousarray(graph.points.T), normals, edges[:count])
-
-
-@kernel
 def boxes_near_least(facets: Facets, margin: float, known: float) -> Found:
     """The least box of all, and that of every curve where it is at most (1 + margin) times as large.
 
@@ -126,10 +91,14 @@ def boxes_near_least(facets: Facets, margin: float, known: float) -> Found:
         Volume of some box; infinite if none is known. Only smaller ones are kept in `record`.
     """
     found = nothing_below(known)
-    points, normals, _ = facets
-    table, arcs, n = span_table(points), _arcs(facets), len(normals)
+    points, normals, edges = facets
+    table, arcs, n = span_table(points), arcs_of(facets), len(normals)
     work = Work(np.empty((2, n)), np.empty(n, np.int8), np.empty((2, 2, 2)))
-    _on_facets(facets, arcs, table, work, margin, found)
+    if n > MANY_FACETS:
+        _on_facets(facets, arcs, table, work, n // FIRST_FACETS, margin, found)
+        worth = worth_asking(facets, arcs, table, found.record[0] * (1.0 + margin))
+        facets, arcs = Facets(points, normals, edges[worth]), arcs[worth]
+    _on_facets(facets, arcs, table, work, 1, margin, found)
     _on_curves(facets, arcs, table, work, margin, found)
     drop_far(margin, found)
     return found
@@ -160,31 +129,19 @@ def _on_curves(
                 _search_curve(facets, arcs, table, i, k, ends[branch], margin, found)
 
 
-@kernel
-def _arcs(facets: Facets) -> FloatArray:
-    """For each edge its unit direction, a span across the solid, and a bound on the width along its arc.
-
-    The span runs from the vertex opposite to the edge to the edge; shape (e, 7).
-    """
-    points, normals, edges = facets
-    arcs = np.empty((len(edges), 7))
-    for e in range(len(edges)):
-        one, two = row(normals, edges[e, 2]), row(normals, edges[e, 3])
-        direction = unit(between(points, edges[e, 1], edges[e, 0]))
-        span = between(points, edges[e, 0], lowest(points, mixed(one, 1.0, two, 1.0)))
-        for c in range(3):
-            arcs[e, c], arcs[e, 3 + c] = direction[c], span[c]
-        arcs[e, 6] = min(dot(span, one), dot(span, two))
-    return arcs
-
-
 @leaf
 def _on_facets(
-    facets: Facets, arcs: FloatArray, table: SpanTable, work: Work, margin: float, found: Found
+    facets: Facets,
+    arcs: FloatArray,
+    table: SpanTable,
+    work: Work,
+    stride: int,
+    margin: float,
+    found: Found,
 ) -> None:
-    """Boxes with one side on a facet and another flush with an edge of the shadow."""
+    """Boxes with one side on a facet, each `stride`-th, and another flush with an edge of the shadow."""
     points, normals, edges = facets
-    for f in range(len(normals)):
+    for f in range(0, len(normals), stride):
         a = row(normals, f)
         top, bottom = ends_along(points, a)
         height = dot(between(points, top, bottom), a)

@@ -19,8 +19,9 @@ from regolith_studio.geometry.box_curve import (
     numerator,
     value,
 )
+from regolith_studio.geometry.box_facets import facets_of
 from regolith_studio.geometry.box_record import note, nothing_below
-from regolith_studio.geometry.box_search import boxes_near_least, facets_of, minimum_box
+from regolith_studio.geometry.box_search import boxes_near_least, minimum_box
 from regolith_studio.geometry.box_widths import ends_along, span_near, span_table
 from regolith_studio.geometry.hull_graph import hull_graph
 from tests.geometry.solids import random_polyhedron

@@ -13,7 +13,9 @@ from typing import NamedTuple
 import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.compiled import kernel
+from regolith_studio.geometry.compiled import kernel, leaf
+from regolith_studio.geometry.inlined import inlined
+from regolith_studio.geometry.vectors import Vector, cross, dot, length, mixed, row
 
 
 class Solid(NamedTuple):
@@ -54,12 +56,12 @@ class Touch(NamedTuple):
 
 
 class Scratch(NamedTuple):
-    """Memory that one search reuses: side (n,), rim (e, 2), flat (v, 2), work (6, 3)."""
+    """Memory that one search reuses: side (n,), next vertex (v,), rim (v,) and flat (v, 2) in its order."""
 
     side: FloatArray
+    after: IntArray
     rim: IntArray
     flat: FloatArray
-    work: FloatArray
 
 
 @kernel
@@ -67,9 +69,9 @@ def scratch_for(solid: Solid) -> Scratch:
     """Memory for a search of boxes around `solid`."""
     return Scratch(
         np.empty(len(solid.normals)),
-        np.empty((len(solid.edges), 2), np.int64),
+        np.empty(len(solid.vertices), np.int64),
+        np.empty(len(solid.vertices), np.int64),
         np.empty((len(solid.vertices), 2)),
-        np.empty((6, 3)),
     )
 
 
@@ -79,8 +81,8 @@ def empty_touch() -> Touch:
     return Touch(np.empty((3, 3)), np.empty(3), np.empty(7, np.int64))
 
 
-@kernel
-def box_at(axis: FloatArray, solid: Solid, limit: float, scratch: Scratch, touch: Touch) -> float:
+@leaf
+def box_at(axis: Vector, solid: Solid, limit: float, scratch: Scratch, touch: Touch) -> float:
     """Volume of the least box with a side normal to `axis`, or infinity if it must exceed `limit`."""
     height, shadow, top, bottom = height_and_shadow(axis, solid, scratch.side)
     if shadow * height > limit:
@@ -92,19 +94,23 @@ def box_at(axis: FloatArray, solid: Solid, limit: float, scratch: Scratch, touch
         length = np.sqrt(axis[0] * axis[0] + axis[2] * axis[2])
         u0, u1, u2 = axis[2] / length, 0.0, -axis[0] / length
     v0, v1, v2 = axis[1] * u2 - axis[2] * u1, axis[2] * u0 - axis[0] * u2, axis[0] * u1 - axis[1] * u0
-    vertices, edges, side, rim, flat = solid.vertices, solid.edges, scratch.side, scratch.rim, scratch.flat
-    count = 0
+    vertices, edges, side, flat = solid.vertices, solid.edges, scratch.side, scratch.flat
+    count, first = 0, 0
     for e in range(len(edges)):
         up = side[edges[e, 2]] > 0.0
         if up == (side[edges[e, 3]] > 0.0):
             continue
-        p, q = (edges[e, 0], edges[e, 1]) if up else (edges[e, 1], edges[e, 0])
-        rim[count, 0], rim[count, 1] = p, q
-        flat[p, 0] = vertices[p, 0] * u0 + vertices[p, 1] * u1 + vertices[p, 2] * u2
-        flat[p, 1] = vertices[p, 0] * v0 + vertices[p, 1] * v1 + vertices[p, 2] * v2
+        first, last = (edges[e, 0], edges[e, 1]) if up else (edges[e, 1], edges[e, 0])
+        scratch.after[first] = last
         count += 1
+    at = first
+    for k in range(count):
+        scratch.rim[k] = at
+        flat[k, 0] = vertices[at, 0] * u0 + vertices[at, 1] * u1 + vertices[at, 2] * u2
+        flat[k, 1] = vertices[at, 0] * v0 + vertices[at, 1] * v1 + vertices[at, 2] * v2
+        at = scratch.after[at]
     touch.extents[0], touch.piece[0], touch.piece[1] = height, top, bottom
-    least, dx, dy = least_rectangle(count, rim, flat, touch)
+    least, dx, dy = least_rectangle(count, scratch.rim, flat, touch)
     for c in range(3):
         u = u0 if c == 0 else (u1 if c == 1 else u2)
         v = v0 if c == 0 else (v1 if c == 1 else v2)
@@ -114,8 +120,8 @@ def box_at(axis: FloatArray, solid: Solid, limit: float, scratch: Scratch, touch
     return float(least * height)
 
 
-@kernel
-def height_and_shadow(axis: FloatArray, solid: Solid, side: FloatArray) -> tuple[float, float, int, int]:
+@leaf
+def height_and_shadow(axis: Vector, solid: Solid, side: FloatArray) -> tuple[float, float, int, int]:
     """Extent along `axis`, area of the shadow, top and bottom vertex; `side` takes <axis, n_f>."""
     a0, a1, a2 = axis[0], axis[1], axis[2]
     shadow = 0.0
@@ -132,109 +138,114 @@ def height_and_shadow(axis: FloatArray, solid: Solid, side: FloatArray) -> tuple
     return high - low, 0.5 * shadow, top, bottom
 
 
-@kernel
+@leaf
 def least_rectangle(count: int, rim: IntArray, flat: FloatArray, touch: Touch) -> tuple[float, float, float]:
     """Area and direction of the least rectangle around the silhouette, flush with one of its edges.
 
-    `rim` holds the silhouette's edges counter-clockwise, `flat` the plane coordinates of its vertices. Fills
-    extents 1 and 2 and slots 2 to 6 of the piece.
+    Calipers turn with the edges. Fills extents 1 and 2 and slots 2 to 6 of the piece.
+
+    Parameters
+    ----------
+    count, rim, flat
+        Vertices of the silhouette, counter-clockwise, and their coordinates in the plane, shape (count, 2).
     """
     least, at_dx, at_dy = np.inf, 1.0, 0.0
+    right = across = left = -1
     for k in range(count):
-        p, q = rim[k, 0], rim[k, 1]
-        dx, dy = flat[q, 0] - flat[p, 0], flat[q, 1] - flat[p, 1]
-        length = np.sqrt(dx * dx + dy * dy)
-        if length < 1e-9:
+        end = k + 1 if k + 1 < count else 0
+        dx, dy = flat[end, 0] - flat[k, 0], flat[end, 1] - flat[k, 1]
+        squared = dx * dx + dy * dy
+        if squared < 1e-18:
             continue
-        dx, dy = dx / length, dy / length
-        flush = flat[p, 0] * dy - flat[p, 1] * dx
-        across, right, left = np.inf, -np.inf, np.inf
-        at_across, at_right, at_left = 0, 0, 0
-        for j in range(count):
-            i = rim[j, 0]
-            s, t = flat[i, 0] * dx + flat[i, 1] * dy, flat[i, 0] * dy - flat[i, 1] * dx
-            if t < across:
-                across, at_across = t, i
-            if s > right:
-                right, at_right = s, i
-            if s < left:
-                left, at_left = s, i
-        if (flush - across) * (right - left) < least:
-            least, at_dx, at_dy = (flush - across) * (right - left), dx, dy
-            touch.extents[1], touch.extents[2] = flush - across, right - left
-            touch.piece[2], touch.piece[3] = p, q
-            touch.piece[4], touch.piece[5], touch.piece[6] = at_across, at_right, at_left
+        shrink = 1.0 / np.sqrt(squared)
+        dx, dy = dx * shrink, dy * shrink
+        right = farthest(flat, count, end if right < 0 else right, dx, dy)
+        across = farthest(flat, count, right if across < 0 else across, -dy, dx)
+        left = farthest(flat, count, across if left < 0 else left, -dx, -dy)
+        deep = (flat[k, 0] - flat[across, 0]) * dy - (flat[k, 1] - flat[across, 1]) * dx
+        wide = (flat[right, 0] - flat[left, 0]) * dx + (flat[right, 1] - flat[left, 1]) * dy
+        if deep * wide < least:
+            least, at_dx, at_dy = deep * wide, dx, dy
+            touch.extents[1], touch.extents[2] = deep, wide
+            touch.piece[2], touch.piece[3] = rim[k], rim[end]
+            touch.piece[4], touch.piece[5], touch.piece[6] = rim[across], rim[right], rim[left]
     return least, at_dx, at_dy
 
 
-@kernel
-def turned_frame(axis: FloatArray, edge: FloatArray, frame: FloatArray) -> float:
-    """Fill the frame of the box with a side normal to `axis` and one flush with `edge`; its lever."""
-    w0, w1, w2 = (
-        edge[1] * axis[2] - edge[2] * axis[1],
-        edge[2] * axis[0] - edge[0] * axis[2],
-        edge[0] * axis[1] - edge[1] * axis[0],
-    )
-    length = np.sqrt(w0 * w0 + w1 * w1 + w2 * w2)
-    frame[0, 0], frame[0, 1], frame[0, 2] = axis[0], axis[1], axis[2]
-    frame[1, 0], frame[1, 1], frame[1, 2] = w0 / length, w1 / length, w2 / length
-    frame[2, 0] = axis[1] * frame[1, 2] - axis[2] * frame[1, 1]
-    frame[2, 1] = axis[2] * frame[1, 0] - axis[0] * frame[1, 2]
-    frame[2, 2] = axis[0] * frame[1, 1] - axis[1] * frame[1, 0]
-    return float(length)
+@leaf
+def farthest(flat: FloatArray, count: int, start: int, dx: float, dy: float) -> int:
+    """Corner of a convex polygon that is farthest along (dx, dy), going counter-clockwise from `start`."""
+    at, here = start, flat[start, 0] * dx + flat[start, 1] * dy
+    for _ in range(count):
+        further = at + 1 if at + 1 < count else 0
+        there = flat[further, 0] * dx + flat[further, 1] * dy
+        if there < here:
+            break
+        at, here = further, there
+    return at
 
 
-@kernel
+@leaf
+def turned_frame(axis: Vector, edge: Vector) -> tuple[float, Vector, Vector]:
+    """Axes of the box with a side normal to `axis` and one flush with `edge`, after the lever.
+
+    The lever is the length of the edge's cross product with the axis; then the outward normal of the flush
+    side, and the direction along the edge.
+    """
+    across = cross(edge, axis)
+    lever = length(across)
+    second = mixed(across, 1.0 / lever, across, 0.0)
+    return lever, second, cross(axis, second)
+
+
+@leaf
 def log_slope(
-    turn: FloatArray,
-    edge: FloatArray,
+    turn: Vector,
+    edge: Vector,
     lever: float,
-    frame: FloatArray,
-    spans: FloatArray,
-    extents: FloatArray,
+    axis: Vector,
+    second: Vector,
+    spans: tuple[Vector, Vector, Vector],
+    extents: Vector,
 ) -> float:
     """Derivative of log(volume) with the angle along the arc.
 
     Parameters
     ----------
     turn
-        Derivative of the axis, shape (3,).
+        Derivative of the axis.
     edge, lever
         The flush edge, and the length of its cross product with the axis.
-    frame, spans, extents
-        Axes of the box; for each axis the vector between the two vertices that the box touches (3, 3); the
-        extents along the axes.
+    axis, second
+        The first two axes of the box.
+    spans, extents
+        For each axis the vector between the two vertices that the box touches, and the extent along it.
     """
-    b0, b1, b2 = frame[1, 0], frame[1, 1], frame[1, 2]
-    w0 = (edge[1] * turn[2] - edge[2] * turn[1]) / lever
-    w1 = (edge[2] * turn[0] - edge[0] * turn[2]) / lever
-    w2 = (edge[0] * turn[1] - edge[1] * turn[0]) / lever
-    along = b0 * w0 + b1 * w1 + b2 * w2
-    w0, w1, w2 = w0 - along * b0, w1 - along * b1, w2 - along * b2
-    a0, a1, a2 = frame[0, 0], frame[0, 1], frame[0, 2]
-    c0 = turn[1] * b2 - turn[2] * b1 + a1 * w2 - a2 * w1
-    c1 = turn[2] * b0 - turn[0] * b2 + a2 * w0 - a0 * w2
-    c2 = turn[0] * b1 - turn[1] * b0 + a0 * w1 - a1 * w0
-    return float(
-        (turn[0] * spans[0, 0] + turn[1] * spans[0, 1] + turn[2] * spans[0, 2]) / extents[0]
-        + (w0 * spans[1, 0] + w1 * spans[1, 1] + w2 * spans[1, 2]) / extents[1]
-        + (c0 * spans[2, 0] + c1 * spans[2, 1] + c2 * spans[2, 2]) / extents[2]
+    change = cross(edge, turn)
+    change = mixed(change, 1.0 / lever, second, -dot(change, second) / lever)
+    third = mixed(cross(turn, second), 1.0, cross(axis, change), 1.0)
+    return (
+        dot(turn, spans[0]) / extents[0]
+        + dot(change, spans[1]) / extents[1]
+        + dot(third, spans[2]) / extents[2]
     )
 
 
-@kernel
-def slope_at(turn: FloatArray, solid: Solid, touch: Touch, work: FloatArray) -> float:
-    """Derivative of log(volume) along the arc for the box of :func:`box_at`; `work` (6, 3) is scratch."""
+@leaf
+def slope_at(turn: Vector, solid: Solid, touch: Touch) -> float:
+    """Derivative of log(volume) along the arc for the box of :func:`box_at`."""
     vertices, piece = solid.vertices, touch.piece
-    for c in range(3):
-        work[0, c] = vertices[piece[0], c] - vertices[piece[1], c]
-        work[1, c] = vertices[piece[2], c] - vertices[piece[4], c]
-        work[2, c] = vertices[piece[5], c] - vertices[piece[6], c]
-        work[3, c] = vertices[piece[3], c] - vertices[piece[2], c]
-    edge, axis = work[3], touch.frame[0]
-    lever = np.sqrt(
-        (edge[1] * axis[2] - edge[2] * axis[1]) ** 2
-        + (edge[2] * axis[0] - edge[0] * axis[2]) ** 2
-        + (edge[0] * axis[1] - edge[1] * axis[0]) ** 2
+    spans = (
+        from_to(vertices, piece[1], piece[0]),
+        from_to(vertices, piece[4], piece[2]),
+        from_to(vertices, piece[6], piece[5]),
     )
-    return log_slope(turn, edge, lever, touch.frame, work[:3], touch.extents)
+    edge, axis = from_to(vertices, piece[2], piece[3]), row(touch.frame, 0)
+    extents = (touch.extents[0], touch.extents[1], touch.extents[2])
+    return log_slope(turn, edge, length(cross(edge, axis)), axis, row(touch.frame, 1), spans, extents)
+
+
+@inlined
+def from_to(vertices: FloatArray, one: int, two: int) -> Vector:
+    """Vector from vertex `one` to vertex `two`, rows of shape (v, 3)."""
+    return mixed(row(vertices, two), 1.0, row(vertices, one), -1.0)

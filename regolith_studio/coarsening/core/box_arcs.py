@@ -8,9 +8,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from regolith_studio.coarsening.core.box import Scratch, Solid, Touch, box_at, slope_at, turned_frame
+from regolith_studio.coarsening.core.box import Scratch, Solid, Touch, box_at, from_to, slope_at, turned_frame
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.compiled import kernel
+from regolith_studio.geometry.compiled import kernel, leaf
+from regolith_studio.geometry.vectors import Vector, dot, length, mixed, row
 
 BESIDE = 1e-7
 SAME_SIDE = 0.99
@@ -22,8 +23,8 @@ rests on a facet, and that facet's own box is the same; or more than one contact
 class Arc(NamedTuple):
     """Normals cos(t) one + sin(t) across between two facets, 0 <= t <= angle; the edge (start, end)."""
 
-    one: FloatArray
-    across: FloatArray
+    one: Vector
+    across: Vector
     angle: float
     start: int
     end: int
@@ -36,7 +37,27 @@ class Sample(NamedTuple):
     piece: IntArray
 
 
+class Spare(NamedTuple):
+    """Memory for :func:`arc_minimum`."""
+
+    low: Sample
+    high: Sample
+    here: Sample
+
+
 @kernel
+def empty_sample() -> Sample:
+    """A sample to be filled."""
+    return Sample(np.zeros(3), np.zeros(7, np.int64))
+
+
+@kernel
+def spare_samples() -> Spare:
+    """Three samples to be filled."""
+    return Spare(empty_sample(), empty_sample(), empty_sample())
+
+
+@leaf
 def copied(source: Sample, target: Sample) -> None:
     """Copy a sample."""
     for c in range(3):
@@ -45,40 +66,38 @@ def copied(source: Sample, target: Sample) -> None:
         target.piece[c] = source.piece[c]
 
 
-@kernel
+@leaf
 def arc_between(solid: Solid, e: int) -> Arc:
     """Gauss arc of edge e."""
-    one, two = solid.normals[solid.edges[e, 2]], solid.normals[solid.edges[e, 3]]
-    cosine = min(1.0, max(-1.0, one[0] * two[0] + one[1] * two[1] + one[2] * two[2]))
-    across = two - cosine * one
-    sine = np.sqrt(across[0] * across[0] + across[1] * across[1] + across[2] * across[2])
+    one, two = row(solid.normals, solid.edges[e, 2]), row(solid.normals, solid.edges[e, 3])
+    cosine = min(1.0, max(-1.0, dot(one, two)))
+    across = mixed(two, 1.0, one, -cosine)
+    sine = length(across)
     if sine > 0.0:
-        across /= sine
+        across = mixed(across, 1.0 / sine, across, 0.0)
     return Arc(one, across, np.arctan2(sine, cosine), solid.edges[e, 0], solid.edges[e, 1])
 
 
-@kernel
+@leaf
 def box_on_arc(
     arc: Arc, angle: float, solid: Solid, limit: float, scratch: Scratch, touch: Touch, sample: Sample
 ) -> float:
     """Volume of the box at an angle of the arc; fills `touch` and `sample`."""
-    axis, turn = scratch.work[4], scratch.work[5]
     cosine, sine = np.cos(angle), np.sin(angle)
-    for c in range(3):
-        axis[c] = cosine * arc.one[c] + sine * arc.across[c]
-        turn[c] = cosine * arc.across[c] - sine * arc.one[c]
+    axis = mixed(arc.one, cosine, arc.across, sine)
+    turn = mixed(arc.across, cosine, arc.one, -sine)
     volume = box_at(axis, solid, limit, scratch, touch)
     sample.number[0], sample.number[1], sample.number[2] = angle, np.inf, 0.0
     if volume < np.inf:
         touch.piece[0] = arc.start
         sample.number[1] = np.log(volume)
-        sample.number[2] = slope_at(turn, solid, touch, scratch.work)
+        sample.number[2] = slope_at(turn, solid, touch)
         for c in range(7):
             sample.piece[c] = touch.piece[c]
     return volume
 
 
-@kernel
+@leaf
 def worth_a_look(one: Sample, two: Sample, limit: float) -> bool:
     """Whether the volume turns from falling to rising, and the tangents meet below `limit`."""
     if not (one.number[2] < 0.0 and two.number[2] > 0.0):
@@ -87,7 +106,7 @@ def worth_a_look(one: Sample, two: Sample, limit: float) -> bool:
     return bool(lowest <= np.log(limit))
 
 
-@kernel
+@leaf
 def meeting(one: Sample, two: Sample) -> float:
     """Angle at which the tangents of the log volume meet."""
     gap = two.number[0] - one.number[0]
@@ -95,9 +114,9 @@ def meeting(one: Sample, two: Sample) -> float:
     return float(one.number[0] + (rise - two.number[2] * gap) / (one.number[2] - two.number[2]))
 
 
-@kernel
+@leaf
 def arc_minimum(
-    arc: Arc, one: Sample, two: Sample, solid: Solid, scratch: Scratch, touch: Touch
+    arc: Arc, one: Sample, two: Sample, solid: Solid, scratch: Scratch, touch: Touch, spare: Spare
 ) -> tuple[int, int, float]:
     """Minimum of the volume between two samples of an arc, where the slope turns from falling to rising.
 
@@ -114,9 +133,9 @@ def arc_minimum(
     volume
         At the minimum.
     """
-    low = Sample(one.number.copy(), one.piece.copy())
-    high = Sample(two.number.copy(), two.piece.copy())
-    here = Sample(np.zeros(3), np.zeros(7, np.int64))
+    low, high, here = spare.low, spare.high, spare.here
+    copied(one, low)
+    copied(two, high)
     volume, smallest = np.inf, (two.number[0] - one.number[0]) / 8.0
     for _ in range(40):
         gap = high.number[0] - low.number[0]
@@ -124,9 +143,7 @@ def arc_minimum(
         if slot == STATIONARY:
             angle = low.number[0] - low.number[2] * gap / (high.number[2] - low.number[2])
         elif slot >= 0:
-            tie = tie_angle(
-                arc, slot, low.piece[slot], high.piece[slot], low, solid.vertices, touch, scratch.work
-            )
+            tie = tie_angle(arc, slot, low.piece[slot], high.piece[slot], low, solid.vertices)
             angle = tie - BESIDE if low.number[0] < tie - 1.5 * BESIDE else tie + BESIDE
         else:
             angle = meeting(low, high)
@@ -153,7 +170,7 @@ def arc_minimum(
     return slot, low.piece[slot] if here.piece[slot] == high.piece[slot] else high.piece[slot], volume
 
 
-@kernel
+@leaf
 def differing_slot(one: IntArray, two: IntArray) -> int:
     """The slot in which two pieces differ, or STATIONARY (none), ON_FACET (flush edge), SEVERAL."""
     if one[2] != two[2] or one[3] != two[3]:
@@ -167,7 +184,7 @@ def differing_slot(one: IntArray, two: IntArray) -> int:
     return found
 
 
-@kernel
+@leaf
 def same_side(one: IntArray, two: IntArray, axis: FloatArray, vertices: FloatArray) -> bool:
     """Whether the flush edges of two pieces lie in the same side of the box, as on a facet along `axis`."""
     dot, first, second = 0.0, 0.0, 0.0
@@ -181,26 +198,15 @@ def same_side(one: IntArray, two: IntArray, axis: FloatArray, vertices: FloatArr
     return bool(dot > SAME_SIDE * np.sqrt(first * second))
 
 
-@kernel
-def tie_angle(
-    arc: Arc, slot: int, i: int, j: int, sample: Sample, vertices: FloatArray, touch: Touch, work: FloatArray
-) -> float:
-    """Angle near a sample at which vertices i and j lie in one side of the box, by the secant method.
-
-    The frame of `touch` and `work` (6, 3) are overwritten.
-    """
-    axis, edge, frame = work[4], work[3], touch.frame
-    for c in range(3):
-        edge[c] = vertices[sample.piece[3], c] - vertices[sample.piece[2], c]
-    row = 0 if slot == 1 else (1 if slot == 4 else 2)
+@leaf
+def tie_angle(arc: Arc, slot: int, i: int, j: int, sample: Sample, vertices: FloatArray) -> float:
+    """Angle near a sample at which vertices i and j lie in one side of the box, by the secant method."""
+    edge, apart = from_to(vertices, sample.piece[2], sample.piece[3]), from_to(vertices, j, i)
     before, angle, last = 0.0, sample.number[0], 0.0
     for k in range(8):
-        for c in range(3):
-            axis[c] = np.cos(angle) * arc.one[c] + np.sin(angle) * arc.across[c]
-        turned_frame(axis, edge, frame)
-        residual = 0.0
-        for c in range(3):
-            residual += frame[row, c] * (vertices[i, c] - vertices[j, c])
+        axis = mixed(arc.one, np.cos(angle), arc.across, np.sin(angle))
+        _, second, third = turned_frame(axis, edge)
+        residual = dot(axis, apart) if slot == 1 else (dot(second, apart) if slot == 4 else dot(third, apart))
         if k == 0:
             last, before, angle = angle, residual, angle + 1e-3
             continue

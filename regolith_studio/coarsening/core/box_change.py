@@ -7,9 +7,10 @@ the volume is stationary, or a third pair of vertices lies in one side.
 
 import numpy as np
 
-from regolith_studio.coarsening.core.box import log_slope, turned_frame
+from regolith_studio.coarsening.core.box import from_to, log_slope, turned_frame
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.compiled import kernel
+from regolith_studio.geometry.compiled import kernel, leaf
+from regolith_studio.geometry.vectors import Vector, cross, dot, length, mixed
 
 STEP = 1e-5
 
@@ -24,43 +25,41 @@ def contact_points(vertices: FloatArray, contact: IntArray) -> FloatArray:
     return points
 
 
-@kernel
-def box_of(
-    points: FloatArray, slot: int, base: FloatArray, angle: float, frame: FloatArray, extents: FloatArray
-) -> float:
-    """Fill `frame` and `extents` of the box at `angle` from `base`; residual of the third condition."""
-    e0, e1, e2 = points[1, 0] - points[0, 0], points[1, 1] - points[0, 1], points[1, 2] - points[0, 2]
-    length = max(1e-300, np.sqrt(e0 * e0 + e1 * e1 + e2 * e2))
-    e0, e1, e2 = e0 / length, e1 / length, e2 / length
-    along = base[0] * e0 + base[1] * e1 + base[2] * e2
-    u = np.array([base[0] - along * e0, base[1] - along * e1, base[2] - along * e2])
-    u /= np.sqrt(np.sum(u * u))
-    v = np.array([e1 * u[2] - e2 * u[1], e2 * u[0] - e0 * u[2], e0 * u[1] - e1 * u[0]])
-    axis = np.cos(angle) * u + np.sin(angle) * v
-    edge = points[5] - points[4]
-    lever = turned_frame(axis, edge, frame)
-    spans = np.empty((3, 3))
-    spans[0] = points[2] - points[3]
-    spans[1] = points[4] - points[6]
-    spans[2] = points[7] - points[8]
-    for c in range(3):
-        extents[c] = frame[c, 0] * spans[c, 0] + frame[c, 1] * spans[c, 1] + frame[c, 2] * spans[c, 2]
+@leaf
+def basis(points: FloatArray, base: Vector) -> tuple[Vector, Vector]:
+    """Two unit vectors across the edge of the first side, the first near `base`."""
+    edge = from_to(points, 0, 1)
+    edge = mixed(edge, 1.0 / max(1e-300, length(edge)), edge, 0.0)
+    first = mixed(base, 1.0, edge, -dot(base, edge))
+    first = mixed(first, 1.0 / length(first), first, 0.0)
+    return first, cross(edge, first)
+
+
+@leaf
+def box_of(points: FloatArray, slot: int, base: Vector, angle: float) -> tuple[float, Vector]:
+    """Residual of the third condition and extents of the box at `angle` from `base`."""
+    first, across = basis(points, base)
+    axis = mixed(first, np.cos(angle), across, np.sin(angle))
+    edge = from_to(points, 4, 5)
+    lever, second, third = turned_frame(axis, edge)
+    spans = (from_to(points, 3, 2), from_to(points, 6, 4), from_to(points, 8, 7))
+    extents = (dot(axis, spans[0]), dot(second, spans[1]), dot(third, spans[2]))
     if slot < 0:
-        turn = np.cos(angle) * v - np.sin(angle) * u
-        return log_slope(turn, edge, lever, frame, spans, extents)
-    c = 0 if slot <= 1 else (1 if slot == 4 else 2)
-    return float(np.sum(frame[c] * (points[2 + slot] - points[9])))
+        turn = mixed(across, np.cos(angle), first, -np.sin(angle))
+        return log_slope(turn, edge, lever, axis, second, spans, extents), extents
+    apart = from_to(points, 9, 2 + slot)
+    residual = dot(axis, apart) if slot <= 1 else (dot(second, apart) if slot == 4 else dot(third, apart))
+    return residual, extents
 
 
-@kernel
-def settled_angle(points: FloatArray, slot: int, base: FloatArray) -> float:
+@leaf
+def settled_angle(points: FloatArray, slot: int, base: Vector) -> float:
     """Angle at which the third condition holds, by Newton's method from 0."""
-    frame, extents = np.empty((3, 3)), np.empty(3)
     angle = 0.0
     for _ in range(4):
-        residual = box_of(points, slot, base, angle, frame, extents)
-        more = box_of(points, slot, base, angle + STEP, frame, extents)
-        less = box_of(points, slot, base, angle - STEP, frame, extents)
+        residual, _ = box_of(points, slot, base, angle)
+        more, _ = box_of(points, slot, base, angle + STEP)
+        less, _ = box_of(points, slot, base, angle - STEP)
         slope = (more - less) / (2.0 * STEP)
         if abs(slope) < 1e-9:
             return angle
@@ -73,41 +72,46 @@ def settled_angle(points: FloatArray, slot: int, base: FloatArray) -> float:
     return angle
 
 
-@kernel
-def extent_forces(
-    points: FloatArray, slot: int, base: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Box at rest, and the derivative of its log extents with each contact point.
+@leaf
+def extent_forces(points: FloatArray, slot: int, base: Vector, forces: FloatArray) -> Vector:
+    """Extents of the box at rest; `forces` takes d log(extent k) / d(point i), shape (3, 10, 3).
 
-    Returns
-    -------
-    frame, extents
-        Axes as rows (3, 3), edge lengths along them (3,).
-    forces
-        d log(extent k) / d(point i), shape (3, 10, 3).
+    `points` is restored to rounding.
     """
-    frame, extents = np.empty((3, 3)), np.empty(3)
-    more, less = np.empty(3), np.empty(3)
     angle = settled_angle(points, slot, base)
-    up = box_of(points, slot, base, angle + STEP, frame, more)
-    down = box_of(points, slot, base, angle - STEP, frame, less)
+    up, more = box_of(points, slot, base, angle + STEP)
+    down, less = box_of(points, slot, base, angle - STEP)
     stiffness = (up - down) / (2.0 * STEP)
-    with_angle = (np.log(more) - np.log(less)) / (2.0 * STEP)
-    forces = np.zeros((3, 10, 3))
+    with_angle = log_change(more, less)
     for i in range(10):
-        if i == 9 and slot < 0:
-            continue
         for c in range(3):
+            if i == 9 and slot < 0:
+                forces[0, i, c] = forces[1, i, c] = forces[2, i, c] = 0.0
+                continue
             here = points[i, c]
             points[i, c] = here + STEP
-            up = box_of(points, slot, base, angle, frame, more)
+            up, more = box_of(points, slot, base, angle)
             points[i, c] = here - STEP
-            down = box_of(points, slot, base, angle, frame, less)
+            down, less = box_of(points, slot, base, angle)
             points[i, c] = here
             turn = 0.0
             if abs(stiffness) > 1e-9:
                 turn = -(up - down) / (2.0 * STEP) / stiffness
+            change = log_change(more, less)
             for k in range(3):
-                forces[k, i, c] = (np.log(more[k]) - np.log(less[k])) / (2.0 * STEP) + with_angle[k] * turn
-    box_of(points, slot, base, angle, frame, extents)
-    return frame, extents, forces
+                forces[k, i, c] = change[k] + with_angle[k] * turn
+    _, extents = box_of(points, slot, base, angle)
+    return extents
+
+
+@leaf
+def log_change(more: Vector, less: Vector) -> Vector:
+    """Derivative of the logarithms of three extents from a step to either side.
+
+    2 (m - l) / (m + l) is the difference of the logarithms to the order of the cube of their difference.
+    """
+    return (
+        (more[0] - less[0]) / (more[0] + less[0]) / STEP,
+        (more[1] - less[1]) / (more[1] + less[1]) / STEP,
+        (more[2] - less[2]) / (more[2] + less[2]) / STEP,
+    )

@@ -21,13 +21,17 @@ from regolith_studio.coarsening.core.box_arcs import (
     STATIONARY,
     Arc,
     Sample,
+    Spare,
     arc_between,
     arc_minimum,
     box_on_arc,
+    empty_sample,
+    spare_samples,
     worth_a_look,
 )
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.compiled import kernel
+from regolith_studio.geometry.compiled import kernel, leaf
+from regolith_studio.geometry.vectors import mixed, row
 
 SAMPLE_ANGLE = float(np.radians(13.0))
 """Step along the arcs that misses few boxes, in radians."""
@@ -86,6 +90,17 @@ class OnFacets(NamedTuple):
     resting: IntArray
 
 
+class Work(NamedTuple):
+    """Memory that one search reuses."""
+
+    scratch: Scratch
+    touch: Touch
+    fallback: Touch
+    one: Sample
+    two: Sample
+    spare: Spare
+
+
 @kernel
 def local_boxes(solid: Solid, margin: float, sample_angle: float, near: FloatArray) -> Boxes:
     """Locally minimal boxes with a volume of at most (1 + margin) times the least.
@@ -103,7 +118,6 @@ def local_boxes(solid: Solid, margin: float, sample_angle: float, near: FloatArr
         None (k = 0): everywhere.
     """
     boxes = Boxes(np.empty(MOST), np.empty((MOST, 3, 3)), np.empty((MOST, 3)), np.empty((MOST, 11), np.int64))
-    scratch, touch = scratch_for(solid), empty_touch()
     n = len(solid.normals)
     facets = OnFacets(
         np.full(n, np.nan),
@@ -112,14 +126,31 @@ def local_boxes(solid: Solid, margin: float, sample_angle: float, near: FloatArr
         np.empty((n, 7), np.int64),
         np.ones(n, np.int64),
     )
-    best = np.inf
+    work = Work(
+        scratch_for(solid), empty_touch(), empty_touch(), empty_sample(), empty_sample(), spare_samples()
+    )
+    count, best = search(solid, margin, sample_angle, near, boxes, facets, work)
+    return ranked(boxes, count, best * (1.0 + margin))
+
+
+@leaf
+def search(
+    solid: Solid,
+    margin: float,
+    sample_angle: float,
+    near: FloatArray,
+    boxes: Boxes,
+    facets: OnFacets,
+    work: Work,
+) -> tuple[int, float]:
+    """Fill `boxes`; how many there are, and the least volume."""
+    scratch, touch, fallback, one, two, spare = work
+    n, best, lowest = len(solid.normals), np.inf, np.inf
     if len(near) == 0:
         for f in range(n):
             if solid.areas[f] > NO_FACET:
                 best = min(best, box_on_facet(f, facets, solid, best, scratch, touch))
     count = 0
-    fallback, lowest = empty_touch(), np.inf
-    one, two = Sample(np.empty(3), np.empty(7, np.int64)), Sample(np.empty(3), np.empty(7, np.int64))
     for e in range(len(solid.edges)):
         arc = arc_between(solid, e)
         if arc.angle < NO_ARC:
@@ -135,7 +166,7 @@ def local_boxes(solid: Solid, margin: float, sample_angle: float, near: FloatArr
                 lowest = two.number[1]
                 kept_aside(touch, fallback)
             if i > 0 and worth_a_look(one, two, best * (1.0 + margin) * SLACK):
-                slot, partner, volume = arc_minimum(arc, one, two, solid, scratch, touch)
+                slot, partner, volume = arc_minimum(arc, one, two, solid, scratch, touch, spare)
                 best = min(best, volume)
                 if slot != ON_FACET and volume <= best * (1.0 + margin):
                     count = kept(count, boxes, volume, touch, slot, arc.start, arc.end, partner)
@@ -153,10 +184,10 @@ def local_boxes(solid: Solid, margin: float, sample_angle: float, near: FloatArr
                 count = kept(count, boxes, facets.volume[f], touch, 0, p, q, partner)
     if count == 0 and lowest < np.inf:
         count = kept(0, boxes, np.exp(lowest), fallback, STATIONARY, fallback.piece[0], fallback.piece[0], -1)
-    return ranked(boxes, count, best * (1.0 + margin))
+    return count, best
 
 
-@kernel
+@leaf
 def kept_aside(touch: Touch, aside: Touch) -> None:
     """Copy a box."""
     for a in range(3):
@@ -167,7 +198,7 @@ def kept_aside(touch: Touch, aside: Touch) -> None:
         aside.piece[c] = touch.piece[c]
 
 
-@kernel
+@leaf
 def remembered(facets: OnFacets, f: int, touch: Touch) -> None:
     """Copy a box into the memory of facet f."""
     for a in range(3):
@@ -178,7 +209,7 @@ def remembered(facets: OnFacets, f: int, touch: Touch) -> None:
         facets.piece[f, c] = touch.piece[c]
 
 
-@kernel
+@leaf
 def recalled(facets: OnFacets, f: int, touch: Touch) -> None:
     """Copy the box of facet f into `touch`."""
     for a in range(3):
@@ -189,18 +220,18 @@ def recalled(facets: OnFacets, f: int, touch: Touch) -> None:
         touch.piece[c] = facets.piece[f, c]
 
 
-@kernel
+@leaf
 def box_on_facet(
     f: int, facets: OnFacets, solid: Solid, best: float, scratch: Scratch, touch: Touch
 ) -> float:
     """Volume of the box with one side on facet f; it is remembered."""
     if np.isnan(facets.volume[f]):
-        facets.volume[f] = box_at(solid.normals[f], solid, PROMISING * best, scratch, touch)
+        facets.volume[f] = box_at(row(solid.normals, f), solid, PROMISING * best, scratch, touch)
         remembered(facets, f, touch)
     return facets.volume[f]  # type: ignore[no-any-return]
 
 
-@kernel
+@leaf
 def window_on(arc: Arc, near: FloatArray) -> tuple[float, float]:
     """Part of an arc that lies near an axis of the frames `near` (k, 3, 3); empty if the second is less."""
     if len(near) == 0:
@@ -220,7 +251,7 @@ def window_on(arc: Arc, near: FloatArray) -> tuple[float, float]:
     return low, high
 
 
-@kernel
+@leaf
 def is_near(normal: FloatArray, near: FloatArray) -> bool:
     """Whether all arcs around a facet have been searched."""
     for k in range(len(near)):
@@ -231,7 +262,7 @@ def is_near(normal: FloatArray, near: FloatArray) -> bool:
     return len(near) == 0
 
 
-@kernel
+@leaf
 def sampled(  # type: ignore[no-untyped-def]
     arc, angle, solid, best, e, facets, scratch, touch, sample
 ) -> float:
@@ -243,22 +274,20 @@ def sampled(  # type: ignore[no-untyped-def]
     sample.number[0], sample.number[1], sample.number[2] = angle, np.inf, 0.0
     volume = box_on_facet(f, facets, solid, best, scratch, touch)
     if volume < np.inf:
-        turn = scratch.work[5]
-        for c in range(3):
-            turn[c] = np.cos(angle) * arc.across[c] - np.sin(angle) * arc.one[c]
+        turn = mixed(arc.across, np.cos(angle), arc.one, -np.sin(angle))
         recalled(facets, f, touch)
         touch.piece[0] = arc.start
         for c in range(7):
             sample.piece[c] = touch.piece[c]
         sample.number[1] = np.log(volume)
-        sample.number[2] = slope_at(turn, solid, touch, scratch.work)
+        sample.number[2] = slope_at(turn, solid, touch)
         away = sample.number[2] if angle <= 0.0 else -sample.number[2]
         if away < -1e-12:
             facets.resting[f] = 0
     return min(best, volume)  # type: ignore[no-any-return]
 
 
-@kernel
+@leaf
 def corner_of(facet: int, edges: IntArray) -> tuple[int, int, int]:
     """Three vertices of a facet: the ends of one of its edges and another one."""
     p = q = -1
@@ -273,7 +302,7 @@ def corner_of(facet: int, edges: IntArray) -> tuple[int, int, int]:
     return -1, -1, -1
 
 
-@kernel
+@leaf
 def kept(  # type: ignore[no-untyped-def]
     count, boxes, volume, touch, slot, start, end, partner
 ) -> int:
@@ -290,14 +319,19 @@ def kept(  # type: ignore[no-untyped-def]
         if boxes.volumes[at] <= volume:
             return count  # type: ignore[no-any-return]
         count -= 1
-    boxes.volumes[at], boxes.frames[at], boxes.extents[at] = volume, touch.frame, touch.extents
+    boxes.volumes[at] = volume
+    for a in range(3):
+        boxes.extents[at, a] = touch.extents[a]
+        for c in range(3):
+            boxes.frames[at, a, c] = touch.frame[a, c]
     boxes.contacts[at, 0], boxes.contacts[at, 1], boxes.contacts[at, 2] = slot, start, end
-    boxes.contacts[at, 3:10] = touch.piece
+    for c in range(7):
+        boxes.contacts[at, 3 + c] = touch.piece[c]
     boxes.contacts[at, 10] = partner
     return count + 1  # type: ignore[no-any-return]
 
 
-@kernel
+@leaf
 def likeness(one: FloatArray, two: FloatArray) -> float:
     """Cosine of the largest angle between the axes of two frames (3, 3), in any order and direction."""
     least = 1.0

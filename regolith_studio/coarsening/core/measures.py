@@ -3,7 +3,8 @@
 import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.compiled import kernel
+from regolith_studio.geometry.compiled import kernel, leaf
+from regolith_studio.geometry.vectors import cross, dot, row
 
 
 @kernel
@@ -82,7 +83,7 @@ def volume_charge(area: FloatArray, centroid: FloatArray, pivots: FloatArray) ->
     return charge
 
 
-@kernel
+@leaf
 def vertex_charge(
     normals: FloatArray,
     triple: IntArray,
@@ -95,16 +96,14 @@ def vertex_charge(
 
     The vertex moves by dx with <n_i, dx> = w_i(x) for its three planes.
     """
-    a, b, c = normals[triple[0]], normals[triple[1]], normals[triple[2]]
-    bc = np.cross(b, c)
-    ca = np.cross(c, a)
-    ab = np.cross(a, b)
-    det = a[0] * bc[0] + a[1] * bc[1] + a[2] * bc[2]
+    a, b, c = row(normals, triple[0]), row(normals, triple[1]), row(normals, triple[2])
+    sides = (cross(b, c), cross(c, a), cross(a, b))
+    det = dot(a, sides[0])
     if abs(det) < 1e-12:
         return
+    pull = (force[0], force[1], force[2])
     for k in range(3):
-        side = bc if k == 0 else (ca if k == 1 else ab)
-        weight = (force[0] * side[0] + force[1] * side[1] + force[2] * side[2]) / det
+        weight = dot(pull, sides[k]) / det
         i = triple[k]
         charge[i, 0] += weight
         for d in range(3):

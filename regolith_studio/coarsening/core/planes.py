@@ -9,6 +9,7 @@ import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.compiled import kernel
+from regolith_studio.geometry.vectors import cross, dot, length, mixed, row
 
 
 @kernel
@@ -29,9 +30,12 @@ def carried(frames: FloatArray, normals: FloatArray) -> FloatArray:
     """Tangents carried over to new normals without twist."""
     moved = np.empty(frames.shape)
     for i in range(len(normals)):
-        first = frames[i, 0] - np.sum(frames[i, 0] * normals[i]) * normals[i]
-        moved[i, 0] = first / np.sqrt(np.sum(first * first))
-        moved[i, 1] = np.cross(normals[i], moved[i, 0])
+        normal, first = row(normals, i), row(frames[i], 0)
+        first = mixed(first, 1.0, normal, -dot(first, normal))
+        first = mixed(first, 1.0 / length(first), first, 0.0)
+        second = cross(normal, first)
+        for c in range(3):
+            moved[i, 0, c], moved[i, 1, c] = first[c], second[c]
     return moved
 
 

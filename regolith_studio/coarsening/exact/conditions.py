@@ -19,6 +19,7 @@ from regolith_studio.coarsening.exact.problem import (
 )
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.compiled import kernel
+from regolith_studio.geometry.vectors import row
 
 CLEARANCE = 1e-4
 """Other boxes must be larger than the wanted one by this share."""
@@ -130,8 +131,8 @@ def extent_rows(
     """Logarithms of the three edges of box b, and their derivatives (3, 3 n)."""
     contact = shape.boxes.contacts[b]
     points = contact_points(shape.vertices, contact)
-    base = shape.boxes.frames[b, 0].copy()
-    _, extents, forces = extent_forces(points, contact[0], base)
+    forces = np.empty((3, 10, 3))
+    low, middle, high = extent_forces(points, contact[0], row(shape.boxes.frames[b], 0), forces)
     rows = np.empty((3, 3 * len(shape.offsets)))
     for k in range(3):
         charge = np.zeros((len(shape.offsets), 4))
@@ -142,7 +143,7 @@ def extent_rows(
                     shape.normals, shape.triples[v], shape.vertices[v], forces[k, i], shape.centroid, charge
                 )
         rows[k] = gradient_of(charge, frames, levers)
-    return np.log(extents), rows
+    return np.log(np.array([low, middle, high])), rows
 
 
 @kernel

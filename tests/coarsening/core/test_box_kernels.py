@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.spatial import ConvexHull
 
 from regolith_studio.coarsening.core.box import Solid, box_at, empty_touch, scratch_for
 from regolith_studio.coarsening.core.box_change import contact_points, extent_forces
@@ -57,9 +58,27 @@ def test_that_looking_near_a_box_finds_it() -> None:
     assert near.volumes[0] == pytest.approx(everywhere.volumes[0], rel=1e-9)
 
 
+@pytest.mark.parametrize("seed", range(10))
+def test_that_the_box_on_an_axis_stands_on_the_least_rectangle_of_the_shadow(seed: int) -> None:
+    solid, _ = solid_of(*random_planes(30, seed))
+    axis = np.random.default_rng(seed).normal(size=3)
+    axis /= np.linalg.norm(axis)
+    frame = np.linalg.qr(np.column_stack([axis, np.eye(3)]))[0][:, 1:3]
+    shadow = solid.vertices @ frame
+    corners = shadow[ConvexHull(shadow).vertices]
+    areas = []
+    for side in np.roll(corners, -1, axis=0) - corners:
+        way = side / np.linalg.norm(side)
+        areas.append(np.ptp(corners @ way) * np.ptp(corners @ [-way[1], way[0]]))
+    touch = empty_touch()
+    volume = box_at(tuple(axis.tolist()), solid, np.inf, scratch_for(solid), touch)
+    assert volume == pytest.approx(min(areas) * np.ptp(solid.vertices @ axis), rel=1e-12)
+    assert np.ptp(solid.vertices @ touch.frame.T, axis=0) == pytest.approx(touch.extents, rel=1e-12)
+
+
 def test_that_the_compiled_box_is_its_python_reference() -> None:
     solid, _ = solid_of(*random_planes(12, 3))
-    axis = np.array([0.36, 0.48, 0.8])
+    axis = (0.36, 0.48, 0.8)
     one, two = empty_touch(), empty_touch()
     volume = box_at(axis, solid, np.inf, scratch_for(solid), one)
     assert box_at.py_func(axis, solid, np.inf, scratch_for(solid), two) == pytest.approx(volume, rel=1e-14)
@@ -75,9 +94,9 @@ def test_that_the_edges_follow_the_planes_as_finite_differences_say(seed: int) -
     frames, levers = tangents_of(normals), levers_of(solid.areas, 0.1)
     _, pivots = facets_of(normals, offsets, solid.vertices, solid.edges)
     contact = boxes.contacts[0]
-    _, extents, forces = extent_forces(
-        contact_points(solid.vertices, contact), contact[0], boxes.frames[0, 0].copy()
-    )
+    forces = np.empty((3, 10, 3))
+    points, axis = contact_points(solid.vertices, contact), tuple(boxes.frames[0, 0].tolist())
+    extents = extent_forces(points, contact[0], axis, forces)
     step = 1e-6 * np.random.default_rng(seed).normal(size=3 * n)
 
     def edges_after(change: FloatArray) -> FloatArray:
@@ -85,10 +104,11 @@ def test_that_the_edges_follow_the_planes_as_finite_differences_say(seed: int) -
         then, _ = solid_of(turned, shifted)
         found = local_boxes(then, 0.02, SAMPLE_ANGLE, EVERYWHERE)
         alike = int(np.argmax([likeness(frame, boxes.frames[0]) for frame in found.frames]))
-        _, settled, _ = extent_forces(
+        settled = extent_forces(
             contact_points(then.vertices, found.contacts[alike]),
             found.contacts[alike, 0],
-            found.frames[alike, 0].copy(),
+            tuple(found.frames[alike, 0].tolist()),
+            np.empty((3, 10, 3)),
         )
         return np.log(np.sort(settled))
 

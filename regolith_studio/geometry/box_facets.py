@@ -1,0 +1,106 @@
+"""A convex solid by its facets, and which of its edges could matter for its least box."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
+from regolith_studio.geometry.box_curve import unit
+from regolith_studio.geometry.box_widths import SpanTable, between, lowest, span_near
+from regolith_studio.geometry.compiled import kernel, leaf
+from regolith_studio.geometry.hull_graph import HullGraph, after
+from regolith_studio.geometry.vectors import Vector, cross, dot, mixed, row
+
+QUARTER_TURNS = 24
+
+
+class Facets(NamedTuple):
+    """A convex solid of size about 1 near the origin.
+
+    Parameters
+    ----------
+    points
+        Vertices, shape (3, v).
+    normals
+        Of the facets, shape (n, 3); no two neighbours lie in one plane.
+    edges
+        Rows (from, to, facet, other facet), shape (e, 4).
+    """
+
+    points: FloatArray
+    normals: FloatArray
+    edges: IntArray
+
+
+@kernel
+def facets_of(graph: HullGraph) -> Facets:
+    """Facets and the edges between them; triangles in one plane are one facet."""
+    number, n = np.full(len(graph.facet), -1), 0
+    for f in range(len(graph.facet)):
+        if graph.facet[f] == f:
+            number[f] = n
+            n += 1
+    normals, edges, count = np.empty((n, 3)), np.empty((len(graph.twin) // 2, 4), np.int64), 0
+    for f in range(len(graph.facet)):
+        if number[f] >= 0:
+            normals[number[f]] = graph.normals[f]
+    for h in range(len(graph.twin)):
+        one, two = graph.facet[h // 3], graph.facet[graph.twin[h] // 3]
+        if h < graph.twin[h] and one != two:
+            edges[count, 0], edges[count, 1] = graph.origin[h], graph.origin[after(h)]
+            edges[count, 2], edges[count, 3] = number[one], number[two]
+            count += 1
+    return Facets(np.ascontiguousarray(graph.points.T), normals, edges[:count])
+
+
+@kernel
+def arcs_of(facets: Facets) -> FloatArray:
+    """For each edge its unit direction, a span across the solid, and a bound on the width along its arc.
+
+    The span runs from the vertex opposite to the edge to the edge; shape (e, 7).
+    """
+    points, normals, edges = facets
+    arcs = np.empty((len(edges), 7))
+    for e in range(len(edges)):
+        one, two = row(normals, edges[e, 2]), row(normals, edges[e, 3])
+        direction = unit(between(points, edges[e, 1], edges[e, 0]))
+        span = between(points, edges[e, 0], lowest(points, mixed(one, 1.0, two, 1.0)))
+        for c in range(3):
+            arcs[e, c], arcs[e, 3 + c] = direction[c], span[c]
+        arcs[e, 6] = min(dot(span, one), dot(span, two))
+    return arcs
+
+
+@kernel
+def worth_asking(facets: Facets, arcs: FloatArray, table: SpanTable, limit: float) -> BoolArray:
+    """Which edges some box below the limit could be flush with, shape (e,).
+
+    With its first side normal to an axis of the edge's arc, the other two directions of a box are nearly
+    those of a quarter turn in steps about the arc's middle. A turn of angle t shortens a distance at most to
+    its cos t-fold, less sin t times what the span is long across.
+    """
+    _, normals, edges = facets
+    worth = np.zeros(len(edges), np.bool_)
+    for e in range(len(edges)):
+        one, two = row(normals, edges[e, 2]), row(normals, edges[e, 3])
+        axis, first = unit(mixed(one, 1.0, two, 1.0)), row(arcs, e)
+        second = cross(axis, first)
+        turn = np.arccos(min(1.0, dot(axis, one))) + np.pi / 4.0 / QUARTER_TURNS
+        for step in range(QUARTER_TURNS):
+            angle = np.pi / 2.0 / QUARTER_TURNS * step
+            b = mixed(first, np.cos(angle), second, np.sin(angle))
+            c = mixed(first, -np.sin(angle), second, np.cos(angle))
+            wide = _after_turn(span_near(table, b), b, turn)
+            high = _after_turn(span_near(table, c), c, turn)
+            if min(wide, high) <= 0.0 or arcs[e, 6] * wide * high < limit:
+                worth[e] = True
+                break
+    return worth
+
+
+@leaf
+def _after_turn(span: Vector, direction: Vector, angle: float) -> float:
+    """Least length of a span along a direction that turns by at most `angle`."""
+    here = abs(dot(span, direction))
+    across = np.sqrt(max(0.0, dot(span, span) - here * here))
+    return float(here * np.cos(angle) - np.sin(angle) * across)
