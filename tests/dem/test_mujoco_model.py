@@ -8,7 +8,15 @@ from scipy.spatial.distance import pdist, squareform
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.parameters import ContactParameters
 from regolith_studio.dem.case import ReposeCase, prepare
-from regolith_studio.dem.engines.mujoco.model import N_WALLS, PARTICLE, Units, adhesion, build
+from regolith_studio.dem.engines.mujoco.model import (
+    ADHESION_GAP,
+    N_WALLS,
+    PARTICLE,
+    POINTS_PER_PAIR,
+    Units,
+    adhesion,
+    build,
+)
 from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
 from regolith_studio.dem.filling import start_places
 from regolith_studio.errors import InputError
@@ -71,8 +79,33 @@ def test_that_cohesion_is_the_pull_off_force_in_units_of_the_solver(boxes: Datas
     pull = adhesion(prepared)
     d, mean = prepared.diameters, prepared.mean_diameter
     force = 1.5 * np.pi * 0.010 * d / 4
-    assert 2 * pull == pytest.approx(force / (3075 * mean**3 * 9.81))
+    assert 2 * POINTS_PER_PAIR * pull == pytest.approx(force / (3075 * mean**3 * 9.81))
+    balls = prepare(boxes, ReposeCase(n_particles=100, cohesion="given", shapes="spheres"))
+    assert 2 * adhesion(balls) == pytest.approx(1.5 * np.pi * 0.010 * balls.diameters / 4 / _unit(balls))
     assert not adhesion(prepare(boxes, ReposeCase(n_particles=100))).any()
+
+
+def _unit(prepared) -> float:
+    """The solver's unit of force in newtons."""
+    return 3075 * prepared.mean_diameter**3 * 9.81
+
+
+@pytest.mark.parametrize(("share", "holds"), [(1.1, True), (0.9, False)])
+def test_that_a_ball_hangs_on_another_by_the_pull_off_force(share: float, holds: bool) -> None:
+    """Two balls of weight 1 a unit of adhesion: the lower hangs if the force is larger than its weight."""
+    spec = mujoco.MjSpec()
+    spec.option.gravity, spec.option.timestep = [0, 0, -1], 0.025
+    spec.option.cone, spec.option.solver = mujoco.mjtCone.mjCONE_ELLIPTIC, mujoco.mjtSolver.mjSOL_CG
+    ball = {"type": mujoco.mjtGeom.mjGEOM_SPHERE, "size": [0.5, 0, 0], "gap": ADHESION_GAP}
+    ball |= {"adhesion": share * np.pi / 12, "solref": [0.05, 1.0], "solimp": [0.95, 0.99, 0.05, 0.5, 2.0]}
+    spec.worldbody.add_geom(pos=[0, 0, 1], **ball)
+    body = spec.worldbody.add_body(pos=[0, 0, 1e-5])
+    body.add_freejoint()
+    body.add_geom(density=1.0, **ball)
+    model = spec.compile()
+    data = mujoco.MjData(model)
+    mujoco.mj_step(model, data, 400)
+    assert (data.qpos[2] > -0.01) == holds
 
 
 def test_that_rolling_resistance_opens_the_dimensions_of_a_contact(boxes: Dataset) -> None:

@@ -106,7 +106,7 @@ def order(prepared: Prepared, settings: YadeSettings, duration: float, after: St
             "fastest": settings.fastest * LENGTH / TIME,
             "calm": settings.calm * WEIGHT * LENGTH,
             "calm_time": settings.calm_time * TIME,
-            "longest_fill": (30.0 + 2.0 * height / settings.fastest) * TIME,
+            "longest_fill": (10.0 + 1.5 * height / settings.fastest) * TIME,
             "longest_rest": settings.longest_rest * TIME,
             "longest_lift": (2.0 * height / speed + 10.0) * TIME,
             "lift_speed": float(speed) * LENGTH / TIME,

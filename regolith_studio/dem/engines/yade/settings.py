@@ -45,11 +45,11 @@ class YadeSettings:
     staves: int = field(default=24, metadata={"label": "Blocks of the cylinder", "minimum": 8, "maximum": 96})
     fastest: float = field(default=4.0, metadata={"label": "Filling speed", "minimum": 0.1, "maximum": 100.0})
     calm: float = field(
-        default=1e-3, metadata={"label": "Rest: energy", "minimum": 1e-9, "maximum": 0.1, "decimals": 9}
+        default=5e-3, metadata={"label": "Rest: energy", "minimum": 1e-9, "maximum": 0.1, "decimals": 9}
     )
-    calm_time: float = field(default=3.0, metadata={"label": "Rest: time", "minimum": 0.1, "maximum": 1000.0})
+    calm_time: float = field(default=2.0, metadata={"label": "Rest: time", "minimum": 0.1, "maximum": 1000.0})
     longest_rest: float = field(
-        default=40.0, metadata={"label": "Longest wait", "minimum": 1.0, "maximum": 1e5}
+        default=20.0, metadata={"label": "Longest wait", "minimum": 1.0, "maximum": 1e5}
     )
     restarts: int = field(default=20, metadata={"label": "Restarts", "minimum": 0, "maximum": 1000})
     snapshots: int = field(default=60, metadata={"label": "Snapshots", "minimum": 2, "maximum": 10_000})
