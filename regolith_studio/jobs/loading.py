@@ -47,8 +47,16 @@ def load_particles(paths: Sequence[Path], unit: str = "um", repair: bool = True)
             problems.append(Problem(str(file.path), str(error)))
         yield Progress(done, len(files), file.path.name)
     if not particles:
-        raise FileError(problems[0].sentence if problems else "There is no file to read.")
+        raise FileError(_nothing_read(problems))
     return Loaded(uniquely_named(particles), tuple(problems))
+
+
+def _nothing_read(problems: Sequence[Problem]) -> str:
+    """The first file's sentence, and how many more there are."""
+    if not problems:
+        return "There is no file to read."
+    more = f" ({len(problems) - 1:,} more files could not be read either.)" if len(problems) > 1 else ""
+    return problems[0].sentence + more
 
 
 def files_in(paths: Sequence[Path], problems: list[Problem]) -> list[MeshFile]:

@@ -10,6 +10,7 @@ from regolith_studio.errors import FileError
 from regolith_studio.readers.formats import mesh_formats, mesh_suffixes
 from regolith_studio.readers.mesh_format import MeshFormat, ParsedMesh
 from regolith_studio.readers.sentences import printable, sentence_about
+from regolith_studio.readers.volume_formats import volume_formats, volume_suffixes
 
 LARGEST_COORDINATE = 1e40
 """Beyond it the sixth powers in the checks would leave the range of float64."""
@@ -55,6 +56,11 @@ def _format_of(data: bytes, path: Path) -> tuple[MeshFormat, tuple[str, ...]]:
         return shown, (f"The file is named {suffix_or_none} but holds {shown.label}.",)
     if named is not None:
         return named, ()
+    if path.name.lower().endswith(tuple(volume_suffixes() - set(volume_formats()["raw"].suffixes))):
+        raise FileError(
+            "is a volume of voxels, not a mesh: make particles of it with “regolith-studio extract”, or on "
+            "the page Scan of the window."
+        )
     raise FileError(
         f"is of no kind that is read here ({suffix or 'no suffix'}); "
         f"what is read are meshes in {', '.join(sorted(mesh_suffixes()))}."

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
+from regolith_studio.readers.formats import mesh_suffixes
 from regolith_studio.readers.plain_voxels import PlainVoxels
 from regolith_studio.readers.protocol import Message
 from regolith_studio.readers.sentences import printable, sentence_about
@@ -111,6 +112,8 @@ def volume_format_of(path: Path) -> tuple[VolumeFormat, tuple[str, ...]]:
         )
     if named is not None:
         return named, ()
+    if name.endswith(tuple(mesh_suffixes())):
+        raise FileError("is a mesh, not a volume: it is a particle already, open or describe it as it is.")
     raise FileError(
         f"is no volume that is read here ({printable(path.suffix) or 'no suffix'}); volumes end in "
         f"{', '.join(sorted(volume_suffixes()))}."

@@ -9,6 +9,7 @@ import pytest
 import tifffile
 
 from regolith_studio.errors import FileError, InputError
+from regolith_studio.readers import read_mesh
 from regolith_studio.readers.raw_names import layout_from_name
 from regolith_studio.readers.volumes import (
     RawLayout,
@@ -327,3 +328,12 @@ def test_that_the_name_of_a_raw_file_tells_its_layout_if_its_size_agrees(
 ) -> None:
     (tmp_path / name).write_bytes(bytes(nbytes))
     assert layout_from_name(tmp_path / name) == expected
+
+
+def test_that_a_mesh_among_volumes_and_a_volume_among_meshes_are_told_where_they_belong(tmp_path):
+    (tmp_path / "grain.ply").write_text("ply\nformat ascii 1.0\n")
+    with pytest.raises(FileError, match=r"grain\.ply is a mesh, not a volume"):
+        describe_volume(tmp_path / "grain.ply")
+    (tmp_path / "scan.nii.gz").write_bytes(b"\x1f\x8b")
+    with pytest.raises(FileError, match=r"scan\.nii\.gz is a volume of voxels, not a mesh"):
+        read_mesh(tmp_path / "scan.nii.gz")

@@ -57,7 +57,10 @@ def open_slices(path: Path, options: Mapping[str, Any]) -> SliceFiles:
     """
     paths = [path / str(name) for name in options.get("names") or ()]
     if not paths:
-        raise FileError(f"holds no slices; they end in {', '.join(SLICE_SUFFIXES)}.")
+        raise FileError(
+            "holds no slices: three images or more whose names differ in a number only, such as "
+            f"slice_001.tif ({', '.join(SLICE_SUFFIXES)})."
+        )
     first = _image(paths[0])
     size, unit, notes = _stated(paths[0])
     shape = (len(paths), *first.shape)
