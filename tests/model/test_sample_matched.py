@@ -133,3 +133,9 @@ def test_that_a_setting_out_of_range_is_refused(
 ) -> None:
     with pytest.raises(InputError, match="The turn must be 0 to 2 radians"):
         MODEL.fit(rough_sample(5, 4), SampleMatchedSettings(**({"l_max": 4} | changes)))
+
+
+def test_that_each_ellipsoid_is_lent_as_often_as_it_was_measured(rough_sample: Callable[..., Sample]) -> None:
+    fitted = MODEL.fit(rough_sample(50), SampleMatchedSettings(4, n_neighbours=7))
+    lent = np.bincount(fitted._neighbours.ravel(), minlength=50)
+    np.testing.assert_array_equal(lent, np.full(50, 7))

@@ -134,12 +134,18 @@ class SampleMatched:
 
     @cached_property
     def _neighbours(self) -> IntArray:
-        """Particles nearest in the two axis ratios, itself first, shape (n, k)."""
+        """Particles that may lend their ellipsoid: the nearest in the two axis ratios, shape (n, k).
+
+        Where a particle is not among the nearest of its neighbour, it stands there itself: so each ellipsoid
+        is lent as often as it was measured, and long and flat ones are not lost to the middle.
+        """
         ratios = self._axes.log_ratios[:, [0, 2]]
         spread = np.maximum(ratios.std(axis=0), 1e-9)
         count = min(self.settings.n_neighbours, len(ratios))
-        found = cKDTree(ratios / spread).query(ratios / spread, k=np.arange(1, count + 1))[1]
-        return np.asarray(found, dtype=np.int64)
+        found = np.asarray(cKDTree(ratios / spread).query(ratios / spread, k=np.arange(1, count + 1))[1])
+        own = np.arange(len(ratios))[:, None]
+        mutual = (found[found] == own[:, :, None]).any(axis=2)
+        return np.asarray(np.where(mutual, found, own), dtype=np.int64)
 
     def draw(self, n: int, seed: int, size_range: SizeRange | None = None) -> Draws:
         """`n` particles; their equivalent radii are the measured ones blurred, cut to the range if given.
