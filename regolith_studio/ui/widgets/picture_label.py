@@ -4,6 +4,8 @@ from PySide6.QtCore import QRectF, QSize, Qt
 from PySide6.QtGui import QPainter, QPaintEvent, QPixmap
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
+LEAST_HEIGHT = 80
+
 
 class PictureLabel(QWidget):
     """Shows PNG bytes, or a sentence where there are none.
@@ -12,21 +14,25 @@ class PictureLabel(QWidget):
     ----------
     placeholder
         The sentence.
+    least_scale
+        Share of its own height below which a picture is not shrunk; for labels in a scroll area.
     """
 
-    def __init__(self, placeholder: str, parent: QWidget | None = None) -> None:
+    def __init__(self, placeholder: str, least_scale: float = 0.0, parent: QWidget | None = None) -> None:
         super().__init__(parent)
+        self._least_scale = least_scale
         self._placeholder = placeholder
         self._picture = QPixmap()
         self.setAccessibleName(placeholder)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
-        self.setMinimumSize(120, 80)
+        self.setMinimumSize(120, LEAST_HEIGHT)
 
     def set_picture(self, content: bytes | None) -> None:
         """Show this PNG instead, or the sentence."""
         self._picture = QPixmap()
         if content:
             self._picture.loadFromData(content)
+        self.setMinimumHeight(max(LEAST_HEIGHT, int(self._least_scale * self._picture.height())))
         self.update()
 
     def is_empty(self) -> bool:

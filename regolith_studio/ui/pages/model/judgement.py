@@ -10,6 +10,7 @@ from PySide6.QtWidgets import (
     QHBoxLayout,
     QHeaderView,
     QLabel,
+    QScrollArea,
     QSpinBox,
     QStackedLayout,
     QTableWidget,
@@ -52,6 +53,8 @@ TIPS = (
     "Median distance to the nearest measured particle, over that between measured ones: 0 is a copy",
     "Draws thrown away",
 )
+LEGIBLE = 0.55
+"""Scale of the figures below which their panels are scrolled instead of shrunk."""
 
 
 class JudgementPanel(QWidget):
@@ -67,13 +70,14 @@ class JudgementPanel(QWidget):
         self.splits, self.repeats = QSpinBox(), QSpinBox()
         self.ranking = QTableWidget(0, len(HEADERS))
         self.notes = remark()
-        self.pictures = {name: PictureLabel(WAITING) for name in FIGURES}
+        self.pictures = {name: PictureLabel(WAITING, LEGIBLE) for name in FIGURES}
+        self.places = {name: _scrolled(label) for name, label in self.pictures.items()}
         self.tabs = tabs("model_figures", [(self._ranked(), "Ranking")])
         self.tables = {name: TableView(f"model_{name}", title) for name, (title, _) in TABLES.items()}
         for name, (title, _) in TABLES.items():
             self.tabs.addTab(self.tables[name], title)
         for name, title in FIGURES.items():
-            self.tabs.addTab(self.pictures[name], title)
+            self.tabs.addTab(self.places[name], title)
         inside = QWidget()
         column = QVBoxLayout(inside)
         column.setContentsMargins(0, 4, 0, 0)
@@ -111,7 +115,7 @@ class JudgementPanel(QWidget):
         """Show a study, finished or not, or nothing."""
         for name, label in self.pictures.items():
             label.set_picture(judged.pictures.get(name) if judged else None)
-            at = self.tabs.indexOf(label)
+            at = self.tabs.indexOf(self.places[name])
             self.tabs.setTabVisible(at, name != "components" or (judged is not None and not label.is_empty()))
         for name, view in self.tables.items():
             self.tabs.setTabVisible(self.tabs.indexOf(view), judged is not None)
@@ -180,3 +184,11 @@ class JudgementPanel(QWidget):
         self._stack.addWidget(PictureLabel(WAITING))
         self._stack.addWidget(filled)
         return page
+
+
+def _scrolled(label: PictureLabel) -> QScrollArea:
+    area = QScrollArea()
+    area.setWidgetResizable(True)
+    area.setFrameShape(QScrollArea.Shape.NoFrame)
+    area.setWidget(label)
+    return area
