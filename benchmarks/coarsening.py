@@ -109,14 +109,14 @@ def main() -> None:
     options = parser.parse_args()
     warm_up()
     rows: dict[str, list[list[float]]] = {}
-    evaluations: list[tuple[float, float, float, float]] = []
+    evaluations: list[list[float]] = []
     for index, path in enumerate(sorted(options.folder.glob("*.stl"))[: options.particles]):
         loaded = trimesh.load(path, force="mesh")
         target = Target.of(Mesh(loaded.vertices, loaded.faces))
         for name, values in compared(target, index, options.faces).items():
             rows.setdefault(name, []).append(values)
         evaluations.append(evaluation_times(target, options.faces))
-    report(rows, evaluations)
+    report(rows, evaluations, options.faces)
 
 
 def compared(target: Target, index: int, n_faces: int) -> dict[str, list[float]]:
@@ -147,30 +147,45 @@ def errors(target: Target, planes: HalfSpaces) -> list[float]:
     return [*relative, target.jaccard_distance(planes)]
 
 
-def evaluation_times(target: Target, n_faces: int) -> tuple[float, float, float, float]:
-    """Microseconds of one evaluation: plain, plain with IoU, ours with exact box, ours with IoU."""
-    plain, with_overlap = PlainLoss(target, False), PlainLoss(target, True)
+CASES = (
+    ("box on a facet", "descriptors", True),
+    ("box on a facet, IoU", "all", True),
+    ("exact box", "descriptors", False),
+    ("exact box, IoU", "all", False),
+)
+"""What our evaluation measures: the box, the preset of weights, whether the box must lie on a facet."""
+
+
+def evaluation_times(target: Target, n_faces: int) -> list[float]:
+    """Microseconds of one evaluation of the loss: plain, plain with IoU, ours in all `CASES`."""
     planes = unit(target, "exact", n_faces)
     points, normals, offsets = planes.points, planes.normals, planes.offsets
-    bare = LossFunction(target, LossWeights.from_preset("descriptors"))
-    full = LossFunction(target, LossWeights.from_preset("all"))
-    for ours in (bare, full):
-        ours(normals, offsets)
-    plain_times = [timed(lambda p=p: p(points))[1] * 1e3 for p in (plain, with_overlap)]
-    our_times = [timed(lambda f=f: [f(normals, offsets) for _ in range(50)])[1] * 20 for f in (bare, full)]
-    return plain_times[0], plain_times[1], our_times[0], our_times[1]
+    plain = [PlainLoss(target, overlap) for overlap in (False, True)]
+    ours = [
+        LossFunction(target, LossWeights.from_preset(preset), on_facets=on_facets)
+        for _, preset, on_facets in CASES
+    ]
+    for each in ours:
+        each.value(normals, offsets)
+    return [
+        *(timed(lambda p=p: [p(points) for _ in range(3)])[1] * 1e3 / 3 for p in plain),
+        *(timed(lambda f=f: [f.value(normals, offsets) for _ in range(100)])[1] * 10 for f in ours),
+    ]
 
 
-def report(rows: dict[str, list[list[float]]], evaluations: list[tuple[float, float, float, float]]) -> None:
+def report(rows: dict[str, list[list[float]]], evaluations: list[list[float]], n_faces: int) -> None:
     print("| method | V | S | Dmin | Dmax | AR | CH | Jaccard | ms median |")
     print("| --- | " + "--- | " * 8)
     for name, values in rows.items():
         table = np.array(values)
         shown = [*np.sqrt(np.mean(table[:, :6] ** 2, axis=0)), table[:, 6].mean()]
         print(f"| {name} | " + " | ".join(f"{v:.4f}" for v in shown) + f" | {np.median(table[:, 7]):.0f} |")
-    plain, overlap, ours, ours_overlap = np.median(np.array(evaluations), axis=0)
-    print(f"\none evaluation, exact box: plain {plain:.0f} us, ours {ours:.0f} us, ratio {plain / ours:.0f}")
-    print(f"with IoU: plain {overlap:.0f} us, ours {ours_overlap:.0f} us, ratio {overlap / ours_overlap:.0f}")
+    plain, overlap, *ours = np.median(np.array(evaluations), axis=0)
+    print(f"\n| one evaluation of the loss, {n_faces} faces | plain, us | ours, us | ratio |")
+    print("| --- | ---: | ---: | ---: |")
+    for (name, preset, _), microseconds in zip(CASES, ours, strict=True):
+        theirs = overlap if preset == "all" else plain
+        print(f"| {name} | {theirs:.0f} | {microseconds:.1f} | {theirs / microseconds:.0f} |")
 
 
 if __name__ == "__main__":

@@ -194,7 +194,7 @@ def _loss() -> Iterator[Contest]:
         yield Contest(
             "loss evaluation",
             "20 faces, exact box" + (", Jaccard distance" if overlap else ""),
-            lambda f=ours: f(normals, offsets),
+            lambda f=ours: f.value(normals, offsets),
             lambda f=theirs: f(points),
             "scipy's half-spaces, trimesh" + (", 4,000 points" if overlap else ""),
         )

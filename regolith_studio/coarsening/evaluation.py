@@ -5,11 +5,23 @@ from dataclasses import dataclass
 import numpy as np
 
 from regolith_studio.coarsening.core.box_search import FINE_ANGLE
-from regolith_studio.coarsening.core.evaluate import AREA, LONGEST, SHARED, SHORTEST, VOLUME, evaluate
+from regolith_studio.coarsening.core.evaluate import (
+    AREA,
+    BOX_ON_FACETS,
+    LEAST_BOX,
+    LONGEST,
+    NO_BOX,
+    SHARED,
+    SHORTEST,
+    VOLUME,
+    evaluate,
+    weighted_loss,
+)
 from regolith_studio.coarsening.core.intersection import FINE
 from regolith_studio.coarsening.loss import loss
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import JACCARD, LossWeights
+from regolith_studio.descriptors.catalogue import LOSS_KEYS
 from regolith_studio.descriptors.comparison import relative_errors
 from regolith_studio.geometry.arrays import FloatArray
 
@@ -36,20 +48,48 @@ class Evaluation:
 
 
 class LossFunction:
-    """Eq. 9 as a function of half-spaces; terms with weight 0 are not evaluated unless `everything`."""
+    """Eq. 9 as a function of half-spaces.
 
-    def __init__(self, target: Target, weights: LossWeights, everything: bool = False) -> None:
+    Parameters
+    ----------
+    everything
+        Whether to evaluate terms with weight 0 too.
+    on_facets
+        Whether the box of the polyhedron may be the least one with a side on a facet: many times as fast,
+        but no minimum; the particle's own stays the exact one.
+    """
+
+    def __init__(
+        self, target: Target, weights: LossWeights, everything: bool = False, on_facets: bool = False
+    ) -> None:
         self._target = target
         self._weights = weights
-        self._box = everything or any(weights[key] for key in BOX_KEYS)
+        self._box = NO_BOX
+        if everything or any(weights[key] for key in BOX_KEYS):
+            self._box = BOX_ON_FACETS if on_facets else LEAST_BOX
         self._overlap = everything or bool(weights[JACCARD])
+        self._wanted = np.array([target.descriptors[key] for key in LOSS_KEYS])
+        self._alphas = np.array([weights[key] for key in (*LOSS_KEYS, JACCARD)])
 
     def __call__(
         self, normals: FloatArray, offsets: FloatArray, sample_angle: float = FINE_ANGLE
     ) -> Evaluation | None:
         """Errors and loss, or ``None`` where the half-spaces bound no proper polyhedron."""
+        status, values = self._values(normals, offsets, sample_angle)
+        if status != FINE or values[SHORTEST] <= 0.0:
+            return None
+        return self._judged(values)
+
+    def value(self, normals: FloatArray, offsets: FloatArray, sample_angle: float = FINE_ANGLE) -> float:
+        """The loss alone, infinite where the half-spaces bound no proper polyhedron: quicker."""
+        status, values = self._values(normals, offsets, sample_angle)
+        if status != FINE or values[SHORTEST] <= 0.0:
+            return float("inf")
+        return weighted_loss(values, self._wanted, self._alphas)
+
+    def _values(self, normals: FloatArray, offsets: FloatArray, angle: float) -> tuple[int, FloatArray]:
         rays = self._target.rays
-        status, values = evaluate(
+        return evaluate(
             np.array(normals),
             np.array(offsets),
             rays.directions,
@@ -59,11 +99,8 @@ class LossFunction:
             rays.weight,
             self._box,
             self._overlap,
-            sample_angle,
+            angle,
         )
-        if status != FINE or values[SHORTEST] <= 0.0:
-            return None
-        return self._judged(values)
 
     def _judged(self, values: FloatArray) -> Evaluation:
         volume, area, shared = float(values[VOLUME]), float(values[AREA]), float(values[SHARED])

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from regolith_studio.coarsening.core.box import Solid
+from regolith_studio.coarsening.core.box import Solid, box_on_facets
 from regolith_studio.coarsening.core.box_search import local_boxes
 from regolith_studio.coarsening.core.intersection import DEGENERATE, FINE, edges_of, intersect
 from regolith_studio.coarsening.core.measures import facets_of, volume_of
@@ -12,6 +12,8 @@ from regolith_studio.geometry.compiled import kernel
 
 VOLUME, AREA, SHORTEST, LONGEST, SHARED, FACETS = 0, 1, 2, 3, 4, 5
 """Places in the result of :func:`evaluate`."""
+NO_BOX, BOX_ON_FACETS, LEAST_BOX = 0, 1, 2
+"""Which box to measure."""
 
 
 @kernel
@@ -23,13 +25,14 @@ def evaluate(
     distance: FloatArray,
     sign: FloatArray,
     weight: float,
-    with_box: bool,
+    box: int,
     with_overlap: bool,
     sample_angle: float,
 ) -> tuple[int, FloatArray]:
     """Status of the intersection, and volume, area, shortest and longest box edge, shared volume, facets.
 
-    What is not asked for is NaN. The rays are those of :class:`regolith_studio.coarsening.target.RayTable`.
+    What is not asked for is NaN; `box` is NO_BOX, BOX_ON_FACETS or LEAST_BOX. The rays are those of
+    :class:`regolith_studio.coarsening.target.RayTable`.
     """
     values = np.full(6, np.nan)
     status, vertices, triples = intersect(normals, offsets)
@@ -39,8 +42,12 @@ def evaluate(
     area, _ = facets_of(normals, offsets, vertices, edges)
     values[VOLUME], values[AREA] = volume_of(offsets, area), np.sum(area)
     values[FACETS] = np.sum(area > 0.0)
-    if with_box:
-        boxes = local_boxes(Solid(vertices, normals, area, edges), 1e-3, sample_angle, np.empty((0, 3, 3)))
+    solid = Solid(vertices, normals, area, edges)
+    if box == BOX_ON_FACETS:
+        extents = box_on_facets(solid)
+        values[SHORTEST], values[LONGEST] = extents.min(), extents.max()
+    elif box == LEAST_BOX:
+        boxes = local_boxes(solid, 1e-3, sample_angle, np.empty((0, 3, 3)))
         if len(boxes.volumes) == 0:
             return DEGENERATE, values
         values[SHORTEST], values[LONGEST] = boxes.extents[0].min(), boxes.extents[0].max()
@@ -49,3 +56,27 @@ def evaluate(
         exits(normals, offsets, directions, radius, plane)
         values[SHARED] = shared_volume(first, distance, sign, weight, radius)
     return status, values
+
+
+@kernel
+def weighted_loss(values: FloatArray, wanted: FloatArray, weights: FloatArray) -> float:
+    """Eq. 9 for a particle of unit volume.
+
+    Parameters
+    ----------
+    values
+        As from :func:`evaluate`.
+    wanted, weights
+        Volume, sphericity, shortest and longest box edge, aspect ratio and volume of the convex hull of the
+        particle, shape (6,); their weights, and last that of the Jaccard distance, shape (7,).
+    """
+    volume, shortest, longest = values[VOLUME], values[SHORTEST], values[LONGEST]
+    sphericity = np.pi ** (1.0 / 3.0) * (6.0 * volume) ** (2.0 / 3.0) / values[AREA]
+    loss = 0.0
+    found = (volume, sphericity, shortest, longest, longest / shortest, volume)
+    for i in range(6):
+        if weights[i] > 0.0:
+            loss += weights[i] * abs(found[i] / wanted[i] - 1.0)
+    if weights[6] > 0.0:
+        loss += weights[6] * (1.0 - values[SHARED] / (1.0 + volume - values[SHARED]))
+    return loss

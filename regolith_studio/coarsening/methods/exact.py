@@ -8,7 +8,7 @@ import numpy as np
 from regolith_studio.coarsening.bounds import sphericity_reason
 from regolith_studio.coarsening.core.box_search import DENSE_ANGLE, FINE_ANGLE, SAMPLE_ANGLE
 from regolith_studio.coarsening.core.cuts import SMALLEST_FACET
-from regolith_studio.coarsening.evaluation import Evaluation, LossFunction
+from regolith_studio.coarsening.evaluation import LossFunction
 from regolith_studio.coarsening.exact.course import Attempt, compromise, course, densely_checked, start_planes
 from regolith_studio.coarsening.exact.problem import Problem
 from regolith_studio.coarsening.exact.request import CONDITION_KEYS, EXACT, Request, reason_for
@@ -103,12 +103,12 @@ class ExactMethod:
         for tried in range(1, total + 1):
             planes = start_planes(target, n_faces, rng)
             if tried == 1:
-                yield MethodStep(0, total, _loss(judge(*planes, SAMPLE_ANGLE)), HalfSpaces(*planes))
+                yield MethodStep(0, total, judge.value(*planes, SAMPLE_ANGLE), HalfSpaces(*planes))
             for found in course(target, free, full, planes, level.free_steps, level.bound_steps):
                 if not found.better_than(best):
                     continue
                 best = found
-                history.append(_loss(judge(best.normals, best.offsets, SAMPLE_ANGLE)))
+                history.append(judge.value(best.normals, best.offsets, SAMPLE_ANGLE))
                 yield MethodStep(tried, total, history[-1], HalfSpaces(best.normals, best.offsets))
             if tried >= level.starts and best is not None and best.exact:
                 best = confirmed(request, (fine, dense), best)
@@ -120,7 +120,7 @@ class ExactMethod:
             rest = request.problem(target.rays, SAMPLE_ANGLE, sphericity=False)
             for begun in (planes, (best.normals, best.offsets)):
                 for found in compromise(full, rest, begun, COMPROMISE_STEPS):
-                    value = _loss(judge(found.normals, found.offsets))
+                    value = judge.value(found.normals, found.offsets)
                     if value < min(history[-1:], default=np.inf):
                         best = found
                         history.append(value)
@@ -154,10 +154,6 @@ def real_planes(found: Attempt) -> HalfSpaces:
     areas = facet_areas(planes)
     kept = areas >= SMALLEST_FACET
     return planes if kept.all() else HalfSpaces(found.normals[kept], found.offsets[kept])
-
-
-def _loss(evaluation: Evaluation | None) -> float:
-    return float("inf") if evaluation is None else evaluation.loss
 
 
 METHOD = ExactMethod()
