@@ -96,6 +96,12 @@ def inputs_of(session: Session) -> list[str]:
     return list(dict.fromkeys(SAMPLE if path.startswith("sample:") else path for path in paths)) or [SAMPLE]
 
 
+def input_shown(session: Session) -> str:
+    """Where the particle on screen came from; the sample if it came from no file."""
+    source = session.selected.particle.source if session.selected else None
+    return source.path if source else SAMPLE
+
+
 def without_file(session: Session) -> Sequence[str]:
     """Ids of open particles that came from no file: a project cannot bring them back."""
     return [entry.id for entry in session.particles if entry.particle.source is None]

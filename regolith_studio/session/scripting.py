@@ -23,10 +23,21 @@ def as_command(choices: Choices, inputs: list[str]) -> str:
     return shlex.join(words)
 
 
-def as_python(choices: Choices, inputs: list[str]) -> str:
-    """A script that fits and coarsens the first particle as the window does."""
-    sample = inputs[:1] in ([], [SAMPLE])
-    reading = "sample_particles()[0]" if sample else f"read_mesh({inputs[0]!r}, unit={choices.unit!r})"
+def as_python(choices: Choices, source: str) -> str:
+    """A script that fits and coarsens one particle as the window does.
+
+    Parameters
+    ----------
+    source
+        Path of its mesh, or ``sample:`` and the name of a shipped particle; the first of them if there is
+        no name.
+    """
+    kind, _, name = source.partition(":")
+    sample = kind == "sample"
+    reading = f"read_mesh({source!r}, unit={choices.unit!r})"
+    if sample:
+        named = "" if source == SAMPLE or not name else f" if each.name == {name!r}"
+        reading = f"next(each for each in sample_particles(){named})"
     body = "reconstruct(fit, l_max, level)" if choices.target == "fit" else "particle.mesh"
     doors = "coarsen, fit_harmonics" if sample else "coarsen, fit_harmonics, read_mesh"
     lines = [

@@ -79,7 +79,7 @@ class Actions:
         pages: Mapping[str, Page],
         run: Callable[..., object],
     ) -> None:
-        self._window = window
+        self._window, self._pages = window, pages
         self._menus: dict[str, QMenu] = {}
         self._icons: list[tuple[QAction, str]] = []
         self._of_page: dict[str, list[QAction]] = {key: [] for key in pages}
@@ -107,6 +107,13 @@ class Actions:
         for title in (PAGE_MENU, "Look &from"):
             if menu := self._menus.get(title):
                 menu.menuAction().setVisible(any(each.isVisible() for each in menu.actions()))
+
+    def places(self) -> dict[str, str]:
+        """Where each command belongs: its page, or its menu."""
+        titles = {key: page.title for key, page in self._pages.items()}
+        return {
+            name: titles.get(name.split(".")[0]) or each.data() or "" for name, each in self.by_name.items()
+        }
 
     def palette(self, pages: Mapping[str, Page], run: Callable[..., object]) -> list[Command]:
         """Every command of the window and of all pages, for the palette."""

@@ -14,7 +14,7 @@ from regolith_studio.session.choices import Choices
 from regolith_studio.session.opening import FileKind, kind_of_all
 from regolith_studio.session.plan import Kind
 from regolith_studio.session.preferences import Preferences
-from regolith_studio.session.project import inputs_of
+from regolith_studio.session.project import input_shown, inputs_of
 from regolith_studio.session.recipe import SAMPLE, Recipe, read_recipe
 from regolith_studio.session.scripting import as_command, as_python
 from regolith_studio.session.session import Session
@@ -109,7 +109,7 @@ class Commands(QObject):
 
     def copy_python(self) -> None:
         """Put a script that does the same onto the clipboard."""
-        QGuiApplication.clipboard().setText(as_python(self._session.choices, inputs_of(self._session)))
+        QGuiApplication.clipboard().setText(as_python(self._session.choices, input_shown(self._session)))
         self._toast.note("The script is on the clipboard.")
 
     def export(self) -> None:
@@ -156,10 +156,14 @@ class Commands(QObject):
         """Say where the dataset is."""
         self._toast.note(f"The dataset is in {folder}.")
 
-    def _open_recipe(self, path: Path) -> int:
+    def _open_recipe(self, path: Path) -> int | None:
         recipe = read_recipe(path)
         names = {each.name for each in dataclasses.fields(Choices)} - {"selected"}
         self._session.choose(**{name: getattr(recipe.choices(), name) for name in names})
+        if recipe.volumes or recipe.population:
+            self._toast.note("Its choices are taken; Run as a batch makes its grains and virtual particles.")
+        if not recipe.inputs:
+            return None
         inputs = [path.parent / name for name in recipe.inputs if name != SAMPLE]
         return self._session.open(inputs, recipe.unit) if inputs else self._session.open_sample()
 

@@ -18,13 +18,15 @@ from regolith_studio.ui.batches import Batches
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.dialogs.closing import may_close, worth_asking
 from regolith_studio.ui.dialogs.command_palette import CommandPalette
-from regolith_studio.ui.dialogs.help import about_dialog, shortcuts_dialog
+from regolith_studio.ui.dialogs.help import about_dialog
+from regolith_studio.ui.dialogs.shortcuts import ShortcutsDialog
 from regolith_studio.ui.memory import LayoutMemory
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.page_stack import PageStack
 from regolith_studio.ui.pages import pages
 from regolith_studio.ui.panels.tasks import TasksPanel
 from regolith_studio.ui.projects import Projects
+from regolith_studio.ui.shortcuts import Shortcuts
 from regolith_studio.ui.theme import THEMES, apply_theme, choose_theme, current_theme
 from regolith_studio.ui.tour import start_tour
 from regolith_studio.ui.widgets.toast import Toast
@@ -65,6 +67,7 @@ class MainWindow(QMainWindow):
         self.statusBar().addWidget(self.tasks, 1)
         self.statusBar().setSizeGripEnabled(False)
         self.menus = Actions(self, self._command_table(), self.pages.pages, self.pages.run)
+        self.shortcuts = Shortcuts(self.menus.by_name, tuple(self.pages.pages), preferences)
         self.pages.changed.connect(self.menus.show_page)
         self._apply_theme()
         self.resize(1480, 900)
@@ -109,7 +112,7 @@ class MainWindow(QMainWindow):
             "go": self.go,
             "next_page": partial(self.pages.neighbour, 1),
             "previous_page": partial(self.pages.neighbour, -1),
-            "shortcuts": lambda: shortcuts_dialog(self, list(self.menus.by_name.values())).open(),
+            "shortcuts": lambda: ShortcutsDialog(self.shortcuts, self.menus.places(), self).open(),
             "about": lambda: about_dialog(self, self._views).open(),
         }
 

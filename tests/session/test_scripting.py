@@ -1,5 +1,6 @@
 """What is copied out of the window runs, and does what the window did."""
 
+import json
 import shlex
 from pathlib import Path
 
@@ -10,7 +11,7 @@ from regolith_studio.geometry.directions import icosphere
 from regolith_studio.imaging.stl import stl_bytes
 from regolith_studio.jobs.runners.inline import InlineRunner
 from regolith_studio.session.choices import Choices
-from regolith_studio.session.project import Project, inputs_of, read_project, without_file
+from regolith_studio.session.project import Project, input_shown, inputs_of, read_project, without_file
 from regolith_studio.session.recipe import SAMPLE
 from regolith_studio.session.scripting import as_command, as_python
 from regolith_studio.session.session import Session
@@ -35,7 +36,7 @@ def session(grain: Path) -> Session:
 def test_that_the_copied_script_finds_the_polyhedron_of_the_window(session: Session) -> None:
     session.choose(star_point="kernel_centre", reference="ellipsoid")
     names: dict[str, object] = {}
-    exec(as_python(session.choices, inputs_of(session)), names)
+    exec(as_python(session.choices, input_shown(session)), names)
     done, shown = names["done"], session.results.coarsened
     assert shown is not None
     assert done.loss == pytest.approx(shown.loss, rel=1e-9)  # type: ignore[attr-defined]
@@ -44,18 +45,36 @@ def test_that_the_copied_script_finds_the_polyhedron_of_the_window(session: Sess
 
 def test_that_the_script_of_the_sample_and_of_the_bare_particle_compile() -> None:
     for choices in (CHOICES, CHOICES.replaced(target="particle")):
-        compile(as_python(choices, [SAMPLE]), "copied", "exec")
+        compile(as_python(choices, SAMPLE), "copied", "exec")
 
 
 def test_that_the_copied_command_is_understood_and_coarsens(
     session: Session, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    session.choose(weights=session.choices.weights.replaced(volume=0.5), star_point="kernel_centre")
+    weights = session.choices.weights.replaced(volume=0.5)
+    session.choose(weights=weights, star_point="kernel_centre", level=4)  # the window's and the command's
     words = shlex.split(as_command(session.choices, inputs_of(session)))
     assert words[0] == "regolith-studio"
     monkeypatch.chdir(tmp_path)
     assert run(words[1:]) == 0
     assert (tmp_path / "coarsened" / "a grain.stl").exists()
+    told = json.loads((tmp_path / "coarsened" / "coarsening.json").read_text())
+    shown = session.results.coarsened
+    assert shown is not None
+    (row,) = told["particles"] if isinstance(told, dict) else told
+    assert row["errors"] == pytest.approx(dict(shown.errors), abs=1e-9)
+
+
+def test_that_the_copied_script_takes_the_particle_on_screen() -> None:
+    session = Session(InlineRunner(), CHOICES)
+    session.open_sample()
+    session.select("angular-2")
+    names: dict[str, object] = {}
+    exec(as_python(session.choices, input_shown(session)), names)
+    shown = session.results.coarsened
+    assert shown is not None
+    assert names["particle"].name == "angular-2"  # type: ignore[attr-defined]
+    assert names["done"].errors == pytest.approx(dict(shown.errors), abs=1e-9)  # type: ignore[attr-defined]
 
 
 def test_that_a_project_brings_back_particles_choices_and_pages(session: Session, tmp_path: Path) -> None:

@@ -1,14 +1,11 @@
-"""About the program, and the list of its shortcuts."""
+"""About the program."""
 
-from collections.abc import Sequence
 from importlib.metadata import PackageNotFoundError, version
 
 from PySide6.QtCore import Qt
-from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import (
     QDialog,
     QDialogButtonBox,
-    QFormLayout,
     QHBoxLayout,
     QLabel,
     QVBoxLayout,
@@ -18,13 +15,6 @@ from PySide6.QtWidgets import (
 from regolith_studio import __version__
 from regolith_studio.ui.icons import pixmap
 from regolith_studio.ui.widgets.labels import heading, remark
-
-MOUSE = (
-    ("Left drag", "Turn the particle"),
-    ("Right or middle drag, Shift + drag", "Shift the picture"),
-    ("Ctrl + drag", "Roll the picture"),
-    ("Wheel", "Zoom"),
-)
 
 
 def about_dialog(parent: QWidget, renderer: str) -> QDialog:
@@ -47,24 +37,7 @@ def about_dialog(parent: QWidget, renderer: str) -> QDialog:
     return _closed(dialog, row)
 
 
-def shortcuts_dialog(parent: QWidget, actions: Sequence[QAction]) -> QDialog:
-    """Every action that has a shortcut, and what the mouse does."""
-    dialog = QDialog(parent)
-    dialog.setWindowTitle("Keyboard and mouse")
-    form = QFormLayout()
-    form.setHorizontalSpacing(24)
-    form.addRow(heading("Keyboard"))
-    for action in actions:
-        if not action.shortcut().isEmpty():
-            keys = action.shortcut().toString(QKeySequence.SequenceFormat.NativeText)
-            form.addRow(keys, QLabel(action.text().replace("&", "").rstrip(" …")))
-    form.addRow(heading("Mouse in the views"))
-    for gesture, meaning in MOUSE:
-        form.addRow(gesture, QLabel(meaning))
-    return _closed(dialog, form)
-
-
-def _closed(dialog: QDialog, content: QHBoxLayout | QFormLayout) -> QDialog:
+def _closed(dialog: QDialog, content: QHBoxLayout) -> QDialog:
     buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close)
     buttons.rejected.connect(dialog.reject)
     layout = QVBoxLayout(dialog)

@@ -1,0 +1,152 @@
+"""Every command with its keys, to be read, searched and changed; and what the mouse does."""
+
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QKeySequence
+from PySide6.QtWidgets import (
+    QAbstractItemView,
+    QDialog,
+    QDialogButtonBox,
+    QFormLayout,
+    QHBoxLayout,
+    QHeaderView,
+    QKeySequenceEdit,
+    QLabel,
+    QLineEdit,
+    QPushButton,
+    QTableWidget,
+    QTableWidgetItem,
+    QVBoxLayout,
+    QWidget,
+)
+
+from regolith_studio.errors import InputError
+from regolith_studio.ui.shortcuts import Shortcuts, plain
+from regolith_studio.ui.widgets.labels import heading, remark
+
+MOUSE = (
+    ("Left drag", "Turn the particle"),
+    ("Right or middle drag, Shift + drag", "Shift the picture"),
+    ("Ctrl + drag", "Roll the picture"),
+    ("Wheel", "Zoom"),
+)
+
+
+class ShortcutsDialog(QDialog):
+    """A table of commands; the keys of the chosen one are edited below it."""
+
+    def __init__(self, shortcuts: Shortcuts, titles: dict[str, str], parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setWindowTitle("Keyboard and mouse")
+        self.setObjectName("shortcuts_dialog")
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        self.resize(620, 640)
+        self._shortcuts, self._titles = shortcuts, titles
+        self.search = QLineEdit()
+        self.search.setObjectName("shortcuts_search")
+        self.search.setAccessibleName("Search commands")
+        self.search.setPlaceholderText("Search commands and keys")
+        self.search.setClearButtonEnabled(True)
+        self.table = QTableWidget(0, 2)
+        self.table.setObjectName("shortcuts_table")
+        self.table.setAccessibleName("Commands and their keys")
+        self.table.setHorizontalHeaderLabels(["Command", "Keys"])
+        self.table.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
+        self.table.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)
+        self.table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
+        self.table.setTabKeyNavigation(False)
+        self.table.setShowGrid(False)
+        self.table.verticalHeader().hide()
+        self.table.horizontalHeader().setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
+        self.table.horizontalHeader().setSectionResizeMode(1, QHeaderView.ResizeMode.ResizeToContents)
+        self.editor = QKeySequenceEdit()
+        self.editor.setObjectName("shortcuts_keys")
+        self.editor.setAccessibleName("New keys of the chosen command")
+        self.editor.setMaximumSequenceLength(1)
+        self.editor.setClearButtonEnabled(True)
+        self.change, self.usual, self.all_usual = (
+            QPushButton(words) for words in ("Change", "Usual keys", "All usual keys")
+        )
+        for button, name in ((self.change, "change"), (self.usual, "usual"), (self.all_usual, "all_usual")):
+            button.setObjectName(f"shortcuts_{name}")
+            button.setAutoDefault(False)
+        self.sentence = remark(role="warning")
+        self._arrange()
+        self.search.textChanged.connect(lambda _: self._fill())
+        self.table.itemSelectionChanged.connect(self._show_chosen)
+        self.change.clicked.connect(lambda: self._try(self.editor.keySequence().toString()))
+        self.usual.clicked.connect(lambda: self._try(self._shortcuts.usual[self.chosen()]))
+        self.all_usual.clicked.connect(self._reset)
+        self._fill()
+
+    def chosen(self) -> str:
+        """Name of the command that is chosen; empty for none."""
+        row = self.table.currentRow()
+        item = self.table.item(row, 0) if row >= 0 else None
+        return str(item.data(Qt.ItemDataRole.UserRole)) if item else ""
+
+    def choose(self, name: str) -> None:
+        """Choose a command by its name, if it is listed."""
+        for row in range(self.table.rowCount()):
+            item = self.table.item(row, 0)
+            if item is not None and item.data(Qt.ItemDataRole.UserRole) == name:
+                self.table.selectRow(row)
+
+    def _fill(self) -> None:
+        name, words = self.chosen(), self.search.text().lower().split()
+        rows = []
+        for key, action in self._shortcuts.actions.items():
+            title = f"{self._titles[key]}: {plain(action)}" if self._titles.get(key) else plain(action)
+            keys = action.shortcut().toString(QKeySequence.SequenceFormat.NativeText)
+            if all(word in f"{title} {keys}".lower() for word in words):
+                rows.append(
+                    (key, title, keys, keys and self._shortcuts.usual[key] != self._shortcuts.keys(key))
+                )
+        self.table.setRowCount(len(rows))
+        for row, (key, title, keys, own) in enumerate(rows):
+            item = QTableWidgetItem(title)
+            item.setData(Qt.ItemDataRole.UserRole, key)
+            self.table.setItem(row, 0, item)
+            self.table.setItem(row, 1, QTableWidgetItem(f"{keys} *" if own else keys))
+        self.choose(name)
+        self._show_chosen()
+
+    def _show_chosen(self) -> None:
+        name = self.chosen()
+        for widget in (self.editor, self.change, self.usual):
+            widget.setEnabled(bool(name))
+        self.editor.setKeySequence(QKeySequence(self._shortcuts.keys(name) if name else ""))
+        self.sentence.setText("")
+
+    def _try(self, keys: str) -> None:
+        try:
+            self._shortcuts.change(self.chosen(), keys)
+        except InputError as error:
+            self.sentence.setText(str(error))
+            return
+        self._fill()
+
+    def _reset(self) -> None:
+        self._shortcuts.reset()
+        self._fill()
+
+    def _arrange(self) -> None:
+        row = QHBoxLayout()
+        row.addWidget(QLabel("Keys:"))
+        row.addWidget(self.editor, 1)
+        for button in (self.change, self.usual, self.all_usual):
+            row.addWidget(button)
+        mouse = QFormLayout()
+        mouse.setHorizontalSpacing(24)
+        for gesture, meaning in MOUSE:
+            mouse.addRow(gesture, QLabel(meaning))
+        buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close)
+        buttons.button(QDialogButtonBox.StandardButton.Close).setAutoDefault(False)  # Enter searches
+        buttons.rejected.connect(self.reject)
+        layout = QVBoxLayout(self)
+        layout.addWidget(self.search)
+        layout.addWidget(self.table, 1)
+        layout.addLayout(row)
+        layout.addWidget(self.sentence)
+        layout.addWidget(heading("Mouse in the views"))
+        layout.addLayout(mouse)
+        layout.addWidget(buttons)

@@ -1,0 +1,109 @@
+"""Shortcuts of one's own: what each command has, what it may have, and what the preferences keep."""
+
+from collections.abc import Mapping
+
+from PySide6.QtGui import QAction, QKeySequence
+
+from regolith_studio.errors import InputError
+from regolith_studio.session.preferences import Preferences
+
+SHORTCUTS = "shortcuts"
+"""In the preferences of the window: keys by the name of the command, where they are not the usual ones."""
+_NEEDED = {
+    "Tab",
+    "Shift+Tab",
+    "Return",
+    "Enter",
+    "Esc",
+    "Space",
+    "Backspace",
+    "Del",
+    "Up",
+    "Down",
+    "Left",
+    "Right",
+}
+
+
+class Shortcuts:
+    """Those of all commands; a conflict is between commands that can be seen together.
+
+    Parameters
+    ----------
+    actions
+        By name; those of a page begin with its key and a dot, and work while the page is seen.
+    pages
+        Keys of the pages.
+    """
+
+    def __init__(
+        self, actions: Mapping[str, QAction], pages: tuple[str, ...], preferences: Preferences
+    ) -> None:
+        self.actions = {name: each for name, each in actions.items() if each.menu() is None and each.text()}
+        self._pages, self._preferences = pages, preferences
+        self.usual = {name: each.shortcut().toString() for name, each in self.actions.items()}
+        kept = preferences.window.get(SHORTCUTS)
+        for name, keys in kept.items() if isinstance(kept, dict) else ():
+            if name in self.actions and isinstance(keys, str) and not self.conflict(name, keys):
+                self._set(name, keys)
+
+    def keys(self, name: str) -> str:
+        """Of one command, as ``Ctrl+Shift+P``; empty for none."""
+        return self.actions[name].shortcut().toString()
+
+    def conflict(self, name: str, keys: str) -> str:
+        """One sentence on why a command cannot have these keys, or nothing."""
+        sequence = QKeySequence(keys)
+        text = sequence.toString()
+        if not keys:
+            return ""
+        if not text or sequence.count() != 1:
+            return f"{keys} is no key that a command can have."
+        if text in _NEEDED or (len(text) == 1 and text.isprintable()):
+            return f"{text} is needed for typing and for moving about; add Ctrl or Alt."
+        for other in self.actions:
+            if other != name and self.keys(other) == text and self._meet(name, other):
+                return f"{text} already runs “{plain(self.actions[other])}”."
+        return ""
+
+    def change(self, name: str, keys: str) -> None:
+        """Give a command other keys, and keep them.
+
+        Raises
+        ------
+        InputError
+            If another command has them, or they are needed otherwise.
+        """
+        if sentence := self.conflict(name, keys):
+            raise InputError(sentence)
+        self._set(name, keys)
+        self._keep()
+
+    def reset(self) -> None:
+        """Give every command its usual keys."""
+        for name, keys in self.usual.items():
+            self._set(name, keys)
+        self._keep()
+
+    def _set(self, name: str, keys: str) -> None:
+        action = self.actions[name]
+        before = action.shortcut().toString()
+        action.setShortcut(QKeySequence(keys))
+        tip = action.toolTip().removesuffix(f" ({before})") if before else action.toolTip()
+        now = action.shortcut().toString()
+        action.setToolTip(f"{tip} ({now})" if now else tip)
+
+    def _keep(self) -> None:
+        changed = {name: self.keys(name) for name, usual in self.usual.items() if self.keys(name) != usual}
+        self._preferences.window = self._preferences.window | {SHORTCUTS: changed}
+        self._preferences.save()
+
+    def _meet(self, one: str, other: str) -> bool:
+        """Whether both can be run on the same page."""
+        owners = [name.split(".")[0] if name.split(".")[0] in self._pages else "" for name in (one, other)]
+        return "" in owners or owners[0] == owners[1]
+
+
+def plain(action: QAction) -> str:
+    """The words of a command, without marks and dots."""
+    return action.text().replace("&", "").rstrip(" …")
