@@ -275,3 +275,30 @@ def test_that_a_probability_map_is_thresholded_by_its_share(page, tmp_path, wait
     wait(lambda: page.preview.level == pytest.approx(0.8 * 255), SECONDS)
     sizes = np.bincount(page.preview.labels.array.ravel())[1:]
     assert sizes.sum() == pytest.approx(np.count_nonzero(truth), rel=0.01)
+
+
+def test_that_dark_grains_are_suspected_where_one_body_fills_the_frame(page, tmp_path, wait):
+    np.save(tmp_path / "dark.npy", 255 - np.ascontiguousarray(sample_volume("grey").array[:90, :80, :70].T))
+    page.read(VolumeInput(tmp_path / "dark.npy", 2.3, kind="grey"))
+    wait(lambda: page.preview is not None, SECONDS)
+    assert "if the grains are dark, tick that below" in page.steps.found.text()
+    page.controls.dark.click()
+    wait(lambda: "dark" not in page.steps.found.text(), SECONDS)
+    assert page.preview.n_grains > 10
+
+
+def test_that_the_voxel_size_of_one_volume_is_offered_for_the_next(page, part, wait):
+    page.open(part)
+    wait(lambda: page.findChild(VolumeDialog) is not None, SECONDS)
+    dialog = page.findChild(VolumeDialog)
+    assert (dialog.edges[0].value(), dialog.unit.currentData()) == (1.0, "um")
+    dialog.edges[0].setValue(0.4)
+    dialog.unit.setCurrentIndex(dialog.unit.findData("mm"))
+    dialog.accept()
+    wait(lambda: page.preview is not None and page.findChild(VolumeDialog) is None, SECONDS)
+    assert page.scan.volume.voxel_size.tolist() == [400.0, 400.0, 400.0]
+    page.open(part)
+    wait(lambda: page.findChild(VolumeDialog) is not None, SECONDS)
+    dialog = page.findChild(VolumeDialog)
+    assert (dialog.edges[2].value(), dialog.unit.currentData()) == (0.4, "mm")
+    dialog.reject()

@@ -7,8 +7,8 @@ from regolith_studio.imaging.segmentation.segment import Segmentation
 from regolith_studio.jobs.scanning import Scan
 from regolith_studio.ui.widgets.labels import heading, remark
 
-_MOST_OF_IT = 0.4
-"""Share of the voxels that no single grain of a sample has."""
+_DENSEST, _LARGEST = 0.7, 0.4
+"""Shares of the voxels that the grains of no packing have, and that no single grain has."""
 
 
 class StepsPanel(QWidget):
@@ -90,11 +90,12 @@ def _too_small(found: Segmentation, least: int) -> str:
 
 def _too_large(found: Segmentation) -> str:
     """What a new user must be told who sees one body instead of many grains."""
-    if found.sizes.max() < _MOST_OF_IT * found.labels.array.size:
+    voxels = found.labels.array.size
+    if found.sizes.sum() < _DENSEST * voxels and found.sizes.max() < _LARGEST * voxels:
         return ""
     return (
-        "One grain fills most of it: if the grains are dark, tick that below; else move the level or "
-        "make h smaller. "
+        "Grains fill most of it and hang together: if the grains are dark, tick that below; else move the "
+        "level or make h smaller. "
     )
 
 
