@@ -88,7 +88,7 @@ def test_that_a_new_user_gets_to_a_rocky_script_and_a_yade_run(chosen, wait, tmp
     assert (tmp_path / "yade" / "particles.csv").exists()
     copy = chosen.exports.findChild(QPushButton, "dataset_copy_yade")
     QTest.mouseClick(copy, Qt.MouseButton.LeftButton)
-    assert QGuiApplication.clipboard().text() == f"yade {tmp_path / 'yade'}/yade_case.py"
+    assert QGuiApplication.clipboard().text() == f"yade -j1 {tmp_path / 'yade'}/yade_case.py"
     assert chosen.session.shelf.get("dataset_folder") == folder
 
 
