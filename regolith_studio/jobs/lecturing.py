@@ -15,6 +15,7 @@ from regolith_studio.coarsening.progress import MethodStep
 from regolith_studio.coarsening.result import Coarsened
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import LossWeights
+from regolith_studio.descriptors.catalogue import LOSS_KEYS
 from regolith_studio.descriptors.comparison import relative_errors
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.errors import GeometryError, InputError
@@ -36,9 +37,6 @@ from regolith_studio.model.spectra import with_amplitudes
 MOST_STEPS = 2_000
 """Iterations of a lesson at most: every one of them keeps its polyhedra."""
 SAME = 1e-9
-GROWTH_KEYS = ("volume", "sphericity", "convex_hull_volume")
-"""Descriptors that are followed through all degrees: none of them needs the minimum-volume box, which takes
-a fifth of a second for a smooth surface."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -190,7 +188,7 @@ class DegreeStep:
     mesh
         Its surface in the particle's frame; ``None`` where a radius is negative.
     errors
-        Relative errors (Eq. 8) against the particle, of :data:`GROWTH_KEYS`; empty with no mesh.
+        Relative errors (Eq. 8) against the particle, of the descriptors of the loss; empty with no mesh.
     radial_error
         Root mean square of the radius left over, as a share of that of the radius.
     mean_radius
@@ -208,7 +206,7 @@ def grow_fit(mesh: Mesh, fit: HarmonicFit, level: int = 4) -> Steps:
     """The fit at every degree from 0 on; partial results and the result are tuples of :class:`DegreeStep`."""
     degrees = range(fit.l_max + 1)
     yield Started("Growing the fit", len(degrees))
-    truth = describe(mesh, GROWTH_KEYS)
+    truth = describe(mesh, LOSS_KEYS)
     steps: tuple[DegreeStep, ...] = ()
     for degree, surface in gallery(fit, degrees, level):
         cut = fit.truncated(degree)
@@ -223,7 +221,7 @@ def _errors(truth: Mapping[str, float], surface: Mesh | None) -> Mapping[str, fl
     if surface is None:
         return {}
     try:
-        return relative_errors(truth, describe(surface, GROWTH_KEYS), GROWTH_KEYS)
+        return relative_errors(truth, describe(surface, LOSS_KEYS), LOSS_KEYS)
     except GeometryError:
         return {}
 

@@ -3,10 +3,13 @@
 import doctest
 from pathlib import Path
 
-EXERCISES = Path(__file__).resolve().parents[2] / "docs" / "exercises.md"
+import pytest
+
+DOCS = Path(__file__).resolve().parents[2] / "docs"
 
 
-def test_that_the_answers_of_the_exercises_are_right() -> None:
-    result = doctest.testfile(str(EXERCISES), module_relative=False)
-    assert result.attempted > 25
+@pytest.mark.parametrize(("page", "least"), [("exercises", 25), ("teaching", 20)])
+def test_that_the_answers_of_the_exercises_are_right(page: str, least: int) -> None:
+    result = doctest.testfile(str(DOCS / f"{page}.md"), module_relative=False)
+    assert result.attempted > least
     assert result.failed == 0

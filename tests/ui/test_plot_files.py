@@ -5,6 +5,8 @@ import xml.etree.ElementTree as ElementTree
 
 import pytest
 from PIL import Image
+from PySide6.QtCore import QPointF
+from PySide6.QtWidgets import QApplication
 
 from regolith_studio.errors import FileError, InputError
 from regolith_studio.ui.widgets.bar_plot import BarPlot, BarSeries
@@ -78,3 +80,22 @@ def test_that_what_cannot_be_saved_is_one_sentence(curves, tmp_path):
     with pytest.raises(FileError, match=r"cannot be written"):
         curves.save_figure(tmp_path / "file" / "plot.png")
     assert [path.name for path in tmp_path.iterdir()] == ["file"]
+
+
+def test_that_a_point_of_a_curve_tells_its_values_when_pointed_at(curves):
+    view = curves.canvas.plotItem.vb
+    QApplication.processEvents()
+    there = view.mapViewToScene(QPointF(2.0, 0.25))
+    assert curves.value_at(there) == "Dmin\nDegree lmax: 2\nRMSRE [%]: 0.25"
+    curves.canvas.scene().sigMouseMoved.emit(there)
+    assert curves.canvas.toolTip() == curves.value_at(there)
+    assert curves.value_at(there + QPointF(0.0, -60.0)) == ""
+
+
+def test_that_a_curve_on_a_logarithmic_axis_tells_its_values_too(shown):
+    plot = CurvePlot("x", "y", "Nothing yet.", log_y=True)
+    plot.set_curves([Curve("f", "#0072b2", (1.0, 2.0, 3.0), (1.0, 100.0, 10.0))])
+    plot.resize(400, 260)
+    shown(plot)
+    QApplication.processEvents()
+    assert plot.value_at(plot.canvas.plotItem.vb.mapViewToScene(QPointF(2.0, 2.0))).endswith("y: 100")

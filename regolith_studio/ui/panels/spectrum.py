@@ -4,16 +4,32 @@ import math
 
 import numpy as np
 import pyqtgraph as pg
+from PySide6.QtCore import QPointF
 from PySide6.QtGui import QColor
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.results import Results
 from regolith_studio.ui.theme import Theme
-from regolith_studio.ui.widgets.plot import Plot
+from regolith_studio.ui.widgets.plot import Numbers, Plot
 
 DECADES = 6.5
 """Shown below the highest bar."""
+
+
+class SpectrumPlot(Plot):
+    """Tells the amplitude under the mouse, and all of them as numbers."""
+
+    shares: np.ndarray[tuple[int], np.dtype[np.float64]] = np.empty(0)
+
+    def value_at(self, place: QPointF) -> str:
+        degree = round(self.canvas.plotItem.vb.mapSceneToView(place).x())
+        return f"l = {degree}: {self.shares[degree - 1]:.3g} %" if 1 <= degree <= len(self.shares) else ""
+
+    def numbers(self) -> Numbers:
+        return ("l", "amplitude [%]"), [
+            (degree, float(share)) for degree, share in enumerate(self.shares, start=1)
+        ]
 
 
 class SpectrumPanel(QWidget):
@@ -22,7 +38,7 @@ class SpectrumPanel(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setObjectName("spectrum")
-        self.plot = Plot(
+        self.plot = SpectrumPlot(
             "Degree l",
             "Amplitude √A<sub>l</sub> / c<sub>00</sub> [%]",
             "The spectrum appears when the particle is fitted.",
@@ -40,6 +56,7 @@ class SpectrumPanel(QWidget):
         if results.fit is None:
             return
         shares = 100.0 * results.fit.coefficients.power_spectrum().relative_amplitudes[1:]
+        self.plot.shares = shares
         self._draw(np.log10(np.maximum(shares, 1e-12)), choices.l_max)
         theme = self.plot.theme
         self.plot.set_legend(

@@ -8,7 +8,7 @@ import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QPointF
 from PySide6.QtGui import QColor
-from PySide6.QtWidgets import QToolTip, QWidget
+from PySide6.QtWidgets import QWidget
 
 from regolith_studio.ui.widgets.plot import Numbers, Plot
 
@@ -49,7 +49,6 @@ class BarPlot(Plot):
         self._items: list[object] = []
         self._unit = unit
         super().__init__(x, y, placeholder, parent)
-        self.canvas.scene().sigMouseMoved.connect(self._point)
 
     @property
     def series(self) -> tuple[BarSeries, ...]:
@@ -109,19 +108,15 @@ class BarPlot(Plot):
         self.canvas.addItem(line, ignoreBounds=True)
         self._items.append(line)
 
-    def _point(self, where: QPointF) -> None:
-        here = self.canvas.plotItem.vb.mapSceneToView(where)
+    def value_at(self, place: QPointF) -> str:
+        here = self.canvas.plotItem.vb.mapSceneToView(place)
         category = round(here.x())
         if not 0 <= category < len(self._categories) or here.y() < 0:
-            self.canvas.setToolTip("")
-            return
+            return ""
         lines = [f"{each.label}: {each.values[category]:.3g} {self._unit}" for each in self._series]
         lines += [
             f"not below {each.bounds[category]:.3g} {self._unit} (line)"
             for each in self._series
             if each.bounds and each.bounds[category] > 0.0
         ]
-        text = "\n".join([self._categories[category], *lines])
-        if self.canvas.toolTip() != text:
-            QToolTip.hideText()
-            self.canvas.setToolTip(text)
+        return "\n".join([self._categories[category], *lines])

@@ -5,10 +5,14 @@ from dataclasses import dataclass
 
 import numpy as np
 import pyqtgraph as pg
+from PySide6.QtCore import QPointF
 from PySide6.QtWidgets import QWidget
 
 from regolith_studio.ui.widgets.plot import Numbers, Plot
 from regolith_studio.ui.widgets.plot_files import plain_text
+
+REACH = 24.0
+"""Pixels from a point at which its values are still told."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +50,7 @@ def _plain_decades(values: Sequence[float], _scale: float, _spacing: float) -> l
 
 
 class CurvePlot(Plot):
-    """Curves that grow: the axes follow what is drawn.
+    """Curves that grow: the axes follow what is drawn; a point tells its values when pointed at.
 
     Parameters
     ----------
@@ -62,6 +66,7 @@ class CurvePlot(Plot):
         self._marker: float | None = None
         self._line: pg.InfiniteLine | None = None
         super().__init__(x, y, placeholder, parent)
+        self._log_y = log_y
         self.canvas.setLogMode(x=False, y=log_y)
         self.canvas.getAxis("left").logTickStrings = _plain_decades
 
@@ -103,6 +108,30 @@ class CurvePlot(Plot):
             item.setSymbolPen(None)
         self.set_legend([(curve.colour, curve.label) for curve in self._curves if curve.label])
         self._draw_marker()
+
+    def value_at(self, place: QPointF) -> str:
+        """The nearest point of a curve, in words; empty if it is far."""
+        view = self.canvas.plotItem.vb
+        best, words = REACH, ""
+        for curve in self._curves:
+            x, y = np.asarray(curve.x, dtype=float), np.asarray(curve.y, dtype=float)
+            if not len(x):
+                continue
+            with np.errstate(divide="ignore", invalid="ignore"):
+                high = np.log10(y) if self._log_y else y
+            origin = view.mapViewToScene(QPointF(0.0, 0.0))
+            step = view.mapViewToScene(QPointF(1.0, 1.0)) - origin
+            away = np.hypot(origin.x() + x * step.x() - place.x(), origin.y() + high * step.y() - place.y())
+            if not np.isfinite(away).any():
+                continue
+            nearest = int(np.nanargmin(away))
+            if away[nearest] < best:
+                best = float(away[nearest])
+                label = plain_text(curve.label)
+                words = f"{label}\n" if label else ""
+                words += f"{plain_text(self._labels[0])}: {x[nearest]:.5g}\n"
+                words += f"{plain_text(self._labels[1])}: {y[nearest]:.5g}"
+        return words
 
     def _draw_marker(self) -> None:
         if self._line is not None:

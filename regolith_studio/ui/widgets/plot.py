@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 
 import pyqtgraph as pg
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QColor, QContextMenuEvent, QFont, QResizeEvent
 from PySide6.QtWidgets import (
     QFileDialog,
@@ -13,6 +13,7 @@ from PySide6.QtWidgets import (
     QMenu,
     QMessageBox,
     QStackedLayout,
+    QToolTip,
     QVBoxLayout,
     QWidget,
 )
@@ -60,6 +61,7 @@ class Plot(QWidget):
         self._placeholder.setProperty("role", "remark")
         self._placeholder.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self._placeholder.setWordWrap(True)
+        self.canvas.scene().sigMouseMoved.connect(self._point)
         self._arrange()
         self.set_theme(self.theme)
         self.set_empty(True)
@@ -144,6 +146,16 @@ class Plot(QWidget):
         self.canvas.getAxis("left").setGrid(70 if theme.dark else 55)
         self.set_labels(*self._labels)
         self.redraw()
+
+    def value_at(self, place: QPointF) -> str:  # noqa: ARG002
+        """What is drawn at a place of the scene, in words; empty where there is nothing."""
+        return ""
+
+    def _point(self, place: QPointF) -> None:
+        words = self.value_at(place)
+        if self.canvas.toolTip() != words:
+            QToolTip.hideText()
+            self.canvas.setToolTip(words)
 
     def redraw(self) -> None:
         """Draw everything again, because the colours have changed."""

@@ -9,7 +9,7 @@ from PySide6.QtCore import QEvent, QObject, QPointF, Qt, QTimer, Signal
 from PySide6.QtGui import QColor, QKeyEvent, QMouseEvent
 from PySide6.QtWidgets import QWidget
 
-from regolith_studio.ui.widgets.plot import Plot
+from regolith_studio.ui.widgets.plot import Numbers, Plot
 
 THROTTLE = 30
 """Milliseconds between two announcements while a bar is dragged; the last is always made."""
@@ -106,6 +106,20 @@ class SpectrumEditor(Plot):
         )
         entries = [(self.theme.fit, "drag the bars" if self._editable else "as fitted")]
         self.set_legend([*entries, (self.theme.border, "as fitted")] if self.is_changed() else entries)
+
+    def value_at(self, place: QPointF) -> str:
+        seen = self.canvas.plotItem.vb.mapSceneToView(place)
+        degree = round(seen.x())
+        if not 1 <= degree <= len(self._values):
+            return ""
+        return f"l = {degree}: {100 * self._values[degree - 1]:.3g} %"
+
+    def numbers(self) -> Numbers:
+        rows: list[tuple[str | float, ...]] = [
+            (degree, 100.0 * float(value), 100.0 * float(fitted))
+            for degree, (value, fitted) in enumerate(zip(self._values, self._fitted, strict=True), start=1)
+        ]
+        return ("l", "amplitude [%]", "as fitted [%]"), rows
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         if not self._editable or not isinstance(event, QMouseEvent) or not len(self._values):

@@ -2,8 +2,9 @@
 
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
+from regolith_studio.descriptors.catalogue import LOSS_KEYS
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.jobs.lecturing import GROWTH_KEYS, DegreeStep
+from regolith_studio.jobs.lecturing import DegreeStep
 from regolith_studio.scene import surfaces
 from regolith_studio.scene.palette import DESCRIPTOR_COLOURS
 from regolith_studio.ui.layout import side_by_side
@@ -113,7 +114,7 @@ class DegreesView(QWidget):
                 tuple(max(100 * step.errors[key], 1e-4) for step in known),
                 markers=True,
             )
-            for place, key in enumerate(GROWTH_KEYS)
+            for place, key in enumerate(LOSS_KEYS)
         ]
         radial = tuple(max(100 * step.radial_error, 1e-4) for step in known)
         curves.append(Curve("radius (rms)", self._theme.particle, x, radial, markers=True))
