@@ -295,10 +295,10 @@ def test_that_the_voxel_size_of_one_volume_is_offered_for_the_next(page, part, w
     dialog.edges[0].setValue(0.4)
     dialog.unit.setCurrentIndex(dialog.unit.findData("mm"))
     dialog.accept()
-    wait(lambda: page.preview is not None and page.findChild(VolumeDialog) is None, SECONDS)
+    wait(lambda: page.preview is not None, SECONDS)
     assert page.scan.volume.voxel_size.tolist() == [400.0, 400.0, 400.0]
     page.open(part)
-    wait(lambda: page.findChild(VolumeDialog) is not None, SECONDS)
-    dialog = page.findChild(VolumeDialog)
+    wait(lambda: any(each.isVisible() for each in page.findChildren(VolumeDialog)), SECONDS)
+    dialog = next(each for each in page.findChildren(VolumeDialog) if each.isVisible())
     assert (dialog.edges[2].value(), dialog.unit.currentData()) == (0.4, "mm")
     dialog.reject()
