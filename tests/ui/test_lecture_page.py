@@ -192,3 +192,11 @@ def test_that_what_is_no_formula_is_refused(app):  # noqa: ARG001
 
 def test_that_the_height_of_a_fraction_is_that_of_its_outline(app):  # noqa: ARG001
     assert outline(r"$\frac{1}{2}$").boundingRect().height() > outline("$1$").boundingRect().height()
+
+
+def test_that_a_stopped_lesson_says_so_and_begins_again_at_the_next_visit(page):
+    page._stopped()
+    assert "Stopped" in page.annealing.sentence.text()
+    page.left()
+    page.entered()
+    assert "start" in page.annealing.sentence.text()

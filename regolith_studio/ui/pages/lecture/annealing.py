@@ -58,6 +58,8 @@ class AnnealingView(QWidget):
         self.terms = BarPlot("Term of Eq. 9", "α ε", WAIT, unit="")
         for plot, name in ((self.loss, "loss"), (self.chance, "chance"), (self.terms, "terms")):
             plot.setObjectName(f"annealing_{name}")
+        self.frames["annealing"].set_texts("Annealing")
+        self.frames["exact"].set_texts("Exact method")
         self.transport = Transport("annealing", "step")
         self.transport.stepChanged.connect(self._show_step)
         self._arrange()

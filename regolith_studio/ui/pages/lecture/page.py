@@ -68,6 +68,9 @@ class LecturePage(PageWidget):
             "full_screen": self.toggle_full_screen,
         }
 
+    def entered(self) -> None:
+        self._fill()
+
     def left(self) -> None:
         for lesson in (self.annealing, self.degrees):
             lesson.transport.pause()
@@ -152,8 +155,18 @@ class LecturePage(PageWidget):
         show = self.annealing.show_lesson
         job = Job(anneal_slowly, (mesh, order, index))
         self._context.start(
-            "Annealing step by step", job, show, partial=show, failed=self._refused, lane="annealing"
+            "Annealing step by step",
+            job,
+            show,
+            partial=show,
+            failed=self._refused,
+            stopped=self._stopped,
+            lane="annealing",
         )
+
+    def _stopped(self) -> None:
+        self._made_for.pop("annealing", None)
+        self.annealing.wait("Stopped. Choose another seed, or come back to this page, to begin again.")
 
     def _refused(self, failure: Failed) -> None:
         self.annealing.wait(failure.sentence)
