@@ -12,6 +12,7 @@ from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
 from regolith_studio.dem.case import Prepared
+from regolith_studio.dem.checking import checked, filling_of
 from regolith_studio.dem.engine import Checks, Ending, Moment
 from regolith_studio.dem.engines.lammps.clumps import Clumps, clumps_of
 from regolith_studio.dem.engines.lammps.program import command
@@ -33,8 +34,6 @@ GLANCE = 0.1
 """Seconds between two looks for a snapshot."""
 CALM = 1e-3
 """Mean kinetic energy in m g d at which a heap is at rest."""
-LARGEST_OVERLAP = 0.02
-LARGEST_GAIN = 0.05
 
 
 @dataclass(eq=False)
@@ -150,7 +149,7 @@ def _moment(run: _Run, path: Path, step: int) -> Moment:
         phase=run.plan.phase(step),
     )
     if pile.phase in ("fill", "settle"):
-        run.fill = _filling(run.prepared, pile)
+        run.fill = filling_of(run.prepared, pile)
     run.last = pile
     run.potential[step] = float(run.clumps.scales**3 @ rows[:, 3])
     return Moment(pile, min(0.99, step / run.plan.steps), f"{pile.phase}, {pile.time:.2f} s simulated")
@@ -173,13 +172,6 @@ def read_bodies(path: Path) -> FloatArray:
     if len(rows) == 0 or not np.array_equal(rows[:, 0], np.arange(1, len(rows) + 1)):
         raise RegolithError("LAMMPS lost particles; take a smaller step (step_share).")
     return rows
-
-
-def _filling(prepared: Prepared, pile: Pile) -> tuple[float, float]:
-    """Height of the filling in metres, and its solid fraction."""
-    height = float(np.quantile(pile.points[:, 2] + pile.diameters / 2, 0.98))
-    volume = prepared.mass / prepared.case.contact.density
-    return height, volume / (prepared.case.test.area * height)
 
 
 def kinetic_energies(log: str) -> dict[int, float]:
@@ -223,29 +215,13 @@ def _checks(run: _Run, energies: dict[int, float]) -> Checks:
     turns = Rotation.from_quat(run.last.orientations, scalar_first=True)
     overlaps = _overlaps(*run.clumps.atoms(points, turns))
     kinetic = energies[max(energies)] / len(points) if energies else float("inf")
-    gain = _energy_gain(run, energies)
-    kept = int(np.count_nonzero(points[:, 2] > -1.0))
-    largest = float(overlaps.max(initial=0.0))
-    problems = []
-    if kept < len(points):
-        problems.append(f"{len(points) - kept} particles fell through the plate.")
-    if largest > LARGEST_OVERLAP:
-        problems.append(f"Particles overlap by up to {100 * largest:.1f} % of the mean diameter.")
-    if gain > LARGEST_GAIN:
-        problems.append(f"The energy rose by {gain:.2g} m g d a particle out of nothing.")
-    if not kinetic < CALM:
-        problems.append("The heap was still moving at the end.")
-    return Checks(
-        particles_in=len(points),
-        particles_out=kept,
-        mean_overlap=float(overlaps.mean()) if len(overlaps) else 0.0,
-        largest_overlap=largest,
-        energy_gain=gain,
+    return checked(
+        points[:, 2],
+        overlaps,
+        energy_gain=_energy_gain(run, energies),
         kinetic_energy=kinetic,
         at_rest=bool(kinetic < CALM),
-        fill_height=run.fill[0],
-        solid_fraction=run.fill[1],
-        problems=tuple(problems),
+        filling=run.fill,
     )
 
 

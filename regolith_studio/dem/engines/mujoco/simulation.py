@@ -7,6 +7,7 @@ import mujoco
 import numpy as np
 
 from regolith_studio.dem.case import Prepared
+from regolith_studio.dem.checking import checked, filling_of
 from regolith_studio.dem.engine import Checks, Ending, Moment
 from regolith_studio.dem.engines.mujoco.model import Built, Units, build
 from regolith_studio.dem.engines.mujoco.phases import expected_duration
@@ -17,10 +18,6 @@ from regolith_studio.geometry.arrays import FloatArray
 
 LOOK = 0.5
 """Simulated time between two looks at energies and speeds."""
-LARGEST_OVERLAP = 0.02
-"""Mean diameters of overlap at rest from which on a run is not trusted."""
-LARGEST_GAIN = 0.05
-"""Energy that may appear in a look, in units of m g d a particle: rounding of the solver."""
 CLEAR = 0.5
 """Distance between rim and pile, in mean diameters, at which the cylinder is gone."""
 
@@ -89,10 +86,7 @@ def _fill(run: _Run) -> Generator[Moment, None, None]:
     yield from _advance(run, _limit_speed, _is_calm, 40.0 + 2.0 * run.built.top / run.settings.fastest)
     run.phase, run.calm_since = "settle", None
     yield from _advance(run, None, _is_calm, run.settings.longest_rest)
-    height = float(np.quantile(run.points[:, 2] + run.prepared.diameters / run.units.length / 2, 0.98))
-    volume = float(np.pi / 6 * (run.prepared.diameters**3).sum()) / run.units.length**3
-    area = run.prepared.case.test.area / run.units.length**2
-    run.fill = (height * run.units.length, volume / (area * height))
+    run.fill = filling_of(run.prepared, _pile(run))
 
 
 def _lift(run: _Run) -> Generator[Moment, None, None]:
@@ -202,32 +196,14 @@ def _pile(run: _Run) -> Pile:
 
 
 def _checks(run: _Run) -> Checks:
-    overlaps = np.maximum(-run.data.contact.dist, 0.0)
-    kept = int(np.count_nonzero(run.points[:, 2] > -1.0))
-    mean, largest = (float(overlaps.mean()), float(overlaps.max())) if len(overlaps) else (0.0, 0.0)
-    at_rest = run.calm_since is not None and run.time - run.calm_since >= run.settings.calm_time
-    kinetic = float(run.data.energy[1]) / len(run.prepared)
-    problems = []
     full = (mujoco.mjtWarning.mjWARN_CONTACTFULL, mujoco.mjtWarning.mjWARN_CNSTRFULL)
-    if any(run.data.warning[each].number for each in full):
-        problems.append("MuJoCo had no room for all contacts.")
-    if kept < len(run.prepared):
-        problems.append(f"{len(run.prepared) - kept} particles fell through the plate.")
-    if largest > LARGEST_OVERLAP:
-        problems.append(f"Particles overlap by up to {100 * largest:.1f} % of the mean diameter.")
-    if run.energy_gain > LARGEST_GAIN:
-        problems.append(f"The energy rose by {run.energy_gain:.2g} m g d a particle out of nothing.")
-    if not at_rest:
-        problems.append("The heap was still moving when the longest wait was over.")
-    return Checks(
-        particles_in=len(run.prepared),
-        particles_out=kept,
-        mean_overlap=mean,
-        largest_overlap=largest,
+    crowded = any(run.data.warning[each].number for each in full)
+    return checked(
+        run.points[:, 2],
+        np.maximum(-run.data.contact.dist, 0.0),
         energy_gain=run.energy_gain,
-        kinetic_energy=kinetic,
-        at_rest=at_rest,
-        fill_height=run.fill[0],
-        solid_fraction=run.fill[1],
-        problems=tuple(problems),
+        kinetic_energy=float(run.data.energy[1]) / len(run.prepared),
+        at_rest=run.calm_since is not None and run.time - run.calm_since >= run.settings.calm_time,
+        filling=run.fill,
+        problems=["MuJoCo had no room for all contacts."] if crowded else [],
     )

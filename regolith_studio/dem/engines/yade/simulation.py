@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from regolith_studio.dem.case import Prepared
+from regolith_studio.dem.checking import checked, filling_of
 from regolith_studio.dem.engine import Checks, Ending, Moment
 from regolith_studio.dem.engines.yade.order import LENGTH, State, order, read_state
 from regolith_studio.dem.engines.yade.phases import expected_duration
@@ -23,8 +24,6 @@ from regolith_studio.errors import RegolithError
 
 GLANCE = 0.1
 """Seconds between two looks for a state."""
-LARGEST_OVERLAP = 0.02
-LARGEST_GAIN = 0.05
 
 
 @dataclass(eq=False)
@@ -137,16 +136,9 @@ def _moment(run: _Run, state: State) -> Moment:
         phase=state.phase,
     )
     if state.phase in ("fill", "settle"):
-        run.fill = _filling(run.prepared, run.pile)
+        run.fill = filling_of(run.prepared, run.pile)
     share = min(0.99, state.time / run.duration)
     return Moment(run.pile, share, f"{state.phase}, {run.pile.time:.2f} s simulated")
-
-
-def _filling(prepared: Prepared, pile: Pile) -> tuple[float, float]:
-    """Height of the filling in metres, and its solid fraction."""
-    height = float(np.quantile(pile.points[:, 2] + pile.diameters / 2, 0.98))
-    volume = prepared.mass / prepared.case.contact.density
-    return height, volume / (prepared.case.test.area * height)
 
 
 def _notes(run: _Run) -> tuple[str, ...]:
@@ -172,28 +164,12 @@ def _energy_gain(states: list[State]) -> float:
 def _checks(run: _Run) -> Checks:
     assert run.last is not None
     assert run.pile is not None
-    depths = penetration_depths(run.prepared, run.pile) / run.prepared.mean_diameter
-    points = run.pile.points / run.prepared.mean_diameter
-    kept = int(np.count_nonzero(points[:, 2] > -1.0))
-    gain, largest = _energy_gain(run.states), float(depths.max(initial=0.0))
-    problems = []
-    if kept < len(points):
-        problems.append(f"{len(points) - kept} particles fell through the plate.")
-    if largest > LARGEST_OVERLAP:
-        problems.append(f"Particles overlap by up to {100 * largest:.1f} % of the mean diameter.")
-    if gain > LARGEST_GAIN:
-        problems.append(f"The energy rose by {gain:.2g} m g d a particle out of nothing.")
-    if not run.last.calm:
-        problems.append("The heap was still moving when the longest wait was over.")
-    return Checks(
-        particles_in=len(points),
-        particles_out=kept,
-        mean_overlap=float(depths.mean()) if len(depths) else 0.0,
-        largest_overlap=largest,
-        energy_gain=gain,
+    length = run.prepared.mean_diameter
+    return checked(
+        run.pile.points[:, 2] / length,
+        penetration_depths(run.prepared, run.pile) / length,
+        energy_gain=_energy_gain(run.states),
         kinetic_energy=run.last.kinetic,
         at_rest=run.last.calm,
-        fill_height=run.fill[0],
-        solid_fraction=run.fill[1],
-        problems=tuple(problems),
+        filling=run.fill,
     )
