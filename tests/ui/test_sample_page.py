@@ -1,13 +1,19 @@
 """The page of the sample: table, filter, plot, statistics and view belong together."""
 
 import csv
+from dataclasses import replace
 
 import pytest
-from PySide6.QtCore import QItemSelectionModel, Qt
+from PySide6.QtCore import QItemSelectionModel, QPoint, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
+from regolith_studio.descriptors.describe import describe
+from regolith_studio.geometry.directions import icosphere
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.session.results import ParticleEntry
 from regolith_studio.ui.app import open_window
+from regolith_studio.ui.pages.sample.statistics import StatisticsPanel
 
 SECONDS = 120.0
 
@@ -120,3 +126,22 @@ def test_that_what_a_project_keeps_of_the_page_comes_back(page):
     page.restore(kept)
     assert page.filter.text() == "flat"
     assert page.scatter.axes() == ("volume", "sphericity")
+
+
+def test_that_statistics_undo_the_loss_at_the_border_only_where_there_was_one(shown):
+    panel = shown(StatisticsPanel())
+    sphere = icosphere(2)
+    plain = [
+        ParticleEntry(name, Particle(name, mesh), None, describe(mesh))
+        for name, mesh in (("small", sphere), ("large", sphere.moved(scale=2.0)))
+    ]
+    panel.show_entries(plain)
+    assert not panel.border.isVisible()
+    small, large = (entry.descriptors["volume"] for entry in plain)
+    assert panel.value().rows[0][2] == pytest.approx((small + large) / 2)
+    weighted = [plain[0], replace(plain[1], particle=replace(plain[1].particle, weight=3.0))]
+    panel.show_entries(weighted)
+    assert panel.border.isVisible()
+    assert panel.value().rows[0][2] == pytest.approx((small + 3 * large) / 4)
+    QTest.mouseClick(panel.border, Qt.MouseButton.LeftButton, pos=QPoint(8, panel.border.height() // 2))
+    assert panel.value().rows[0][2] == pytest.approx((small + large) / 2)
