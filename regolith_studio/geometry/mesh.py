@@ -82,7 +82,7 @@ class Mesh:
         volume = float(six_volumes.sum() / 6)
         if volume == 0.0:
             return 0.0, middle
-        return volume, middle + six_volumes @ corners.sum(axis=1) / 24 / volume
+        return volume, middle + six_volumes @ _summed(corners) / 24 / volume
 
     @cached_property
     def _second_moments(self) -> FloatArray:
@@ -91,17 +91,22 @@ class Mesh:
         if volume == 0.0:
             return np.zeros((3, 3))
         corners, six_volumes = self._tetrahedra(self.bounds.mean(axis=0))
-        sums = corners.sum(axis=1)
+        sums = _summed(corners)
         second = (six_volumes[:, None] * sums).T @ sums
         flat = corners.reshape(-1, 3)
-        second += (np.repeat(six_volumes, 3)[:, None] * flat).T @ flat
+        second += (six_volumes[:, None, None] * corners).reshape(-1, 3).T @ flat
         first = centroid - self.bounds.mean(axis=0)
         return np.asarray(second / 120 - volume * np.outer(first, first))
 
     def _tetrahedra(self, middle: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Corners (m, 3, 3) seen from the middle, and six times the signed volumes of the tetrahedra (m,)."""
         corners = self.triangles - middle
-        six_volumes = (corners[:, 0] * np.cross(corners[:, 1], corners[:, 2])).sum(axis=1)
+        a, b, c = (np.ascontiguousarray(corners[:, k].T) for k in range(3))
+        six_volumes = (
+            a[0] * (b[1] * c[2] - b[2] * c[1])
+            + a[1] * (b[2] * c[0] - b[0] * c[2])
+            + a[2] * (b[0] * c[1] - b[1] * c[0])
+        )
         return corners, six_volumes
 
     @property
@@ -172,3 +177,8 @@ class Mesh:
         if not self.volume > 0.0:
             raise GeometryError(f"The mesh encloses no volume (its signed volume is {self.volume:.3g}).")
         return self.moved(shift=-self.centroid, scale=self.volume ** (-1 / 3))
+
+
+def _summed(corners: FloatArray) -> FloatArray:
+    """Sum of the three corners of each triangle, (m, 3): much faster than numpy's sum along a short axis."""
+    return np.asarray(corners[:, 0] + corners[:, 1] + corners[:, 2])
