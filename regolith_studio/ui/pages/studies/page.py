@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
 
+from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QFileDialog, QHBoxLayout, QTabWidget, QVBoxLayout, QWidget
 
 from regolith_studio.jobs.events import Job, Progress, Started, Steps
@@ -151,6 +152,8 @@ def _titled(title: str, part: QWidget) -> QWidget:
     column.addWidget(heading(title))
     box = QTabWidget()  # for its border and ground
     box.tabBar().hide()
+    for bare in (box, box.tabBar()):
+        bare.setFocusPolicy(Qt.FocusPolicy.NoFocus)  # a hidden bar would hold Tab back
     box.addTab(part, "")
     column.addWidget(box, 1)
     return frame
