@@ -38,6 +38,14 @@ Below = Annotated[
     ),
 ]
 
+BoxMetric = Annotated[
+    str,
+    typer.Option(
+        "--box",
+        help="Bounding box of the diameters: exact, or trimesh, the heuristic of the paper's program.",
+        metavar="BOX",
+    ),
+]
 SampleSources = Annotated[
     list[str],
     typer.Argument(metavar="FIT|MESH...", help="The fit of a sample, or its meshes."),
@@ -118,6 +126,7 @@ def coarsening(
     star_point: StarPoint = "",
     rule: RadiusRule = "volume",
     reference: Reference = "sphere",
+    box: BoxMetric = "exact",
     unit: Unit = "um",
     json: Json = False,
     jobs: Jobs = 1,
@@ -125,11 +134,15 @@ def coarsening(
 ) -> None:
     """RMSRE of the descriptors for each set of loss weights (Fig. 8)."""
     from regolith_studio.cli.inputs import exit_code, read_inputs
+    from regolith_studio.descriptors.facts import BOX_METRICS
     from regolith_studio.jobs.studying import study_coarsening
 
+    if box not in BOX_METRICS:
+        raise typer.BadParameter(f"The box must be one of {', '.join(BOX_METRICS)}, got {box!r}.")
     wish = choices_from(faces, method, "", None, set_, target, l_max, seed, star_point, rule, reference)
     loaded = read_inputs(meshes, unit)
-    _conclude("coarsening_study", study_coarsening(loaded.particles, wish.order, jobs), output, json)
+    study = study_coarsening(loaded.particles, wish.order, jobs, box_metric=box)
+    _conclude("coarsening_study", study, output, json)
     raise typer.Exit(exit_code(meshes, loaded))
 
 
