@@ -5,6 +5,7 @@ from functools import partial
 
 from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtWidgets import (
+    QAbstractItemView,
     QButtonGroup,
     QFrame,
     QHBoxLayout,
@@ -99,6 +100,8 @@ class PageStack(QWidget):
         context = self._contexts[key] = self._context_of(key)
         widget = self.widgets[key] = self.pages[key].build(context)
         widget.set_theme(current_theme())
+        for view in widget.findChildren(QAbstractItemView):
+            view.setTabKeyNavigation(False)  # Tab leaves a table; arrows move in it
         self._stack.addWidget(widget)
         self.built.emit(key)
         return widget

@@ -4,10 +4,11 @@ import os
 import random
 import sys
 
+import psutil
 import pytest
 import shiboken6
 from PySide6.QtCore import QEvent, QPoint, QPointF, Qt
-from PySide6.QtGui import QMouseEvent, QWheelEvent
+from PySide6.QtGui import QDesktopServices, QMouseEvent, QWheelEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import (
     QAbstractButton,
@@ -44,7 +45,14 @@ KEYS = (
 LOOK_AROUND = 8
 """Events between two looks at what is there to be clicked, and between two turns of the event loop."""
 PAGES = ("explore", "sample", "studies")
-"""Those that this folder answers for."""
+"""Those that are visited by the monkey that comes with every run of the tests; the long visit sees all."""
+ANSWERS = {
+    "getOpenFileName": ("", ""),
+    "getOpenFileNames": ([], ""),
+    "getSaveFileName": ("", ""),
+    "getExistingDirectory": "",
+}
+"""Of dialogs with a loop of their own: they would wait for somebody."""
 
 
 class Monkey:
@@ -56,11 +64,13 @@ class Monkey:
         The playground.
     seed
         The same one does the same things.
+    pages
+        Where it goes.
     """
 
-    def __init__(self, window, seed):
+    def __init__(self, window, seed, pages=PAGES):
         self.window, self.random, self.done = window, random.Random(seed), 0
-        self._known = []
+        self._known, self._pages = [], pages
 
     def act(self):
         """One thing a user could do."""
@@ -137,7 +147,7 @@ class Monkey:
             action.trigger()
 
     def _go(self):
-        self.window.go(self.random.choice(PAGES))
+        self.window.go(self.random.choice(self._pages))
 
     def _resize(self):
         self.window.resize(self.random.randint(600, 900), self.random.randint(420, 600))
@@ -170,8 +180,10 @@ def _mouse(widget, kind, place):
 
 @pytest.fixture
 def window(shown, preferences, wait, monkeypatch):
+    """``REGOLITH_STUDIO_VIEWS=live`` lets it play with live views."""
     monkeypatch.setattr("regolith_studio.ui.main_window.may_close", lambda *_: True)
-    made = open_window(views="image", preferences=preferences)
+    views = os.environ.get("REGOLITH_STUDIO_VIEWS", "image")
+    made = open_window(views=views, preferences=preferences)
     made.resize(760, 520)
     shown(made)
     wait(lambda: made.session.results.coarsened is not None and not made.session.tasks, 120.0)
@@ -179,14 +191,23 @@ def window(shown, preferences, wait, monkeypatch):
     return made
 
 
-def play(window, monkeypatch, app, count, seed):
-    """Let the monkey act; what goes wrong in a slot reaches sys.excepthook and fails the test."""
-    wrong = []
+def play(window, monkeypatch, app, count, seed, pages=PAGES):
+    """Let the monkey act; what goes wrong in a slot reaches sys.excepthook and fails the test.
+
+    Returns the resident megabytes at each tenth of the way.
+    """
+    for name, answer in ANSWERS.items():
+        monkeypatch.setattr(QFileDialog, name, lambda *_args, answer=answer, **_more: answer)
+    monkeypatch.setattr(QMessageBox, "question", lambda *_: QMessageBox.StandardButton.No)
+    monkeypatch.setattr(QDesktopServices, "openUrl", lambda *_: True)
+    wrong, held = [], []
     monkeypatch.setattr(sys, "excepthook", lambda *error: wrong.append(error))
     problems = []
     window.toast.said.connect(lambda _mood, _sentence, details: problems.append(details))
-    monkey = Monkey(window, seed)
+    monkey = Monkey(window, seed, pages)
     for number in range(count):
+        if number % max(1, count // 10) == 0:
+            held.append(round(psutil.Process().memory_info().rss / 1e6))
         monkey.act()
         if number % LOOK_AROUND == 0:
             app.processEvents()
@@ -195,6 +216,7 @@ def play(window, monkeypatch, app, count, seed):
     assert not mistakes, mistakes[0]
     for task in window.session.tasks:
         window.session.cancel(task.id)
+    return held
 
 
 def test_that_a_short_visit_of_the_monkey_leaves_the_window_well(window, monkeypatch, app, wait):
@@ -207,7 +229,10 @@ def test_that_a_short_visit_of_the_monkey_leaves_the_window_well(window, monkeyp
 
 @pytest.mark.slow
 @pytest.mark.skipif("REGOLITH_STUDIO_MONKEY" not in os.environ, reason="asked for by a number of events")
-def test_that_a_long_visit_of_the_monkey_leaves_the_window_well(window, monkeypatch, app, wait):
+def test_that_a_long_visit_of_the_monkey_leaves_the_window_well(window, monkeypatch, app, wait, capsys):
     """``REGOLITH_STUDIO_MONKEY=50000`` lets it stay for so many events, about 15 ms each."""
-    play(window, monkeypatch, app, int(os.environ["REGOLITH_STUDIO_MONKEY"]), seed=2)
+    count, pages = int(os.environ["REGOLITH_STUDIO_MONKEY"]), tuple(window.pages.pages)
+    held = play(window, monkeypatch, app, count, seed=2, pages=pages)
     wait(lambda: not window.session.tasks, 60.0)
+    with capsys.disabled():
+        sys.stdout.write(f"\n{count} events; megabytes at each tenth: {held}\n")
