@@ -98,6 +98,16 @@ def worth_asking(facets: Facets, arcs: FloatArray, table: SpanTable, limit: floa
     return worth
 
 
+@kernel
+def with_all_edges(facets: Facets, worth: BoolArray) -> BoolArray:
+    """Facets of which every edge is worth asking, shape (n,): a box on one is flush with all its edges."""
+    asked = np.full(len(facets.normals), True)
+    for e in range(len(worth)):
+        if not worth[e]:
+            asked[facets.edges[e, 2]] = asked[facets.edges[e, 3]] = False
+    return asked
+
+
 @leaf
 def _after_turn(span: Vector, direction: Vector, angle: float) -> float:
     """Least length of a span along a direction that turns by at most `angle`."""

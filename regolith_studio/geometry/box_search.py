@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from regolith_studio.geometry.arrays import FloatArray, IntArray
+from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
 from regolith_studio.geometry.box_branch import least_on_curve
 from regolith_studio.geometry.box_curve import (
     all_positive,
@@ -25,7 +25,7 @@ from regolith_studio.geometry.box_curve import (
     numerator,
     unit,
 )
-from regolith_studio.geometry.box_facets import Facets, arcs_of, facets_of, worth_asking
+from regolith_studio.geometry.box_facets import Facets, arcs_of, facets_of, with_all_edges, worth_asking
 from regolith_studio.geometry.box_record import TIE, Found, drop_far, keep, note, nothing_below
 from regolith_studio.geometry.box_widths import (
     SpanTable,
@@ -44,6 +44,8 @@ SIDEWAYS = 1e-9
 
 MANY_FACETS, FIRST_FACETS = 100, 16
 """Of solids with more facets, edges are first ruled out one by one, after so many facets were looked at."""
+MANY_EDGES, LEAST_SLACK, MOST_SLACK = 8000, 1e-7, 1e-3
+"""With more edges left, boxes smaller by a share of 1e-6 to 1e-3 are given up: see `minimum_box`."""
 
 
 class Work(NamedTuple):
@@ -67,6 +69,10 @@ class Work(NamedTuple):
 @kernel
 def minimum_box(points: FloatArray, faces: IntArray) -> FloatArray:
     """Axes of the minimum-volume box, one a row, shape (3, 3); zeros if the faces do not close.
+
+    No box is smaller by a share of 1e-8. Only of fine and nearly perfect balls, of which more than 8,000
+    edges cannot be ruled out one by one, some box may be smaller by 1e-6, or by as much more, up to 1e-3, as
+    rules out enough of them: their boxes are all alike, and pairs of edges would be many millions.
 
     Parameters
     ----------
@@ -94,11 +100,18 @@ def boxes_near_least(facets: Facets, margin: float, known: float) -> Found:
     points, normals, edges = facets
     table, arcs, n = span_table(points), arcs_of(facets), len(normals)
     work = Work(np.empty((2, n)), np.empty(n, np.int8), np.empty((2, 2, 2)))
+    asked = np.full(n, True)
     if n > MANY_FACETS:
-        _on_facets(facets, arcs, table, work, n // FIRST_FACETS, margin, found)
+        _on_facets(facets, arcs, table, work, asked, n // FIRST_FACETS, margin, found)
         worth = worth_asking(facets, arcs, table, found.record[0] * (1.0 + margin))
+        slack = LEAST_SLACK
+        while worth.sum() > MANY_EDGES and margin <= TIE and slack < MOST_SLACK:
+            slack *= 10.0
+            margin = -slack
+            worth = worth_asking(facets, arcs, table, found.record[0] * (1.0 + margin))
+        asked = with_all_edges(facets, worth)
         facets, arcs = Facets(points, normals, edges[worth]), arcs[worth]
-    _on_facets(facets, arcs, table, work, 1, margin, found)
+    _on_facets(facets, arcs, table, work, asked, 1, margin, found)
     _on_curves(facets, arcs, table, work, margin, found)
     drop_far(margin, found)
     return found
@@ -135,13 +148,16 @@ def _on_facets(
     arcs: FloatArray,
     table: SpanTable,
     work: Work,
+    asked: BoolArray,
     stride: int,
     margin: float,
     found: Found,
 ) -> None:
-    """Boxes with one side on a facet, each `stride`-th, and another flush with an edge of the shadow."""
+    """Boxes with one side on a facet, each `stride`-th of the asked, and one on a shadow's edge."""
     points, normals, edges = facets
     for f in range(0, len(normals), stride):
+        if not asked[f]:
+            continue
         a = row(normals, f)
         top, bottom = ends_along(points, a)
         height = dot(between(points, top, bottom), a)

@@ -19,11 +19,14 @@ from regolith_studio.geometry.box_curve import (
     numerator,
     value,
 )
-from regolith_studio.geometry.box_facets import facets_of
+from regolith_studio.geometry.box_facets import facets_of, with_all_edges
 from regolith_studio.geometry.box_record import note, nothing_below
 from regolith_studio.geometry.box_search import boxes_near_least, minimum_box
 from regolith_studio.geometry.box_widths import ends_along, span_near, span_table
+from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.hull_graph import hull_graph
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.oriented_box import minimum_volume_box
 from tests.geometry.solids import random_polyhedron
 
 
@@ -137,3 +140,22 @@ def test_that_of_too_many_boxes_the_largest_goes() -> None:
         a, b = (np.cos(angle), np.sin(angle), 0.0), (-np.sin(angle), np.cos(angle), 0.0)
         note(2.0 - 0.01 * k, a, b, (0.0, 0.0, 1.0), 2.0, found)
     assert np.sort(found.volumes) == pytest.approx(1.01 + 0.01 * np.arange(64))
+
+
+def test_that_a_facet_with_an_edge_that_is_ruled_out_is_not_asked() -> None:
+    """An edge belongs to two of the twelve facets."""
+    hull = random_polyhedron(0, 12).hull
+    facets = facets_of(hull_graph(np.array(hull.vertices), hull.faces))
+    worth = np.full(len(facets.edges), True)
+    assert with_all_edges(facets, worth).all()
+    worth[0] = False
+    assert set(np.flatnonzero(~with_all_edges(facets, worth))) == set(facets.edges[0, 2:].tolist())
+
+
+@pytest.mark.slow
+def test_that_a_fine_ball_has_a_box_within_a_thousandth_whichever_way_it_is_turned() -> None:
+    """Its edges cannot all be asked; the box of the sphere itself has the volume 8."""
+    ball, (spin, _) = icosphere(5).vertices, np.linalg.qr(np.random.default_rng(4).normal(size=(3, 3)))
+    volumes = [minimum_volume_box(Mesh(points, icosphere(5).faces)).volume for points in (ball, ball @ spin)]
+    assert volumes == pytest.approx([volumes[0]] * 2, rel=1e-3)
+    assert 7.98 < min(volumes) <= max(volumes) < 8.0
