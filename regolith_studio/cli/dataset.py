@@ -231,9 +231,7 @@ def export(
     ] = 200,
     set_: Annotated[
         list[str] | None,
-        typer.Option(
-            "--set", help="Contact, cylinder or format: density, mass, ...", metavar="KEY=VALUE"
-        ),
+        typer.Option("--set", help="Contact, cylinder or format: density, mass, ...", metavar="KEY=VALUE"),
     ] = None,
     lossy: Annotated[bool, typer.Option("--lossy", help="Allow formats that change the shapes.")] = False,
     json: Json = False,
