@@ -8,9 +8,11 @@ from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
 from regolith_studio.readers.sentences import printable
+from regolith_studio.readers.units import unit_named
 
 COMMENTS = (b"#", b"%", b"!", b"//")
 MOST_COLUMNS = 1000
+LONGEST_UNIT = 12
 _NUMBER = re.compile(rb"[+-]?(\d|\.\d|nan|inf)", re.IGNORECASE)
 
 
@@ -24,15 +26,21 @@ class NumberRows:
         The column names of its header line; empty where there is none.
     numbers
         Shape (n, columns), float64; whatever is not finite is kept.
+    units
+        What a second header line says of each column, in brackets or not; empty where there is none.
     """
 
     names: tuple[str, ...]
     numbers: NDArray[np.float64]
+    units: tuple[str, ...] = ()
 
 
-def number_rows(data: bytes, skip_headers: int = 1, numeric_headers: int = 0) -> NumberRows:
+def number_rows(
+    data: bytes, skip_headers: int = 1, numeric_headers: int = 0, with_units: bool = False
+) -> NumberRows:
     """The rows of a text of numbers with at most `skip_headers` lines of words before them.
 
+    Where `with_units` says so, a line of units may follow the header.
     Up to `numeric_headers` first rows of numbers may have another number of columns; they are passed over.
 
     Spaces, tabs, commas and semicolons separate; where semicolons do, a comma is a decimal comma.
@@ -48,6 +56,7 @@ def number_rows(data: bytes, skip_headers: int = 1, numeric_headers: int = 0) ->
     if b"\0" in data[:4096]:
         raise FileError("is no text of numbers: it holds zero bytes.")
     header: bytes = b""
+    below: bytes = b""
     comment: bytes = b""
     words: list[list[bytes]] = []
     width = headers = 0
@@ -61,6 +70,9 @@ def number_rows(data: bytes, skip_headers: int = 1, numeric_headers: int = 0) ->
             continue
         if not words and not _NUMBER.match(line):
             headers += 1
+            if with_units and header and _are_units(line):
+                below, headers = line, headers - 1
+                continue
             header = line
             if headers > skip_headers:
                 raise FileError(f"is no table of numbers: line {number:,} begins with “{_shown(line)}”.")
@@ -78,7 +90,14 @@ def number_rows(data: bytes, skip_headers: int = 1, numeric_headers: int = 0) ->
         raise FileError("holds no row of numbers.")
     if width > MOST_COLUMNS:
         raise FileError(f"has {width:,} columns; no table here has so many.")
-    return NumberRows(_names(header or comment.lstrip(b"#%!/"), width), _numbers(words, data))
+    names = _names(header or comment.lstrip(b"#%!/"), width)
+    return NumberRows(names, _numbers(words, data), _names(below, width))
+
+
+def _are_units(line: bytes) -> bool:
+    """Whether a line names a length between its separators, and words that may be units otherwise."""
+    words = [word.strip(" \t\"'[]()") for word in re.split(r"[,;\t ]", line.decode("utf-8", "replace"))]
+    return any(map(unit_named, words)) and all(len(word) <= LONGEST_UNIT for word in words)
 
 
 def _row(line: bytes, decimal_comma: bool) -> list[bytes]:

@@ -78,6 +78,18 @@ def test_that_named_columns_may_stand_in_any_order_among_others(read) -> None:
     assert np.allclose(found.diameters, DIAMETERS, atol=1e-6)
 
 
+@pytest.mark.parametrize("units", ["mm,mm,mm,um", "[mm],[mm],[mm],[um]", '"mm","mm","mm","um"'])
+def test_that_units_may_stand_in_a_line_of_their_own(units, read) -> None:
+    found = read("a.csv", f"x,y,z,d\n{units}\n" + rows(POINTS, DIAMETERS, separator=","))
+    assert np.allclose(found.points, POINTS * 1e-3)
+    assert np.allclose(found.diameters, DIAMETERS * 1e-6)
+
+
+def test_that_a_second_line_of_words_that_are_no_units_is_refused(read) -> None:
+    with pytest.raises(FileError, match=r"line 2 begins with .written by hand"):
+        read("a.csv", "x,y,z,d\nwritten by hand\n" + rows(POINTS, DIAMETERS, separator=","))
+
+
 def test_that_units_in_the_names_count_more_than_the_callers(read) -> None:
     text = "x [mm],y [mm],z [mm],d (um)\n" + rows(POINTS, DIAMETERS, separator=",")
     found = read("a.csv", text, unit="cm")

@@ -17,10 +17,10 @@ def parse(data: bytes) -> ParsedPositions:
     FileError
         If the text is no table, or has fewer than three columns.
     """
-    table = number_rows(data)
+    table = number_rows(data, with_units=True)
     numbers = table.numbers
     if table.names:
-        columns = named_columns(table.names)
+        columns = named_columns(_with_units(table.names, table.units))
         if columns.axes is not None:
             points = numbers[:, list(columns.axes)]
             return ParsedPositions(points, sized(numbers, columns), columns.unit, columns.size_unit)
@@ -34,6 +34,15 @@ def parse(data: bytes) -> ParsedPositions:
     if numbers.shape[1] == 4:
         return ParsedPositions(numbers[:, :3], numbers[:, 3], notes=(_FOURTH,))
     return ParsedPositions(numbers)
+
+
+def _with_units(names: tuple[str, ...], units: tuple[str, ...]) -> tuple[str, ...]:
+    """Names with the units of a line of their own behind them."""
+    if not units:
+        return names
+    return tuple(
+        f"{name} [{unit.strip('[]()')}]" if unit else name for name, unit in zip(names, units, strict=True)
+    )
 
 
 def _is_number(name: str) -> bool:
