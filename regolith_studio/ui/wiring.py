@@ -74,6 +74,11 @@ class Wiring(QObject):
             self._cuts.append(signal.connect(lambda *_: beat.add(action)))
         action()
 
+    @property
+    def idle(self) -> bool:
+        """Nothing waits to be refreshed, or all of it waits for :meth:`resume`."""
+        return self._fast.idle and self._slow.idle
+
     def hear(self, topic: str, action: Callable[..., None]) -> None:
         """Call `action` with what a topic says, at once."""
         self._cuts.append(getattr(self._session.topics, topic).connect(action))
@@ -108,6 +113,11 @@ class _Beat(QObject):
         self._paused = False
         self._timer = QTimer(self, singleShot=True)
         self._timer.timeout.connect(self._run)
+
+    @property
+    def idle(self) -> bool:
+        """Nothing is due, or nothing is called for the time being."""
+        return self._paused or not self._due
 
     def add(self, action: Callable[[], None]) -> None:
         """Call `action` at its next beat."""

@@ -21,6 +21,7 @@ from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
 
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.ui.application import make_application
+from regolith_studio.ui.wiring import Wiring
 
 
 @pytest.fixture(scope="session")
@@ -61,6 +62,20 @@ def wait(app):
             assert time.monotonic() < end, "waited in vain"
             app.processEvents()
             time.sleep(0.002)
+
+    return run
+
+
+@pytest.fixture
+def settled(wait):
+    """Lets the event loop run until a window computes nothing and has shown all that it knows."""
+
+    def run(window, seconds=60.0):
+        def rests():
+            return not window.session.tasks and all(each.idle for each in window.findChildren(Wiring))
+
+        wait(rests, seconds)
+        wait(rests, seconds)  # what the last refreshment has set off
 
     return run
 

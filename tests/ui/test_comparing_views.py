@@ -18,12 +18,12 @@ SECONDS = 120.0
 
 
 @pytest.fixture
-def window(shown, preferences, wait):
+def window(shown, preferences, wait, settled):
     made = open_window(views="image", preferences=preferences)
     made.resize(1100, 720)
     shown(made)
-    wait(lambda: made.session.results.coarsened is not None and not made.session.tasks, SECONDS)
-    QTest.qWait(80)
+    wait(lambda: made.session.results.coarsened is not None, SECONDS)
+    settled(made)
     return made
 
 

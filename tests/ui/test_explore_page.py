@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from PIL import Image
-from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
 from regolith_studio.geometry.oriented_box import minimum_volume_box
@@ -19,12 +18,12 @@ ASKED = "regolith_studio.ui.pages.explore.pictures.QFileDialog.getSaveFileName"
 
 
 @pytest.fixture
-def window(shown, preferences, wait):
+def window(shown, preferences, wait, settled):
     made = open_window(views="image", preferences=preferences)
     made.resize(1100, 720)
     shown(made)
-    wait(lambda: made.session.results.coarsened is not None and not made.session.tasks, SECONDS)
-    QTest.qWait(80)
+    wait(lambda: made.session.results.coarsened is not None, SECONDS)
+    settled(made)
     return made
 
 

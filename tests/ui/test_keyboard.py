@@ -62,11 +62,10 @@ def walked(window):
     raise AssertionError(f"Tab is caught by {type(seen[-1]).__name__} {seen[-1].objectName()}")
 
 
-def test_that_every_control_of_every_page_is_named_and_reached_by_tab(window, wait):
+def test_that_every_control_of_every_page_is_named_and_reached_by_tab(window, settled):
     for page in pages():
         widget = window.go(page.key)
-        wait(lambda: not window.session.tasks, 60.0)
-        QTest.qWait(50)
+        settled(window)
         for each in controls(widget):
             text = each.text() if isinstance(each, QAbstractButton) else ""
             assert each.accessibleName() or text, f"{page.key}: {type(each).__name__} {each.objectName()}"

@@ -44,8 +44,8 @@ class Newcomer:
         Begins the names of the pictures.
     """
 
-    def __init__(self, window, wait, task):
-        self.window, self.wait, self.task, self.count = window, wait, task, 0
+    def __init__(self, window, wait, settled, task):
+        self.window, self.wait, self.settled, self.task, self.count = window, wait, settled, task, 0
 
     def done(self):
         """An interaction is over: draw, and keep a picture of it."""
@@ -141,9 +141,7 @@ class Newcomer:
 
     def rest(self):
         """Wait until nothing runs."""
-        self.wait(lambda: not self.window.session.tasks, SECONDS)
-        QTest.qWait(400)
-        self.wait(lambda: not self.window.session.tasks, SECONDS)
+        self.settled(self.window, SECONDS)
 
     @staticmethod
     def _dialogs():
@@ -151,15 +149,15 @@ class Newcomer:
 
 
 @pytest.fixture
-def newcomer(shown, preferences, wait, request):
+def newcomer(shown, preferences, wait, settled, request):
     """Somebody who sees the window for the first time, tour and all."""
     window = open_window(views="image", preferences=preferences)
     window.resize(1480, 900)
     shown(window)
     welcome(window)
-    wait(lambda: window.session.results.coarsened is not None and not window.session.tasks, SECONDS)
-    QTest.qWait(200)
-    made = Newcomer(window, wait, request.node.name.removeprefix("test_that_")[:24])
+    wait(lambda: window.session.results.coarsened is not None, SECONDS)
+    settled(window)
+    made = Newcomer(window, wait, settled, request.node.name.removeprefix("test_that_")[:24])
     made.click(QPushButton, "tour_end")
     yield made
     assert made.count <= MOST

@@ -35,24 +35,27 @@ SECONDS = 60.0
 
 
 @pytest.fixture
-def window(shown, preferences, wait):
+def window(shown, preferences, drawn):
     if QGuiApplication.platformName() == "offscreen":
         pytest.skip("needs a display")
     made = open_window(views="live", preferences=preferences)
     made.resize(1480, 900)
     shown(made)
     QTest.qWaitForWindowExposed(made)
-    wait(lambda: is_done(made), SECONDS)
+    drawn(made)
     return made
 
 
-def is_done(window):
-    return window.session.results.coarsened is not None and not window.session.tasks
+@pytest.fixture
+def drawn(wait, settled):
+    """Lets the event loop run until a window shows its polyhedron."""
 
+    def run(window):
+        wait(lambda: window.session.results.coarsened is not None, SECONDS)
+        settled(window)
+        QTest.qWait(50)  # the display server has painted, too
 
-def settle(window, wait):
-    wait(lambda: is_done(window), SECONDS)
-    QTest.qWait(150)
+    return run
 
 
 def pictures(window):
@@ -162,11 +165,11 @@ def open_by_keys(window, path, wait):
         timer.stop()
 
 
-def test_that_a_file_becomes_a_dataset_by_mouse_and_keys_alone(window, wait, tmp_path):
-    settle(window, wait)
+def test_that_a_file_becomes_a_dataset_by_mouse_and_keys_alone(window, wait, drawn, tmp_path):
+    drawn(window)
     sample = pictures(window)
     open_by_keys(window, resource("samples", "particles", "elongated-1.stl"), wait)
-    settle(window, wait)
+    drawn(window)
     first = pictures(window)
     assert all(coverage(picture) > 0.03 for picture in first)
     assert all(difference(one, two) > 0.5 for one, two in zip(sample, first, strict=True))
@@ -175,7 +178,7 @@ def test_that_a_file_becomes_a_dataset_by_mouse_and_keys_alone(window, wait, tmp
 
     drag_slider(window.findChild(QSlider, "l_max_slider"), 0.1)
     wait(lambda: window.session.choices.l_max < 6)
-    settle(window, wait)
+    drawn(window)
     second = pictures(window)
     assert differing(first, second) == [False, True, True]
 
@@ -183,7 +186,7 @@ def test_that_a_file_becomes_a_dataset_by_mouse_and_keys_alone(window, wait, tmp
     wait(lambda: window.session.choices.weights["volume"] > 1.5)
     drag_slider(window.findChild(QSlider, "n_faces_slider"), 0.1)
     wait(lambda: window.session.choices.n_faces < 16)
-    settle(window, wait)
+    drawn(window)
     third = pictures(window)
     assert [difference(one, two) > 0.2 for one, two in zip(second, third, strict=True)] == [
         False,
@@ -195,8 +198,7 @@ def test_that_a_file_becomes_a_dataset_by_mouse_and_keys_alone(window, wait, tmp
     QTest.mousePress(turn, Qt.MouseButton.LeftButton, pos=QPoint(60, 60))
     QTest.mouseMove(turn, QPoint(160, 90))
     QTest.mouseRelease(turn, Qt.MouseButton.LeftButton, pos=QPoint(160, 90))
-    QTest.qWait(80)
-    assert differing(third, pictures(window)) == [True, True, True]
+    wait(lambda: differing(third, pictures(window)) == [True, True, True])
 
     folder = tmp_path / "dataset"
     activate(window)
@@ -211,9 +213,9 @@ def test_that_a_file_becomes_a_dataset_by_mouse_and_keys_alone(window, wait, tmp
     assert read_dataset(folder) is not None
 
 
-def test_that_the_picture_of_the_documentation_can_be_taken(window, wait):
+def test_that_the_picture_of_the_documentation_can_be_taken(window, drawn):
     window.session.select("angular-1")
-    settle(window, wait)
+    drawn(window)
     QTest.qWait(400)
     picture = window.grab().toImage()
     for frame in window.page.triptych.frames.values():

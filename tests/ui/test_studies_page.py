@@ -1,7 +1,6 @@
 """The page of the studies: figures 3, 7 and 8, live, and as files."""
 
 import pytest
-from PySide6.QtTest import QTest
 
 from regolith_studio.session.solids import row_labels
 from regolith_studio.ui.app import open_window
@@ -37,11 +36,11 @@ def test_that_the_gallery_fills_row_by_row_and_can_be_stopped(window, wait):
 
 
 @pytest.mark.slow
-def test_that_both_studies_are_computed_and_saved(window, wait, tmp_path, monkeypatch):
+def test_that_both_studies_are_computed_and_saved(window, wait, settled, tmp_path, monkeypatch):
     page = window.go("studies")
     window.menus.by_name["studies.run_all"].trigger()
-    wait(lambda: window.session.results.coarsening_study and not window.session.tasks, SECONDS)
-    QTest.qWait(300)
+    wait(lambda: window.session.results.coarsening_study, SECONDS)
+    settled(window)
     assert not page.lmax_study.plot.is_empty()
     assert len(page.coarsening_study.table.values()) == len(row_labels())
     monkeypatch.setattr(ASKED, lambda *_: str(tmp_path))

@@ -23,14 +23,13 @@ SECONDS = 120.0
 
 
 @pytest.fixture
-def window(shown, preferences, wait):
+def window(shown, preferences, wait, settled):
     """A window on the sample, with its first polyhedron."""
     made = open_window(views="image", preferences=preferences)
     made.resize(1100, 720)
     shown(made)
     wait(lambda: made.session.results.coarsened is not None, SECONDS)
-    wait(lambda: not made.session.tasks, SECONDS)
-    QTest.qWait(80)
+    settled(made, SECONDS)
     return made
 
 
@@ -86,14 +85,14 @@ def test_that_the_window_opens_on_the_sample_with_three_different_views(window):
     assert not window.page.plots.spectrum.plot.is_empty()
 
 
-def test_that_l_max_changes_the_fit_and_the_polyhedron_but_not_the_particle(window, wait):
+def test_that_l_max_changes_the_fit_and_the_polyhedron_but_not_the_particle(window, wait, settled):
     before = pictures(window)
     slider = window.findChild(QSlider, "l_max_slider")
     for _ in range(6):
         QTest.keyClick(slider, Qt.Key.Key_Left)
     wait(lambda: window.session.choices.l_max == 4)
-    wait(lambda: window.session.results.coarsened is not None and not window.session.tasks, SECONDS)
-    QTest.qWait(80)
+    wait(lambda: window.session.results.coarsened is not None, SECONDS)
+    settled(window)
     assert changed(before, pictures(window)) == [False, True, True]
     assert "4" in window.page.triptych.frames["fit"]._title.text()
 
@@ -115,15 +114,15 @@ def test_that_a_dragged_slider_is_one_step_of_undo(window, wait):
     wait(lambda: window.page.coarsening.value()["n_faces"] == 30)
 
 
-def test_that_another_particle_fills_all_three_views(window, wait):
+def test_that_another_particle_fills_all_three_views(window, wait, settled):
     before = pictures(window)
     table = window.page.particles.table
     QTest.mouseClick(
         table.viewport(), Qt.MouseButton.LeftButton, pos=table.visualRect(table.model().index(6, 0)).center()
     )
     wait(lambda: window.session.choices.selected == window.page.particles.entries()[6].id)
-    wait(lambda: window.session.results.coarsened is not None and not window.session.tasks, SECONDS)
-    QTest.qWait(80)
+    wait(lambda: window.session.results.coarsened is not None, SECONDS)
+    settled(window)
     assert changed(before, pictures(window)) == [True, True, True]
 
 
@@ -250,10 +249,9 @@ def test_that_every_command_has_its_place_and_a_tip(window):
         seen.add(keys)
 
 
-def test_that_closing_while_busy_leaves_quickly(window):
+def test_that_closing_while_busy_leaves_quickly(window, wait):
     window.session.choose(method="annealing", settings=(("iterations", 100_000),))
-    QTest.qWait(200)
-    assert window.session.tasks
+    wait(lambda: any(task.lane == "coarsening" for task in window.session.tasks))
     begin = time.monotonic()
     window.close()
     assert time.monotonic() - begin < 5.0

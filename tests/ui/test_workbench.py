@@ -176,7 +176,7 @@ def test_that_the_time_left_follows_from_the_time_gone(done, total, seconds, wor
     assert time_left(done, total, seconds) == words
 
 
-def test_that_the_borders_between_parts_are_remembered(window, shown):
+def test_that_the_borders_between_parts_are_remembered(window, shown, wait):
     columns = window.page.findChild(QSplitter, "explore_columns")
     total = sum(columns.sizes())
     columns.setSizes([total // 3, total // 3, total // 3])
@@ -185,8 +185,7 @@ def test_that_the_borders_between_parts_are_remembered(window, shown):
     kept = Preferences.load()
     again = shown(open_window(views="image", preferences=kept))
     again.resize(window.size())
-    QTest.qWait(20)
-    assert again.size() == window.size()
+    wait(lambda: again.size() == window.size())
     found = again.page.findChild(QSplitter, "explore_columns").sizes()
     assert all(abs(one - other) <= 8 for one, other in zip(found, wanted, strict=True))
 
