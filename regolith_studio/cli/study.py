@@ -1,10 +1,10 @@
 """``study``: tables and figures over a sample."""
 
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated
 
 import typer
 
+from regolith_studio.cli import variations
 from regolith_studio.cli.coarsen import choices_from
 from regolith_studio.cli.options import (
     Degrees,
@@ -23,13 +23,12 @@ from regolith_studio.cli.options import (
     StarPoint,
     Target,
     Unit,
+    Weights,
     as_bad_use,
     whole_numbers,
 )
+from regolith_studio.cli.variations import BoxMetric, check_box, conclude
 from regolith_studio.cli.whole_help import WholeHelp
-
-if TYPE_CHECKING:
-    from regolith_studio.jobs.events import Steps
 
 Below = Annotated[
     float,
@@ -38,12 +37,12 @@ Below = Annotated[
     ),
 ]
 
-BoxMetric = Annotated[
-    str,
+Losses = Annotated[
+    list[str] | None,
     typer.Option(
-        "--box",
-        help="Bounding box of the diameters: exact, or trimesh, the heuristic of the paper's program.",
-        metavar="BOX",
+        "--loss",
+        help="A row: a preset, a descriptor alone (only_volume, ...), or chosen for --weight; else Fig. 8.",
+        metavar="NAME",
     ),
 ]
 SampleSources = Annotated[
@@ -108,7 +107,7 @@ def lmax(
         expansion = Expansion(star_point, rule, reference)
     loaded = read_inputs(meshes, unit)
     steps = study_lmax(loaded.particles, jobs, seed, degrees=wanted, level=level, expansion=expansion)
-    study = _conclude("lmax_study", steps, output, json)
+    study = conclude("lmax_study", steps, output, json)
     if not json:
         typer.echo(enough_degrees(study, below / 100))
     raise typer.Exit(exit_code(meshes, loaded))
@@ -120,6 +119,8 @@ def coarsening(
     output: Folder,
     faces: Faces = 20,
     method: Method = "",
+    loss: Losses = None,
+    weight: Weights = None,
     set_: Settings = None,
     target: Target = "fit",
     l_max: LMax = 10,
@@ -134,15 +135,18 @@ def coarsening(
 ) -> None:
     """RMSRE of the descriptors for each set of loss weights (Fig. 8)."""
     from regolith_studio.cli.inputs import exit_code, read_inputs
-    from regolith_studio.descriptors.facts import BOX_METRICS
     from regolith_studio.jobs.studying import study_coarsening
+    from regolith_studio.session.variations import CHOSEN, chosen_rows
+    from regolith_studio.studies.loss_rows import PAPER_ROWS
 
-    if box not in BOX_METRICS:
-        raise typer.BadParameter(f"The box must be one of {', '.join(BOX_METRICS)}, got {box!r}.")
-    wish = choices_from(faces, method, "", None, set_, target, l_max, seed, star_point, rule, reference)
+    check_box(box)
+    wish = choices_from(faces, method, "", weight, set_, target, l_max, seed, star_point, rule, reference)
+    names = tuple(loss or (PAPER_ROWS if not weight else (*PAPER_ROWS, CHOSEN)))
+    with as_bad_use():
+        rows = chosen_rows(names, wish)
     loaded = read_inputs(meshes, unit)
-    study = study_coarsening(loaded.particles, wish.order, jobs, box_metric=box)
-    _conclude("coarsening_study", study, output, json)
+    study = study_coarsening(loaded.particles, wish.order, jobs, rows=rows, box_metric=box)
+    conclude("coarsening_study", study, output, json)
     raise typer.Exit(exit_code(meshes, loaded))
 
 
@@ -191,7 +195,7 @@ def population(
         keys=tuple(CATALOGUE) if descriptors == "all" else _words(descriptors) or KEYS,
         seed=seed,
     )
-    study = _conclude("population_study", steps, output, json)
+    study = conclude("population_study", steps, output, json)
     if not json:
         typer.echo()
         print_table(target_table(study))
@@ -201,16 +205,5 @@ def _words(text: str) -> tuple[str, ...]:
     return tuple(word.strip() for word in text.split(",") if word.strip())
 
 
-def _conclude(kind: str, steps: "Steps", folder: Path, json: bool) -> Any:
-    from regolith_studio.cli.terminal import follow, print_json, print_table
-    from regolith_studio.session.outputs.staging import staged_folder
-    from regolith_studio.session.outputs.studies import STUDIES
-
-    study = follow(steps)
-    with staged_folder(folder) as stage:
-        files = [path.name for path in STUDIES[kind].write(study, stage)]
-    if json:
-        print_json({"folder": str(folder), "files": files})
-    else:
-        print_table(STUDIES[kind].table(study))
-    return study
+for _command in (variations.faces, variations.tradeoff, variations.sensitivity):
+    app.command(_command.__name__)(_command)

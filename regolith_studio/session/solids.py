@@ -11,7 +11,7 @@ from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.jobs.coarsening import CoarsenedParticle, CoarseningOrder, coarsen_particle
 from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
 from regolith_studio.session.choices import L_MAX_LIMIT
-from regolith_studio.studies.coarsening import PAPER_ROWS
+from regolith_studio.studies.loss_rows import PAPER_ROWS
 
 
 @dataclass(frozen=True)

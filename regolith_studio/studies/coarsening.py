@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Generator, Iterable, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -10,66 +10,29 @@ from numpy.typing import ArrayLike
 
 from regolith_studio.coarsening.coarsen import DEFAULT_METHOD, coarsen
 from regolith_studio.coarsening.result import Coarsened
+from regolith_studio.coarsening.start import decimated_hull
 from regolith_studio.coarsening.target import Target
-from regolith_studio.coarsening.weights import JACCARD, WEIGHT_KEYS, LossWeights, presets
+from regolith_studio.coarsening.weights import JACCARD
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
 from regolith_studio.descriptors.comparison import relative_errors
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.expansion import USUAL, Expansion
 from regolith_studio.harmonics.surface import reconstruct
+from regolith_studio.studies.loss_rows import StudyRow, paper_rows
 from regolith_studio.studies.progress import StudyProgress
 from regolith_studio.studies.tables import Column, Table
 
-PAPER_ROWS = (
-    "quadric",
-    "descriptors",
-    "volume_sphericity_aspect_ratio",
-    "overlap",
-    "aspect_ratio_overlap",
-    "all",
-)
-"""Presets that stand for the rows of Fig. 8."""
-FACE_COUNTS = (8, 12, 16, 20, 30, 50)
 COLUMNS = (*LOSS_KEYS, JACCARD)
 """Columns of the errors: the descriptors of Eq. 8 and the distance of Eq. 7."""
 N_RESAMPLES = 1000
 
 Mapper = Callable[[Callable[[Any], Any], Iterable[Any]], Iterable[Any]]
 """Anything that maps a picklable function in order: ``map``, or the ordered map of a process pool."""
-
-
-@dataclass(frozen=True)
-class StudyRow:
-    """One row of the study: how every particle is coarsened.
-
-    Parameters
-    ----------
-    label
-        As printed.
-    weights
-        Of the loss; all 0 stands for the quadric start itself.
-    method
-        Key of the coarsening method.
-    n_faces
-        Facets.
-    settings
-        Of the method, as (name, value) pairs.
-    """
-
-    label: str
-    weights: LossWeights
-    method: str = DEFAULT_METHOD
-    n_faces: int = 20
-    settings: tuple[tuple[str, Any], ...] = ()
-
-    @property
-    def is_baseline(self) -> bool:
-        """Whether the decimated mesh itself is measured, as in the first row of Fig. 8."""
-        return self.weights.all_zero or self.method == "quadric"
 
 
 @dataclass(frozen=True)
@@ -120,20 +83,28 @@ class CoarseningStudy:
     confidence: float = 0.95
     seed: int = 0
 
-    @property
+    @cached_property
     def rmsre(self) -> FloatArray:
         """RMSRE of Eq. 10 by row and column; the last column is the mean Jaccard distance."""
         pooled: FloatArray = _pooled(self.errors, np.ones((1, len(self.names))))[0]
         return pooled
 
-    @property
+    @cached_property
     def bands(self) -> FloatArray:
         """Ends of the bootstrap band over particles, shape (2, rows, columns)."""
+        return self.band_of(self.resampled)
+
+    @cached_property
+    def resampled(self) -> FloatArray:
+        """:attr:`rmsre` of resampled particles, the same ones in all rows: (resamples, rows, columns)."""
         rng = np.random.default_rng(np.random.SeedSequence(self.seed))
         n = len(self.names)
-        counts = rng.multinomial(n, np.full(n, 1.0 / n), N_RESAMPLES)
+        return _pooled(self.errors, rng.multinomial(n, np.full(n, 1.0 / n), N_RESAMPLES))
+
+    def band_of(self, resampled: FloatArray) -> FloatArray:
+        """Ends of the band of anything made from :attr:`resampled`, along its first axis."""
         tail = 50.0 * (1.0 - self.confidence)
-        return np.asarray(np.percentile(_pooled(self.errors, counts), [tail, 100.0 - tail], axis=0))
+        return np.asarray(np.percentile(resampled, [tail, 100.0 - tail], axis=0))
 
 
 def _pooled(errors: FloatArray, counts: ArrayLike) -> FloatArray:
@@ -144,46 +115,6 @@ def _pooled(errors: FloatArray, counts: ArrayLike) -> FloatArray:
     pooled[..., -1] = np.tensordot(weights, errors[..., -1], axes=1)
     result: FloatArray = np.asarray(pooled, dtype=np.float64)
     return result
-
-
-def paper_rows(method: str = DEFAULT_METHOD, n_faces: int = 20, **settings: Any) -> tuple[StudyRow, ...]:
-    """The rows of Fig. 8, coarsened by `method`."""
-    return tuple(
-        StudyRow(presets()[name].label, presets()[name].weights, method, n_faces, tuple(settings.items()))
-        for name in PAPER_ROWS
-    )
-
-
-def face_count_rows(
-    weights: LossWeights, method: str = DEFAULT_METHOD, counts: Sequence[int] = FACE_COUNTS, **settings: Any
-) -> tuple[StudyRow, ...]:
-    """One row for each number of faces."""
-    return tuple(StudyRow(f"{n} faces", weights, method, n, tuple(settings.items())) for n in counts)
-
-
-def overlap_rows(
-    weights: LossWeights, method: str, factors: Sequence[float], n_faces: int = 20, **settings: Any
-) -> tuple[StudyRow, ...]:
-    """One row for each factor on the weight of the Jaccard distance: overlap against descriptors."""
-    return tuple(
-        StudyRow(
-            f"overlap x {factor:g}",
-            weights.replaced(**{JACCARD: weights[JACCARD] * factor}),
-            method,
-            n_faces,
-            tuple(settings.items()),
-        )
-        for factor in factors
-    )
-
-
-def sensitivity_rows(
-    weights: LossWeights, method: str, factor: float = 4.0, n_faces: int = 20, **settings: Any
-) -> tuple[StudyRow, ...]:
-    """The weights themselves, and each of them multiplied by `factor` alone."""
-    changed = [(key, weights.replaced(**{key: weights[key] * factor})) for key in WEIGHT_KEYS if weights[key]]
-    cases = [("as given", weights), *[(f"{key} x {factor:g}", each) for key, each in changed]]
-    return tuple(StudyRow(label, each, method, n_faces, tuple(settings.items())) for label, each in cases)
 
 
 def coarsening_errors(
@@ -218,18 +149,16 @@ def _row_errors(
     method = "quadric" if row.is_baseline else row.method
     settings = None if row.is_baseline else dict(row.settings)
     found = coarsen(target, row.n_faces, method, row.weights, seed, index, settings)
-    if row.is_baseline:
-        errors: dict[str, float] = dict(found.variants["mesh"])
-        if box_metric != "exact":
-            errors |= _measured(found, wanted, box_metric)
+    if box_metric == "exact" and not row.is_baseline:
+        errors = dict(found.errors)
     else:
-        errors = dict(found.errors) if box_metric == "exact" else _measured(found, wanted, box_metric)
+        solid = decimated_hull(target, row.n_faces) if row.is_baseline else _in_unit_frame(found)
+        errors = relative_errors(wanted, describe(solid, LOSS_KEYS, box_metric))
     return [*[errors[key] for key in LOSS_KEYS], found.jaccard_distance], found.reason is None
 
 
-def _measured(found: Coarsened, wanted: Any, box_metric: str) -> dict[str, float]:
-    unit = found.polyhedron.moved(scale=found.target["volume"] ** (-1 / 3))
-    return relative_errors(wanted, describe(unit, LOSS_KEYS, box_metric))
+def _in_unit_frame(found: Coarsened) -> ConvexPolyhedron:
+    return found.polyhedron.moved(scale=found.target["volume"] ** (-1 / 3))
 
 
 def coarsening_study(
@@ -287,6 +216,21 @@ def _with_outcome(study: CoarseningStudy, particle: Particle, outcome: Any) -> C
     )
 
 
+def study_notes(study: CoarseningStudy) -> tuple[str, ...]:
+    """What a reader of any table of the study needs: particles, boxes, bands, weights, what was left out."""
+    weights = [
+        f"{row.label}: "
+        + (", ".join(f"{key} {value:g}" for key, value in row.weights.items() if value) or "0")
+        for row in study.rows
+    ]
+    return (
+        f"{len(study.names)} particles; bounding boxes: {study.box_metric}.",
+        f"Bands: {study.confidence:.0%}, {N_RESAMPLES} resamples of the particles, seed {study.seed}.",
+        *weights,
+        *(f"{name} was left out: {reason}" for name, reason in study.failures),
+    )
+
+
 def rmsre_table(study: CoarseningStudy) -> Table:
     """Fig. 8 as numbers: a row for each row of weights and each descriptor."""
     values, (low, high) = 100 * study.rmsre, 100 * study.bands
@@ -297,17 +241,9 @@ def rmsre_table(study: CoarseningStudy) -> Table:
     ]
     percent = [Column(name, "%") for name in ("rmsre", "rmsre_low", "rmsre_high")]
     columns = (*map(Column, ("row", "method", "faces", "descriptor")), *percent, Column("n_unmet"))
-    weights = [
-        f"{row.label}: "
-        + (", ".join(f"{key} {value:g}" for key, value in row.weights.items() if value) or "0")
-        for row in study.rows
-    ]
     notes = (
         "Root mean square over particles of the relative errors of Eq. 8; jaccard_distance: mean (Eq. 7).",
-        f"{len(study.names)} particles; bounding boxes: {study.box_metric}.",
-        f"Bands: {study.confidence:.0%}, {N_RESAMPLES} resamples of the particles, seed {study.seed}.",
-        *weights,
-        *(f"{name} was left out: {reason}" for name, reason in study.failures),
+        *study_notes(study),
     )
     return Table("RMSRE of coarsened particles by loss", columns, tuple(lines), notes)
 

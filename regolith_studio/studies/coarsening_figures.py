@@ -29,7 +29,7 @@ def coarsening_figure(study: CoarseningStudy) -> Figure:
             axis.text(
                 k, r, _printed(values[r, k]), ha="center", va="center", color="white" if dark else "black"
             )
-    axis.set_xticks(range(len(COLUMNS)), [_symbol(key) for key in COLUMNS])
+    axis.set_xticks(range(len(COLUMNS)), [column_symbol(key) for key in COLUMNS])
     axis.set_yticks(range(n_rows), [_described(study, r) for r in range(n_rows)])
     axis.xaxis.tick_top()
     bar = figure.colorbar(image, ax=axis, ticks=[-3, -2, -1, 0, 1, 2])
@@ -48,10 +48,12 @@ def face_count_figure(study: CoarseningStudy) -> Figure:
         axis.fill_between(
             counts, np.maximum(low[:, k], FLOOR), np.maximum(high[:, k], FLOOR), alpha=0.15, linewidth=0
         )
-        axis.plot(counts, np.maximum(values[:, k], FLOOR), marker="o", markersize=3.5, label=_symbol(key))
+        axis.plot(
+            counts, np.maximum(values[:, k], FLOOR), marker="o", markersize=3.5, label=column_symbol(key)
+        )
     axis.set_yscale("log")
     axis.set_xlabel("faces")
-    axis.set_ylabel("RMSRE (%); IoU: mean (%)")
+    axis.set_ylabel(f"RMSRE (%), at least {FLOOR:g}; IoU: mean (%)")
     axis.grid(True, which="major", alpha=0.3)
     figure.legend(loc="outside right upper", frameon=False)
     return figure
@@ -71,7 +73,8 @@ def write_coarsening_study(
     return paths
 
 
-def _symbol(key: str) -> str:
+def column_symbol(key: str) -> str:
+    """Of a descriptor, or IoU as the paper has it."""
     return PAPER_SYMBOLS.get(key) or CATALOGUE[key].symbol
 
 

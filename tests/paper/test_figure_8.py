@@ -13,9 +13,9 @@ from regolith_studio.studies.coarsening import (
     COLUMNS,
     CoarseningStudy,
     coarsening_study,
-    paper_rows,
     rmsre_table,
 )
+from regolith_studio.studies.loss_rows import paper_rows
 from regolith_studio.studies.tables import rows_as_text
 
 pytestmark = [pytest.mark.slow, pytest.mark.real_data]

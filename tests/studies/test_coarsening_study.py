@@ -16,15 +16,12 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.studies.coarsening import (
     COLUMNS,
     CoarseningStudy,
-    StudyRow,
     coarsening_study,
-    face_count_rows,
-    paper_rows,
     particle_table,
     rmsre_table,
-    sensitivity_rows,
 )
 from regolith_studio.studies.coarsening_figures import write_coarsening_study
+from regolith_studio.studies.loss_rows import StudyRow, face_count_rows, paper_rows, sensitivity_rows
 from regolith_studio.studies.progress import StudyProgress
 
 ROWS = (
@@ -102,8 +99,10 @@ def test_that_progress_counts_particles() -> None:
 def test_that_the_rows_are_those_of_the_figure() -> None:
     assert len(paper_rows()) == 6
     assert paper_rows()[0].is_baseline
-    assert [row.n_faces for row in face_count_rows(LossWeights.from_preset("all"), counts=(8, 12))] == [8, 12]
-    changed = sensitivity_rows(LossWeights.of(volume=1, sphericity=2), "annealing", 3.0)
+    assert [
+        row.n_faces for row in face_count_rows(StudyRow("", LossWeights.from_preset("all")), (8, 12))
+    ] == [8, 12]
+    changed = sensitivity_rows(StudyRow("", LossWeights.of(volume=1, sphericity=2), "annealing"), (3.0,))
     assert [row.weights["sphericity"] for row in changed] == [2, 2, 6]
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,8 @@ from regolith_studio.studies.lmax_figures import write_lmax_study
 from regolith_studio.studies.population_figures import write_population_study
 from regolith_studio.studies.population_tables import ranking_table
 from regolith_studio.studies.tables import Table
+from regolith_studio.studies.variation_figures import write_variation
+from regolith_studio.studies.variations import VARIATIONS
 
 
 @dataclass(frozen=True)
@@ -52,5 +55,9 @@ STUDIES: Mapping[str, StudyKind] = {
         write_population_study,
         ranking_table,
     ),
+    **{
+        f"{key}_study": StudyKind(each.title, f"{key}.png", partial(write_variation, key), each.table)
+        for key, each in VARIATIONS.items()
+    },
 }
-"""Those that a recipe can ask for by the same words as :class:`~regolith_studio.session.plan.Kind`."""
+"""The first two can be asked for by a recipe, in the words of :class:`~regolith_studio.session.plan.Kind`."""

@@ -1,0 +1,193 @@
+"""Rows of a study of the coarsening: losses by name, face counts, weights that are varied."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cache
+from itertools import combinations
+from typing import Any, Self
+
+from regolith_studio.coarsening.coarsen import DEFAULT_METHOD
+from regolith_studio.coarsening.weights import JACCARD, WEIGHT_KEYS, LossWeights, presets
+from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
+from regolith_studio.errors import InputError
+
+PAPER_ROWS = (
+    "quadric",
+    "descriptors",
+    "volume_sphericity_aspect_ratio",
+    "overlap",
+    "aspect_ratio_overlap",
+    "all",
+)
+"""Presets that stand for the rows of Fig. 8."""
+ALONE = "only_"
+"""Begins the name of a loss with a single descriptor: ``only_volume``."""
+FACE_COUNTS = (8, 12, 16, 20, 30, 50)
+OVERLAP_FACTORS = (0.0, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0)
+CHANGE_FACTORS = (0.0, 4.0)
+GROUPS: Mapping[str, tuple[str, ...]] = {
+    "size": ("volume", "convex_hull_volume"),
+    "box": ("min_diameter", "max_diameter", "aspect_ratio"),
+    "sphericity": ("sphericity",),
+}
+"""Descriptors that are kept or left together when conditions are traded for overlap."""
+CONDITION_METHODS = ("exact",)
+"""Methods in which a weight above 0 makes a condition, so that its size alone changes little."""
+
+
+@dataclass(frozen=True)
+class StudyRow:
+    """One row of the study: how every particle is coarsened.
+
+    Parameters
+    ----------
+    label
+        As printed.
+    weights
+        Of the loss; all 0 stands for the quadric start itself.
+    method
+        Key of the coarsening method.
+    n_faces
+        Facets.
+    settings
+        Of the method, as (name, value) pairs.
+    """
+
+    label: str
+    weights: LossWeights
+    method: str = DEFAULT_METHOD
+    n_faces: int = 20
+    settings: tuple[tuple[str, Any], ...] = ()
+
+    @property
+    def is_baseline(self) -> bool:
+        """Whether the decimated mesh itself is measured, as in the first row of Fig. 8."""
+        return self.weights.all_zero or self.method == "quadric"
+
+    def relabelled(self, label: str, **changes: Any) -> Self:
+        """A copy with `changes` under another name."""
+        return replace(self, label=label, **changes)
+
+
+@dataclass(frozen=True)
+class Loss:
+    """A loss with a name: a preset, or a single descriptor."""
+
+    label: str
+    weights: LossWeights
+
+
+@cache
+def losses() -> dict[str, Loss]:
+    """The presets by name, then each descriptor of the loss alone (overlap alone is a preset)."""
+    alone = {
+        f"{ALONE}{key}": Loss(f"{CATALOGUE[key].label} only", LossWeights.of(**{key: 1.0}))
+        for key in LOSS_KEYS
+    }
+    return {name: Loss(each.label, each.weights) for name, each in presets().items()} | alone
+
+
+def loss_rows(names: Sequence[str], like: StudyRow) -> tuple[StudyRow, ...]:
+    """A row for each name of :func:`losses`, in all else as `like`.
+
+    Raises
+    ------
+    InputError
+        If there is no such loss.
+    """
+    known = losses()
+    for name in names:
+        if name not in known:
+            raise InputError(f"There is no loss called {name!r}; there are {', '.join(known)}.")
+    return tuple(like.relabelled(known[name].label, weights=known[name].weights) for name in names)
+
+
+def paper_rows(method: str = DEFAULT_METHOD, n_faces: int = 20, **settings: Any) -> tuple[StudyRow, ...]:
+    """The rows of Fig. 8, coarsened by `method`."""
+    like = StudyRow("", LossWeights.of(), method, n_faces, tuple(settings.items()))
+    return loss_rows(PAPER_ROWS, like)
+
+
+def face_count_rows(like: StudyRow, counts: Sequence[float] = FACE_COUNTS) -> tuple[StudyRow, ...]:
+    """One row for each number of faces, ascending.
+
+    Raises
+    ------
+    InputError
+        If a number is no whole number.
+    """
+    for count in counts:
+        if count != int(count):
+            raise InputError(f"Numbers of faces are whole numbers, got {count:g}.")
+    return tuple(like.relabelled(f"{int(count)} faces", n_faces=int(count)) for count in sorted(set(counts)))
+
+
+def tradeoff_rows(like: StudyRow, factors: Sequence[float] = OVERLAP_FACTORS) -> tuple[StudyRow, ...]:
+    """Overlap against descriptors.
+
+    Where weights are weighed against each other, one row for each factor on the weight of the overlap, and
+    the overlap alone. Where they make conditions, what each choice of conditions costs: the overlap alone,
+    and every choice of the :data:`GROUPS` that `like` has weights for.
+
+    Raises
+    ------
+    InputError
+        If `like` has no weight on a descriptor, a factor is negative, or the method has no loss.
+    """
+    _check(like, factors)
+    overlap = like.weights[JACCARD] or 1.0
+    wanted = {key: like.weights[key] for key in LOSS_KEYS if like.weights[key]}
+    if not wanted:
+        raise InputError("A trade-off needs a weight above 0 on at least one descriptor.")
+    alone = like.relabelled("Overlap only", weights=LossWeights.of(**{JACCARD: overlap}))
+    if like.method in CONDITION_METHODS:
+        return (alone, *_choices_of_conditions(like, overlap, wanted))
+    weighed = [
+        like.relabelled(f"Overlap × {factor:g}", weights=like.weights.replaced(**{JACCARD: overlap * factor}))
+        for factor in sorted(set(factors))
+    ]
+    return (*weighed, alone)
+
+
+def _choices_of_conditions(
+    like: StudyRow, overlap: float, wanted: Mapping[str, float]
+) -> tuple[StudyRow, ...]:
+    groups = {name: [key for key in keys if key in wanted] for name, keys in GROUPS.items()}
+    present = [name for name, keys in groups.items() if keys]
+    rows = []
+    for count in range(1, len(present) + 1):
+        for chosen in combinations(present, count):
+            weights = {key: wanted[key] for name in chosen for key in groups[name]}
+            label = " + ".join(("Overlap", *chosen))
+            rows.append(like.relabelled(label, weights=LossWeights.of(**{JACCARD: overlap}, **weights)))
+    return tuple(rows)
+
+
+def sensitivity_rows(like: StudyRow, factors: Sequence[float] = CHANGE_FACTORS) -> tuple[StudyRow, ...]:
+    """The weights themselves, then each of them multiplied by each factor, alone.
+
+    Raises
+    ------
+    InputError
+        If no weight is above 0, a factor is negative, or the method has no loss.
+    """
+    _check(like, factors)
+    rows = [like.relabelled("As given")]
+    for key in WEIGHT_KEYS:
+        for factor in sorted(set(factors) - {1.0}):
+            changed = like.weights.replaced(**{key: like.weights[key] * factor})
+            if like.weights[key] and not changed.all_zero:
+                rows.append(like.relabelled(f"{_named(key)} × {factor:g}", weights=changed))
+    return tuple(rows)
+
+
+def _check(like: StudyRow, factors: Sequence[float]) -> None:
+    if like.is_baseline:
+        raise InputError("Quadric decimation has no loss whose weights could be varied; take another method.")
+    for factor in factors:
+        if not factor >= 0:
+            raise InputError(f"A factor on a weight must be 0 or a positive number, got {factor:g}.")
+
+
+def _named(key: str) -> str:
+    return "Overlap" if key == JACCARD else CATALOGUE[key].label

@@ -1,0 +1,107 @@
+"""Figures of the variations of a coarsening, and all their files."""
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+import numpy as np
+from matplotlib.colors import TwoSlopeNorm
+from matplotlib.figure import Figure
+
+from regolith_studio.studies.coarsening import COLUMNS, CoarseningStudy, particle_table
+from regolith_studio.studies.coarsening_figures import column_symbol, face_count_figure
+from regolith_studio.studies.figure_files import write_figure
+from regolith_studio.studies.tables import write_table
+from regolith_studio.studies.variations import (
+    VARIATIONS,
+    beyond_chance,
+    changes,
+    descriptor_error,
+    efficient,
+)
+
+LEAST_SPAN = 0.01
+"""Percentage points: where all changes are smaller, they are drawn as none."""
+
+
+def tradeoff_figure(study: CoarseningStudy) -> Figure:
+    """Mean RMSRE of the descriptors against the mean Jaccard distance; a line through efficient rows."""
+    x, y = 100 * study.rmsre[:, -1], 100 * descriptor_error(study.rmsre)
+    x_ends = 100 * study.bands[..., -1]
+    y_ends = 100 * study.band_of(descriptor_error(study.resampled))
+    figure = Figure(figsize=(7.5, 4.5), layout="constrained")
+    axis = figure.subplots()
+    best = list(efficient(study))
+    axis.plot(
+        x[best], y[best], color="#888888", linewidth=1, linestyle="--", label="no row is better in both"
+    )
+    for r, row in enumerate(study.rows):
+        axis.errorbar(
+            x[r],
+            y[r],
+            xerr=np.maximum(0.0, [[x[r] - x_ends[0, r]], [x_ends[1, r] - x[r]]]),
+            yerr=np.maximum(0.0, [[y[r] - y_ends[0, r]], [y_ends[1, r] - y[r]]]),
+            fmt="o",
+            markersize=5,
+            color=f"C{r % 10}",
+            elinewidth=0.8,
+            capsize=2,
+            label=row.label,
+        )
+    axis.set_xlabel("mean Jaccard distance (%)")
+    axis.set_ylabel("mean RMSRE of the six descriptors (%)")
+    axis.set_ylim(bottom=0)
+    axis.grid(True, alpha=0.3)
+    figure.legend(loc="outside right upper", frameon=False, fontsize="small")
+    return figure
+
+
+def sensitivity_figure(study: CoarseningStudy) -> Figure:
+    """Changes in percentage points, one row a changed weight; numbers in brackets may be chance."""
+    values, sure = 100 * changes(study)[0], beyond_chance(study)
+    n_rows = len(values)
+    figure = Figure(figsize=(9.0, 1.6 + 0.34 * n_rows), layout="constrained")
+    axis = figure.subplots()
+    span = max(LEAST_SPAN, float(np.abs(values).max(initial=0.0)))
+    norm = TwoSlopeNorm(0.0, -span, span)
+    image = axis.imshow(values, aspect="auto", cmap="RdBu_r", norm=norm)
+    for r in range(n_rows):
+        for k in range(len(COLUMNS)):
+            text = change_text(values[r, k])
+            axis.text(
+                k,
+                r,
+                text if sure[r, k] or text == "0" else f"({text})",
+                ha="center",
+                va="center",
+                color="white" if abs(values[r, k]) > 0.6 * span else "black",
+                fontsize=8,
+            )
+    axis.set_xticks(range(len(COLUMNS)), [column_symbol(key) for key in COLUMNS])
+    axis.set_yticks(range(n_rows), [row.label for row in study.rows[1:]])
+    axis.xaxis.tick_top()
+    figure.colorbar(image, ax=axis).set_label(
+        "change of RMSRE (percentage points); in brackets: may be chance"
+    )
+    return figure
+
+
+def change_text(points: float) -> str:
+    """A change in percentage points with its sign; 0 where it cannot be seen."""
+    return "0" if abs(points) < 0.005 else f"{points:+.2f}"
+
+
+FIGURES: Mapping[str, Callable[[CoarseningStudy], Figure]] = {
+    "faces": face_count_figure,
+    "tradeoff": tradeoff_figure,
+    "sensitivity": sensitivity_figure,
+}
+"""By key of :data:`~regolith_studio.studies.variations.VARIATIONS`."""
+
+
+def write_variation(key: str, study: CoarseningStudy, folder: Path) -> tuple[Path, ...]:
+    """Tables (CSV, JSON) of rows and of particles, and the figure (PNG, SVG)."""
+    return (
+        *write_table(VARIATIONS[key].table(study), folder, key),
+        *write_table(particle_table(study), folder, f"{key}_particles"),
+        *write_figure(FIGURES[key](study), folder, key),
+    )

@@ -1,0 +1,205 @@
+"""Three ways to vary a coarsening: error against faces, overlap against descriptors, one weight at a time."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from regolith_studio.coarsening.exact.request import EXACT
+from regolith_studio.coarsening.weights import JACCARD
+from regolith_studio.descriptors.catalogue import LOSS_KEYS
+from regolith_studio.errors import InputError
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.studies.coarsening import COLUMNS, CoarseningStudy, rmsre_table, study_notes
+from regolith_studio.studies.loss_rows import (
+    CHANGE_FACTORS,
+    CONDITION_METHODS,
+    FACE_COUNTS,
+    OVERLAP_FACTORS,
+    StudyRow,
+    face_count_rows,
+    sensitivity_rows,
+    tradeoff_rows,
+)
+from regolith_studio.studies.tables import Column, Table
+
+
+@dataclass(frozen=True)
+class Variation:
+    """What is varied.
+
+    Parameters
+    ----------
+    key
+        In file names and commands.
+    title
+        On screen.
+    asks
+        What the values are.
+    values
+        Those that are proposed.
+    rows
+        The rows of the study, from one row and the values.
+    table
+        What was found.
+    """
+
+    key: str
+    title: str
+    asks: str
+    values: tuple[float, ...]
+    rows: Callable[[StudyRow, Sequence[float]], tuple[StudyRow, ...]]
+    table: Callable[[CoarseningStudy], Table]
+
+    def takes_values(self, method: str) -> bool:
+        """Whether the values matter: conditions are kept or left, whatever their weights."""
+        return self.key != "tradeoff" or method not in CONDITION_METHODS
+
+
+def parsed_values(text: str) -> tuple[float, ...]:
+    """Numbers with commas between them.
+
+    Raises
+    ------
+    InputError
+        If a word is no number, or there is none.
+    """
+    try:
+        found = tuple(float(word) for word in text.split(",") if word.strip())
+    except ValueError:
+        found = ()
+    if not found or not np.isfinite(found).all():
+        raise InputError(f"Write numbers with commas between them, such as 8, 20, 50; got {text!r}.")
+    return found
+
+
+def descriptor_error(rmsre: FloatArray) -> FloatArray:
+    """Mean RMSRE of the six descriptors of the loss: all columns but the last (the overlap)."""
+    return np.asarray(rmsre[..., :-1].mean(axis=-1))
+
+
+def efficient(study: CoarseningStudy) -> tuple[int, ...]:
+    """Rows that no other row beats in both overlap and :func:`descriptor_error`, by their overlap."""
+    distance, error = study.rmsre[:, -1], descriptor_error(study.rmsre)
+    kept: list[int] = []
+    for row in sorted(range(len(study.rows)), key=lambda r: (distance[r], error[r])):
+        if not kept or error[row] < error[kept[-1]]:
+            kept.append(row)
+    return tuple(kept)
+
+
+def changes(study: CoarseningStudy) -> tuple[FloatArray, FloatArray]:
+    """RMSRE of the rows after the first minus that of the first, and the paired bootstrap band.
+
+    Shapes (rows - 1, columns) and (2, rows - 1, columns); the last column is the Jaccard distance.
+    """
+    resampled = study.resampled[:, 1:] - study.resampled[:, :1]
+    return study.rmsre[1:] - study.rmsre[:1], study.band_of(resampled)
+
+
+def beyond_chance(study: CoarseningStudy) -> NDArray[np.bool_]:
+    """Which :func:`changes` are larger than what :data:`EXACT` allows, with a band that leaves 0 out."""
+    values, (low, high) = changes(study)
+    return np.asarray((np.abs(values) > EXACT) & ((low > 0) | (high < 0)))
+
+
+def tradeoff_table(study: CoarseningStudy) -> Table:
+    """Overlap and descriptors of every row, with bands; and whether another row is better in both."""
+    values, (low, high) = 100 * study.rmsre, 100 * study.bands
+    error = 100 * descriptor_error(study.rmsre)
+    error_low, error_high = 100 * study.band_of(descriptor_error(study.resampled))
+    best = efficient(study)
+    lines = [
+        (
+            row.label,
+            *(values[r, -1], low[r, -1], high[r, -1]),
+            *(error[r], error_low[r], error_high[r]),
+            *values[r, :-1],
+            study.n_unmet[r],
+            "yes" if r in best else "no",
+        )
+        for r, row in enumerate(study.rows)
+    ]
+    percent = [
+        Column(f"{name}{end}", "%") for name in (JACCARD, "mean_rmsre") for end in ("", "_low", "_high")
+    ]
+    columns = (
+        Column("row"),
+        *percent,
+        *(Column(key, "%") for key in LOSS_KEYS),
+        Column("n_unmet"),
+        Column("efficient"),
+    )
+    notes = (
+        "jaccard_distance: mean over particles (Eq. 7); the others: RMSRE (Eq. 10), mean_rmsre over all six.",
+        "efficient: no other row has both a smaller distance and a smaller mean_rmsre.",
+        *study_notes(study),
+    )
+    return Table("Overlap against descriptors", columns, tuple(lines), notes)
+
+
+def sensitivity_table(study: CoarseningStudy) -> Table:
+    """What changing one weight changes: a row for each change and descriptor, in percentage points."""
+    if len(study.rows) < 2:
+        raise InputError("A sensitivity needs at least one changed weight.")
+    values, (low, high) = (100 * each for each in changes(study))
+    beyond = beyond_chance(study)
+    lines = [
+        (
+            row.label,
+            key,
+            100 * study.rmsre[0, k],
+            100 * study.rmsre[r + 1, k],
+            *(values[r, k], low[r, k], high[r, k]),
+            "yes" if beyond[r, k] else "no",
+        )
+        for r, row in enumerate(study.rows[1:])
+        for k, key in enumerate(COLUMNS)
+    ]
+    columns = (
+        *map(Column, ("change", "descriptor")),
+        *(Column(name, "%") for name in ("as_given", "changed")),
+        *(Column(name, "pp") for name in ("difference", "difference_low", "difference_high")),
+        Column("beyond_chance"),
+    )
+    notes = (
+        "RMSRE (Eq. 10), jaccard_distance: mean (Eq. 7), with one weight changed, minus that as given.",
+        "pp: percentage points.",
+        "The same resamples of the particles on both sides; beyond_chance: the band leaves 0 out, and the "
+        f"difference is larger than {100 * EXACT:g} pp.",
+        *study_notes(study),
+    )
+    return Table("Sensitivity of coarsened particles to the weights", columns, tuple(lines), notes)
+
+
+VARIATIONS: Mapping[str, Variation] = {
+    each.key: each
+    for each in (
+        Variation(
+            "faces",
+            "Error against the number of faces",
+            "Numbers of faces",
+            tuple(map(float, FACE_COUNTS)),
+            face_count_rows,
+            rmsre_table,
+        ),
+        Variation(
+            "tradeoff",
+            "Overlap against descriptors",
+            "Factors on the weight of the overlap",
+            OVERLAP_FACTORS,
+            tradeoff_rows,
+            tradeoff_table,
+        ),
+        Variation(
+            "sensitivity",
+            "Sensitivity to the weights",
+            "Factors on one weight at a time",
+            CHANGE_FACTORS,
+            sensitivity_rows,
+            sensitivity_table,
+        ),
+    )
+}
+"""By key."""

@@ -1,0 +1,79 @@
+"""``study faces``, ``tradeoff``, ``sensitivity`` and the rows of ``study coarsening``."""
+
+import csv
+from pathlib import Path
+
+import pytest
+
+ONE = ("--target", "particle", "--json")
+
+
+def rows_of(path: Path) -> list[dict[str, str]]:
+    with path.open(newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def test_that_errors_against_faces_are_written(command, grains: Path, tmp_path: Path) -> None:
+    said = command(
+        "study", "faces", grains, "-o", tmp_path / "s", "--faces", "10,30", "--method", "quadric", *ONE
+    )
+    assert said.code == 0, said.err
+    assert set(said.json["files"]) >= {f"faces.{end}" for end in ("csv", "json", "png", "svg")}
+    rows = rows_of(tmp_path / "s" / "faces.csv")
+    volume = [float(row["rmsre [%]"]) for row in rows if row["descriptor"] == "volume"]
+    assert volume[0] > volume[1] > 0  # fewer faces, larger error
+
+
+def test_that_the_trade_off_begins_with_the_best_overlap(command, grains: Path, tmp_path: Path) -> None:
+    said = command("study", "tradeoff", grains / "grain-a.stl", "-o", tmp_path / "s", "--faces", 30, *ONE)
+    assert said.code == 0, said.err
+    rows = rows_of(tmp_path / "s" / "tradeoff.csv")
+    distance = [float(row["jaccard_distance [%]"]) for row in rows]
+    error = [float(row["mean_rmsre [%]"]) for row in rows]
+    assert rows[0]["row"] == "Overlap only"
+    assert distance[0] <= distance[-1]
+    assert error[-1] < error[0] / 2
+
+
+def test_that_one_weight_at_a_time_is_changed(command, grains: Path, tmp_path: Path) -> None:
+    chosen = ("--weight", "volume=1", "--weight", "jaccard_distance=1", "--method", "annealing")
+    quick = ("--set", "iterations=5", "--faces", 12, "--factors", "0,2")
+    said = command(
+        "study", "sensitivity", grains / "grain-a.stl", "-o", tmp_path / "s", *chosen, *quick, *ONE
+    )
+    assert said.code == 0, said.err
+    changes = [row["change"] for row in rows_of(tmp_path / "s" / "sensitivity.csv")]
+    assert list(dict.fromkeys(changes)) == ["Overlap × 0", "Overlap × 2", "Volume × 0", "Volume × 2"]
+
+
+def test_that_any_losses_can_be_the_rows_of_figure_8(command, grains: Path, tmp_path: Path) -> None:
+    losses = ("--loss", "only_volume", "--loss", "chosen", "--weight", "sphericity=1")
+    said = command(
+        "study", "coarsening", grains / "grain-a.stl", "-o", tmp_path / "s", "--faces", 30, *losses, *ONE
+    )
+    assert said.code == 0, said.err
+    rows = rows_of(tmp_path / "s" / "coarsening_rmsre.csv")
+    met = {(row["row"], row["descriptor"]): float(row["rmsre [%]"]) < 1e-4 for row in rows}
+    assert met[("Volume only", "volume")]
+    assert not met[("Volume only", "sphericity")]
+    assert met[("Chosen weights", "sphericity")]
+
+
+@pytest.mark.parametrize(
+    ("wrong", "sentence"),
+    [
+        (("faces", "--faces", "12,many"), "numbers with commas"),
+        (("faces", "--faces", "3,12"), "from 5 to 200, got 3"),
+        (("tradeoff", "--method", "quadric"), "Quadric decimation has no loss"),
+        (("tradeoff", "--preset", "overlap"), "at least one descriptor"),
+        (("sensitivity", "--factors", "-1"), "0 or a positive number"),
+        (("sensitivity", "--box", "round"), "must be one of exact, trimesh"),
+        (("coarsening", "--loss", "beauty"), "no loss called 'beauty'"),
+    ],
+)
+def test_that_bad_use_is_one_sentence(command, grains: Path, tmp_path: Path, wrong, sentence) -> None:
+    name, *options = wrong
+    said = command("study", name, grains, "-o", tmp_path / "s", *options)
+    assert said.code == 2
+    assert sentence in " ".join(said.err.replace("│", " ").split())
+    assert not (tmp_path / "s").exists()
