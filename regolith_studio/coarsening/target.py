@@ -6,11 +6,10 @@ from functools import cached_property
 import numpy as np
 
 from regolith_studio.coarsening.core.overlap import exits, jaccard, shared_volume
-from regolith_studio.coarsening.core.rays import cast_fibonacci
+from regolith_studio.coarsening.core.rays import cast, fibonacci_bundle
 from regolith_studio.descriptors.describe import Descriptors, describe
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.directions import fibonacci_directions
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
 
@@ -100,10 +99,10 @@ class Target:
 
     def ray_table(self, n_rays: int) -> RayTable:
         """The crossings of `n_rays` Fibonacci directions."""
-        directions = np.ascontiguousarray(fibonacci_directions(n_rays))
-        first, distance, sign = cast_fibonacci(self.mesh.vertices, self.mesh.faces, directions)
+        rays = fibonacci_bundle(n_rays)
+        first, distance, sign = cast(self.mesh.vertices, self.mesh.faces, rays)
         weight = 3.0 / float(np.sum(sign * distance**3))
-        return RayTable(directions, first, distance, sign, weight)
+        return RayTable(rays.directions, first, distance, sign, weight)
 
     def jaccard_distance(self, half_spaces: HalfSpaces) -> float:
         """Eq. 7 with 16,000 rays, all volumes by the same quadrature."""

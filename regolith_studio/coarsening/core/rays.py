@@ -1,26 +1,102 @@
-"""Crossings of Fibonacci rays from the origin with a mesh, by bands of equal height."""
+"""Crossings of rays from the origin with a mesh, by cells of a cube around the origin.
+
+Rays and triangles are projected onto the cube from its middle: a triangle that keeps to one side stays a
+triangle, and only rays in the cells under its bounds are tested.
+"""
+
+from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.compiled import kernel
+from regolith_studio.geometry.compiled import kernel, leaf
+from regolith_studio.geometry.directions import fibonacci_directions
+from regolith_studio.geometry.vectors import cross, dot, row
+
+RAYS_IN_CELL = 1.5
+REACH = 1e-9
+"""Bounds of triangles on the cube's sides, of half width 1, are widened by this."""
+NEARLY_BEHIND = 1e-6
+"""Corners that rise less over the middle, as a share of their other coordinates, are not projected."""
+
+
+class RayBundle(NamedTuple):
+    """Rays sorted by cells of the cube's sides.
+
+    Parameters
+    ----------
+    directions
+        In the order asked for, shape (k, 3).
+    sorted_directions, order
+        Cell by cell, shape (k, 3), and where each stands in `directions`, shape (k,).
+    first
+        Rays of cell c are ``first[c]:first[c + 1]``, shape (6 cells^2 + 1,).
+    cells
+        Along the edge of a side.
+    """
+
+    directions: FloatArray
+    sorted_directions: FloatArray
+    order: IntArray
+    first: IntArray
+    cells: int
+
+
+@lru_cache(maxsize=8)
+def fibonacci_bundle(n: int) -> RayBundle:
+    """`n` Fibonacci directions, sorted once in a process."""
+    return bundle_of(np.ascontiguousarray(fibonacci_directions(n)))
 
 
 @kernel
-def cast_fibonacci(
-    points: FloatArray, faces: IntArray, directions: FloatArray
-) -> tuple[IntArray, FloatArray, FloatArray]:
-    """All crossings, sorted by ray and distance, in compressed rows.
+def bundle_of(directions: FloatArray) -> RayBundle:
+    """Sort unit `directions`, shape (k, 3), by cells."""
+    k = len(directions)
+    cells = max(1, int(np.sqrt(k / (6.0 * RAYS_IN_CELL))))
+    cell = np.empty(k, np.int64)
+    first = np.zeros(6 * cells * cells + 1, np.int64)
+    for i in range(k):
+        side, u, v = on_cube(directions, i)
+        cell[i] = (side * cells + step_of(u, cells)) * cells + step_of(v, cells)
+        first[cell[i] + 1] += 1
+    for c in range(6 * cells * cells):
+        first[c + 1] += first[c]
+    order, filled = np.empty(k, np.int64), first.copy()
+    for i in range(k):
+        order[filled[cell[i]]] = i
+        filled[cell[i]] += 1
+    return RayBundle(directions, directions[order], order, first, cells)
 
-    A triangle is seen from the origin inside a cap, and a cap spans a band of z in which the rays of a
-    Fibonacci spiral are neighbours: only these are tested.
+
+@leaf
+def on_cube(points: FloatArray, i: int) -> tuple[int, float, float]:
+    """Side of the cube on which point i is seen from the middle, and where; side -1 for the middle itself."""
+    axis = 0
+    for c in (1, 2):
+        if abs(points[i, c]) > abs(points[i, axis]):
+            axis = c
+    high = abs(points[i, axis])
+    if high == 0.0:
+        return -1, 0.0, 0.0
+    side = 2 * axis + (1 if points[i, axis] < 0.0 else 0)
+    return side, points[i, (axis + 1) % 3] / high, points[i, (axis + 2) % 3] / high
+
+
+@leaf
+def step_of(u: float, cells: int) -> int:
+    """Cell along one edge of a side for a coordinate from -1 to 1; others are brought there."""
+    return min(cells - 1, max(0, int((u + 1.0) * 0.5 * cells)))
+
+
+@kernel
+def cast(points: FloatArray, faces: IntArray, rays: RayBundle) -> tuple[IntArray, FloatArray, FloatArray]:
+    """All crossings, sorted by ray and distance, in compressed rows.
 
     Parameters
     ----------
     points, faces
         Mesh with vertices (n, 3) and triangles (m, 3).
-    directions
-        Fibonacci directions, z falling, shape (k, 3).
 
     Returns
     -------
@@ -29,67 +105,119 @@ def cast_fibonacci(
     distance, sign
         Of each crossing; sign +1 where the ray leaves, -1 where it enters.
     """
-    n = len(directions)
-    size = 2 * n + 16
+    n = len(rays.order)
+    size = 3 * n + 16
     ray, distance, sign = np.empty(size, np.int64), np.empty(size), np.empty(size)
+    side, place = np.empty(len(points), np.int64), np.empty((len(points), 2))
+    for i in range(len(points)):
+        side[i], place[i, 0], place[i, 1] = on_cube(points, i)
     found = 0
-    first = np.zeros(n + 1, np.int64)
     for f in range(len(faces)):
-        a, b, c = points[faces[f, 0]], points[faces[f, 1]], points[faces[f, 2]]
-        ab0, ab1, ab2 = a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
-        bc0, bc1, bc2 = b[1] * c[2] - b[2] * c[1], b[2] * c[0] - b[0] * c[2], b[0] * c[1] - b[1] * c[0]
-        ca0, ca1, ca2 = c[1] * a[2] - c[2] * a[1], c[2] * a[0] - c[0] * a[2], c[0] * a[1] - c[1] * a[0]
-        six = ab0 * c[0] + ab1 * c[1] + ab2 * c[2]
-        way = 1.0 if six > 0.0 else -1.0
-        low, high = band(a, b, c)
-        start = max(0, int(np.floor((n * (1.0 - high) - 1.0) / 2.0)))
-        stop = min(n, int(np.ceil((n * (1.0 - low) - 1.0) / 2.0)) + 1)
-        for k in range(start, stop):
-            u0, u1, u2 = directions[k, 0], directions[k, 1], directions[k, 2]
-            e0 = way * (ab0 * u0 + ab1 * u1 + ab2 * u2)
-            if e0 < 0.0 or (e0 == 0.0 and way < 0.0):
-                continue
-            e1 = way * (bc0 * u0 + bc1 * u1 + bc2 * u2)
-            if e1 < 0.0 or (e1 == 0.0 and way < 0.0):
-                continue
-            e2 = way * (ca0 * u0 + ca1 * u1 + ca2 * u2)
-            if e2 < 0.0 or (e2 == 0.0 and way < 0.0) or e0 + e1 + e2 <= 0.0:
-                continue
-            if found == size:
-                ray = np.concatenate((ray, np.empty(size, np.int64)))
-                distance = np.concatenate((distance, np.empty(size)))
-                sign = np.concatenate((sign, np.empty(size)))
-                size *= 2
-            ray[found], distance[found], sign[found] = k, way * six / (e0 + e1 + e2), way
-            first[k + 1] += 1
-            found += 1
+        if found + n > size:
+            ray = np.concatenate((ray, np.empty(size, np.int64)))
+            distance, sign = (
+                np.concatenate((distance, np.empty(size))),
+                np.concatenate((sign, np.empty(size))),
+            )
+            size *= 2
+        found = crossed_by(points, faces[f], side, place, rays, ray, distance, sign, found)
+    first = np.zeros(n + 1, np.int64)
+    for i in range(found):
+        first[ray[i] + 1] += 1
     for k in range(n):
         first[k + 1] += first[k]
     return sorted_rows(first, ray[:found], distance[:found], sign[:found])
 
 
-@kernel
-def band(a: FloatArray, b: FloatArray, c: FloatArray) -> tuple[float, float]:
-    """Lowest and highest z of the directions in which the triangle a, b, c is seen from the origin."""
-    la, lb, lc = np.sqrt(np.sum(a * a)), np.sqrt(np.sum(b * b)), np.sqrt(np.sum(c * c))
-    if la == 0.0 or lb == 0.0 or lc == 0.0:
-        return -1.0, 1.0
-    m0 = a[0] / la + b[0] / lb + c[0] / lc
-    m1 = a[1] / la + b[1] / lb + c[1] / lc
-    m2 = a[2] / la + b[2] / lb + c[2] / lc
-    length = np.sqrt(m0 * m0 + m1 * m1 + m2 * m2)
-    if length < 1e-3:
-        return -1.0, 1.0
-    m0, m1, m2 = m0 / length, m1 / length, m2 / length
-    widest = min(
-        (m0 * a[0] + m1 * a[1] + m2 * a[2]) / la,
-        (m0 * b[0] + m1 * b[1] + m2 * b[2]) / lb,
-        (m0 * c[0] + m1 * c[1] + m2 * c[2]) / lc,
+@leaf
+def crossed_by(
+    points: FloatArray,
+    face: IntArray,
+    side: IntArray,
+    place: FloatArray,
+    rays: RayBundle,
+    ray: IntArray,
+    distance: FloatArray,
+    sign: FloatArray,
+    found: int,
+) -> int:
+    """Note the crossings with one triangle, from number `found` on; how many there are now.
+
+    Two triangles with a common edge work out the same number for it but for its sign, so no ray slips
+    through between them.
+    """
+    a, b, c = row(points, face[0]), row(points, face[1]), row(points, face[2])
+    ab, bc, ca = cross(a, b), cross(b, c), cross(c, a)
+    six = dot(ab, c)
+    way = 1.0 if six > 0.0 else -1.0
+    cells = rays.cells
+    together = side[face[0]] == side[face[1]] == side[face[2]] and side[face[0]] >= 0
+    for at in range(6):
+        if together:
+            if at != side[face[0]]:
+                continue
+            low_u, high_u, low_v, high_v = bounds_of(place, face)
+        else:
+            low_u, high_u, low_v, high_v = bounds_on(points, face, at)
+            if low_u > high_u:
+                continue
+        low, high = step_of(low_v - REACH, cells), step_of(high_v + REACH, cells)
+        for i in range(step_of(low_u - REACH, cells), step_of(high_u + REACH, cells) + 1):
+            cell = (at * cells + i) * cells
+            for m in range(rays.first[cell + low], rays.first[cell + high + 1]):
+                u = row(rays.sorted_directions, m)
+                e0 = way * dot(ab, u)
+                if e0 < 0.0 or (e0 == 0.0 and way < 0.0):
+                    continue
+                e1 = way * dot(bc, u)
+                if e1 < 0.0 or (e1 == 0.0 and way < 0.0):
+                    continue
+                e2 = way * dot(ca, u)
+                if e2 < 0.0 or (e2 == 0.0 and way < 0.0) or e0 + e1 + e2 <= 0.0:
+                    continue
+                ray[found], distance[found], sign[found] = rays.order[m], way * six / (e0 + e1 + e2), way
+                found += 1
+    return found
+
+
+@leaf
+def bounds_of(place: FloatArray, face: IntArray) -> tuple[float, float, float, float]:
+    """Bounds of a triangle whose corners are seen on one side of the cube."""
+    i, j, k = face[0], face[1], face[2]
+    return (
+        min(place[i, 0], place[j, 0], place[k, 0]),
+        max(place[i, 0], place[j, 0], place[k, 0]),
+        min(place[i, 1], place[j, 1], place[k, 1]),
+        max(place[i, 1], place[j, 1], place[k, 1]),
     )
-    if widest <= 0.0:
-        return -1.0, 1.0
-    tilt, radius = np.arccos(min(1.0, max(-1.0, m2))), np.arccos(min(1.0, widest)) + 1e-9
-    return np.cos(min(np.pi, tilt + radius)), np.cos(max(0.0, tilt - radius))
+
+
+@leaf
+def bounds_on(points: FloatArray, face: IntArray, side: int) -> tuple[float, float, float, float]:
+    """Bounds of any triangle on one side of the cube; the first above the second if it is not seen there."""
+    axis, way = side // 2, 1.0 - 2.0 * (side % 2)
+    first, second = (axis + 1) % 3, (axis + 2) % 3
+    low_u, high_u, low_v, high_v = np.inf, -np.inf, np.inf, -np.inf
+    behind, nearly, right, left, above, below = 0, 0, 0, 0, 0, 0
+    for corner in range(3):
+        w = way * points[face[corner], axis]
+        u, v = points[face[corner], first], points[face[corner], second]
+        behind += w < 0.0
+        margin = REACH * (abs(u) + abs(v) + abs(w))
+        right, left = right + (u - w > margin), left + (-u - w > margin)
+        above, below = above + (v - w > margin), below + (-v - w > margin)
+        if w <= NEARLY_BEHIND * (abs(u) + abs(v)):
+            nearly += 1
+            continue
+        low_u, high_u, low_v, high_v = (
+            min(low_u, u / w),
+            max(high_u, u / w),
+            min(low_v, v / w),
+            max(high_v, v / w),
+        )
+    if max(behind, max(max(right, left), max(above, below))) == 3:
+        return 1.0, -1.0, 1.0, -1.0
+    return (low_u, high_u, low_v, high_v) if nearly == 0 else (-1.0, 1.0, -1.0, 1.0)
 
 
 @kernel

@@ -7,7 +7,7 @@ from regolith_studio.coarsening.core.cuts import with_all_facets
 from regolith_studio.coarsening.core.intersection import intersect
 from regolith_studio.coarsening.core.overlap import exits, shared_charge, shared_volume
 from regolith_studio.coarsening.core.planes import gradient_of, levers_of, moved, tangents_of
-from regolith_studio.coarsening.core.rays import cast_fibonacci
+from regolith_studio.coarsening.core.rays import bundle_of, cast
 from regolith_studio.coarsening.target import Target
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.directions import fibonacci_directions, icosphere
@@ -28,7 +28,7 @@ def shared(target: Target, normals: FloatArray, offsets: FloatArray) -> tuple[fl
 def test_that_rays_meet_the_same_crossings_as_a_search_over_all_triangles(target: Target) -> None:
     directions = fibonacci_directions(500)
     mesh = target.mesh.moved(shift=(0.35, 0.1, 0.0))
-    first, distance, sign = cast_fibonacci(mesh.vertices, mesh.faces, np.ascontiguousarray(directions))
+    first, distance, sign = cast(mesh.vertices, mesh.faces, bundle_of(directions))
     hits = radial_hits(mesh, np.zeros(3), directions)
     assert np.diff(first).tolist() == np.bincount(hits.ray, minlength=500).tolist()
     assert distance == pytest.approx(hits.distance, rel=1e-12)
@@ -80,3 +80,25 @@ def test_that_a_redundant_plane_comes_back_as_a_facet(target: Target) -> None:
     _, _, triples = intersect(new_normals, new_offsets)
     assert len(np.unique(triples)) == 8
     assert (new_normals[:6] == normals[:6]).all()
+
+
+@pytest.mark.parametrize("n_rays", [1, 7, 2000])
+def test_that_rays_through_large_and_scattered_triangles_are_found(n_rays: int) -> None:
+    rng = np.random.default_rng(n_rays)
+    rays = bundle_of(np.ascontiguousarray(fibonacci_directions(n_rays)))
+    for _ in range(20):
+        points = rng.normal(size=(12, 3)) * rng.choice([0.01, 1.0, 30.0], size=(12, 1))
+        faces = rng.permuted(np.tile(np.arange(12), (9, 1)), axis=1)[:, :3].copy()
+        first, distance, sign = cast(points, faces, rays)
+        a, b, c = points[faces].transpose(1, 0, 2)
+        found = []
+        for k, direction in enumerate(rays.directions):
+            # Cramer's rule for direction * t = corners combined by positive shares that add up to 1
+            shares = np.linalg.solve(np.stack([a, b, c], axis=2), np.tile(direction, (9, 1))[:, :, None])[
+                ..., 0
+            ]
+            met = (shares > 0.0).all(axis=1)
+            found += [(k, t) for t in sorted(1.0 / shares[met].sum(axis=1))]
+        assert np.repeat(np.arange(n_rays), np.diff(first)).tolist() == [k for k, _ in found]
+        assert distance == pytest.approx([t for _, t in found], rel=1e-9)
+        assert set(np.unique(sign)) <= {-1.0, 1.0}
