@@ -12,6 +12,7 @@ import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.harmonics.coefficients import degrees
+from regolith_studio.model.forms import forms, log_ellipsoids
 from regolith_studio.model.hull_radii import HullGrid, hull_grid
 from regolith_studio.model.principal_axes import principal_axes
 
@@ -39,25 +40,6 @@ def shape_numbers(coefficients: FloatArray) -> FloatArray:
     return np.concatenate(parts)
 
 
-def log_ellipsoids(directions: FloatArray, form: FloatArray, frames: FloatArray) -> FloatArray:
-    """ln r of ellipsoids with a product of axes of one, shape (n, k).
-
-    Parameters
-    ----------
-    directions
-        Unit vectors, shape (k, 3).
-    form
-        ln(long / middle) and ln(middle / short), shape (n, 2).
-    frames
-        Unit vectors along the short, the middle and the long axis as columns, shape (n, 3, 3).
-    """
-    rising = np.column_stack([np.zeros(len(form)), form[:, 1], form[:, 0] + form[:, 1]])
-    squares = np.exp(-2 * (rising - rising.mean(axis=1, keepdims=True)))
-    tensors = (frames * squares[:, None, :]) @ np.swapaxes(frames, 1, 2)
-    products = (directions[:, :, None] * directions[:, None, :]).reshape(-1, 9)
-    return np.asarray(-0.5 * np.log(tensors.reshape(-1, 9) @ products.T))
-
-
 def powers(rows: FloatArray) -> FloatArray:
     """Sum of squares at each degree, shape (n, l_max + 1)."""
     return np.asarray(np.add.reduceat(rows**2, np.arange(round(rows.shape[1] ** 0.5)) ** 2, axis=1))
@@ -70,20 +52,37 @@ def with_powers(rows: FloatArray, wanted: FloatArray) -> FloatArray:
     return np.asarray(rows * factors[:, degrees(rows.shape[1])])
 
 
+def log_shape_numbers(rows: FloatArray, equivalent_radii: FloatArray) -> FloatArray:
+    """The numbers of the exponentials of expansions (n, (l_max + 1)^2) with these sizes, shape (n, d).
+
+    The exponential is not cut to the degree: that would take from the surface what it has beyond.
+    """
+    shapes = shape_grid(round(rows.shape[1] ** 0.5) - 1)
+    logs = rows @ shapes.grid.basis
+    form, axes = forms(logs, shapes.grid)
+    radii = np.exp(logs - logs.mean(axis=1, keepdims=True))
+    return _table(shapes, np.log(equivalent_radii), form, axes, radii)
+
+
+def log_share(shares: FloatArray) -> FloatArray:
+    """ln(s / (1 - s)), s kept off zero and one."""
+    kept = np.clip(shares, LEAST_SHARE, 1 - LEAST_SHARE)
+    return np.asarray(np.log(kept / (1 - kept)))
+
+
 def _of_batch(coefficients: FloatArray) -> FloatArray:
     shapes = shape_grid(round(coefficients.shape[1] ** 0.5) - 1)
     found = principal_axes(coefficients)
     form = np.diff(found.log_ratios, axis=1)[:, ::-1]
     means = coefficients[:, :1] / np.sqrt(4 * np.pi)
     radii = np.maximum(coefficients @ shapes.grid.basis / means, _LEAST_RADIUS)
-    ellipsoids = log_ellipsoids(shapes.grid.directions, form, found.axes)
+    return _table(shapes, np.log(3 * found.volumes / (4 * np.pi)) / 3, form, found.axes, radii)
+
+
+def _table(
+    shapes: HullGrid, log_sizes: FloatArray, form: FloatArray, axes: FloatArray, radii: FloatArray
+) -> FloatArray:
+    ellipsoids = log_ellipsoids(shapes.grid.directions, form, axes)
     surface = powers(shapes.grid.expanded(np.log(radii) - ellipsoids))[:, 1:]
-    shares = np.clip(shapes.convexities(radii), LEAST_SHARE, 1 - LEAST_SHARE)
-    return np.column_stack(
-        [
-            np.log(3 * found.volumes / (4 * np.pi)) / 3,
-            form,
-            np.log(np.maximum(surface, LEAST_POWER)),
-            np.log(shares / (1 - shares)),
-        ]
-    )
+    shares = log_share(shapes.convexities(radii))
+    return np.column_stack([log_sizes, form, np.log(np.maximum(surface, LEAST_POWER)), shares])

@@ -1,24 +1,29 @@
 """Hulls on a grid, the copula, and the field that is drawn to its hull."""
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
 from scipy.spatial import ConvexHull
 from scipy.stats import spearmanr
 
+from regolith_studio.descriptors.describe import describe
 from regolith_studio.errors import InputError
 from regolith_studio.model.copula import GaussianCopula
 from regolith_studio.model.draws import Draws, virtual_mesh
+from regolith_studio.model.forms import forms, log_ellipsoids, with_forms
+from regolith_studio.model.hull_aims import come_to, numbers_and_aim
 from regolith_studio.model.hull_radii import hull_grid, hull_radii
+from regolith_studio.model.materials import materials
 from regolith_studio.model.models import MODELS
 from regolith_studio.model.models.hull_field import HullFieldSettings
+from regolith_studio.model.outer_numbers import SPHERICITY, of_log_radii, of_radii
 from regolith_studio.model.sample import Sample
 from regolith_studio.model.shape_numbers import (
     CONVEXITY,
     FORM,
     POWERS,
-    log_ellipsoids,
     shape_grid,
     shape_numbers,
 )
@@ -127,18 +132,68 @@ def test_that_an_unknown_law_of_sizes_is_refused(rough_sample: Callable[..., Sam
         MODEL.fit(rough_sample(10), HullFieldSettings(4, "even"))
 
 
-def test_that_drawn_particles_have_the_numbers_and_fill_the_hull_of_real_ones(cement: Sample) -> None:
-    cut = cement.truncated(10).coefficients
-    draws = {key: MODELS[key].fit(cement).draw(500, 2) for key in ("hull_field", "log_field")}
+def test_that_a_body_gets_the_form_wanted() -> None:
+    grid = shape_grid(6).grid
+    rng = np.random.default_rng(4)
+    rough = rng.normal(size=(30, 49)) * 0.04
+    wanted = rng.uniform(0.0, 0.5, size=(30, 2))
+    once, twice = (forms(with_forms(rough @ grid.basis, wanted, grid, steps), grid)[0] for steps in (1, 2))
+    assert np.abs(once - wanted).max() < 0.1
+    assert np.abs(twice - wanted).max() < 0.3 * np.abs(once - wanted).max()
+
+
+def test_that_the_form_on_the_grid_is_that_of_the_solid() -> None:
+    coefficients = np.zeros((1, 121))
+    coefficients[0, [0, 4, 6, 8, 20]] = 10.0, 0.3, 0.8, -0.5, 0.4
     grid = shape_grid(10).grid
-    measured = shape_numbers(cut)
-    drawn = shape_numbers(grid.expanded(np.exp(draws["hull_field"].coefficients @ grid.basis)))
-    gap = np.abs(drawn.mean(axis=0) - measured.mean(axis=0)) / measured.std(axis=0)
-    assert gap.max() < 0.4
-    np.testing.assert_allclose(drawn.std(axis=0) / measured.std(axis=0), 1.0, atol=0.3)
+    on_grid, _ = forms(np.log(coefficients @ grid.basis), grid)
+    np.testing.assert_allclose(on_grid, shape_numbers(coefficients)[:, FORM], atol=1e-6)
+    mesh = virtual_mesh(Draws(coefficients, "radius", "measured", 0), 0, 5)
+    second = np.linalg.eigvalsh(np.trace(mesh.inertia) / 2 * np.eye(3) - mesh.inertia)
+    np.testing.assert_allclose(on_grid[0], np.diff(0.5 * np.log(second))[::-1], atol=2e-3)
+
+
+def test_that_outer_numbers_are_those_of_meshes(cement: Sample) -> None:
+    few = cement.truncated(10).chosen(range(12))
+    found = of_radii(few.coefficients, np.zeros(12))
+    draws = Draws(few.coefficients, "radius", "measured", 0)
+    sphericities = [describe(virtual_mesh(draws, i, 4), ["sphericity"])["sphericity"] for i in range(12)]
+    np.testing.assert_allclose(1 / (1 + np.exp(-found[:, SPHERICITY])), sphericities, atol=4e-3)
+
+
+def test_that_outer_numbers_of_ellipsoids_are_the_ratios_of_their_axes() -> None:
+    grid = shape_grid(16).grid
+    form = np.array([[0.2, 0.15], [0.4, 0.0]])
+    logs = log_ellipsoids(grid.directions, form, np.stack([np.eye(3)] * 2))
+    found = of_log_radii(grid.expanded(logs), np.zeros(2))
+    np.testing.assert_allclose(found[:, 0], form.sum(axis=1), atol=0.02)
+
+
+def test_that_drawn_particles_have_the_outer_numbers_of_real_ones(cement: Sample) -> None:
+    cut = cement.truncated(10).coefficients
+    measured, aim = numbers_and_aim(cut)
+    fitted: Any = MODEL.fit(cement)
+    drawn = fitted.draw(500, 2)
+    numbers, outer = come_to(drawn.coefficients, drawn.equivalent_radii())
+    gap = np.abs(numbers.mean(axis=0) - measured.mean(axis=0)) / measured.std(axis=0)
+    assert gap[:3].max() < 0.1
+    assert gap.max() < 0.6
+    assert fitted.faceting >= 0.9
+    np.testing.assert_allclose(numbers.std(axis=0) / measured.std(axis=0), 1.0, atol=0.2)
+    assert aim.distance(outer) < 0.35
+    plain = MODELS["log_field"].fit(cement).draw(500, 2)
+    assert aim.distance(come_to(plain.coefficients, plain.equivalent_radii())[1]) > 0.6
     real = _mean_share_of_hull(Draws(cut, "radius", "measured", 0))
-    assert abs(_mean_share_of_hull(draws["hull_field"]) - real) < 0.012
-    assert abs(_mean_share_of_hull(draws["log_field"]) - real) > 0.02
+    assert abs(_mean_share_of_hull(drawn) - real) < 0.012
+    assert abs(_mean_share_of_hull(plain) - real) > 0.02
+
+
+def test_that_the_faceting_follows_the_sample() -> None:
+    soft = materials()["ma165"].model(10).draw(200, 0)
+    rows = np.stack([soft.particle(i).values for i in range(200)])
+    fitted: Any = MODEL.fit(Sample(rows))
+    assert fitted.faceting <= 0.8
+    assert MODEL.restored(*fitted.stored()).faceting == fitted.faceting
 
 
 def _mean_share_of_hull(draws: Draws) -> float:

@@ -2,11 +2,12 @@
 
 Fields with random phases are too dented for how rough they are: the facets and edges of real grains are
 phases. Here a rough isotropic field in ln r about an ellipsoid is drawn most of the way to its convex hull,
-which makes the facets; its degrees are given their power; and it is drawn once more towards its hull, or away
-from it, until it fills the share of it that it should. Size, elongation, flatness, the power of each degree
-and that share come from a Gaussian copula. What is asked for is corrected so that what comes out has the
-sample's means and deviations. No measured particle is kept; sizes beyond the sample get the shapes of its
-ends.
+which makes the facets; its degrees are given their power; it is drawn once more towards its hull, or away
+from it, until it fills the share of it that it should; and it is stretched until its ellipsoid of inertia is
+the one wanted. Size, elongation, flatness, the power of each degree and that share come from a Gaussian
+copula. How far the first drawing goes, and what is asked for, are fitted so that what comes out has the
+sample's extents, sphericities and shares. No measured particle is kept; sizes beyond the sample get the
+shapes of its ends.
 """
 
 from collections.abc import Callable, Mapping
@@ -22,34 +23,28 @@ from regolith_studio.geometry.arrays import FloatArray, locked_floats
 from regolith_studio.model.chunks import CHUNK, chunks, joined
 from regolith_studio.model.copula import GaussianCopula
 from regolith_studio.model.draws import Draws
+from regolith_studio.model.forms import log_ellipsoids, with_forms
+from regolith_studio.model.hull_aims import Aim, Request, come_to, numbers_and_aim
 from regolith_studio.model.log_shapes import log_shapes, sized
 from regolith_studio.model.protocol import SizeRange
 from regolith_studio.model.sample import Sample
-from regolith_studio.model.shape_numbers import (
-    CONVEXITY,
-    FORM,
-    POWERS,
-    SIZE,
-    log_ellipsoids,
-    shape_grid,
-    shape_numbers,
-    with_powers,
-)
+from regolith_studio.model.shape_numbers import CONVEXITY, FORM, POWERS, shape_grid, with_powers
 from regolith_studio.model.size_law import SIZE_LAWS, SizeLaw, checked_bounds, size_law_from
 
 KEY = "hull_field"
 DEGREES = (3, 20)
 ROUGHNESS = 2.5
 """Amplitude of the field that is drawn to its hull, over that of the finished surface."""
-FACETING = 0.8
-"""How far it is drawn to its hull first."""
-N_COMPARED = 2 * CHUNK
-"""Particles by which what comes out is compared with the sample."""
-ROUNDS = 8
-RATE = 0.8
-"""Share of a difference that is corrected in each round."""
-MOST_SHIFT = 2.0
-SPREADS = (0.5, 2.0)
+FACETINGS = (0.6, 0.7, 0.8, 0.9, 1.0)
+"""How far it may be drawn to its hull first; the fit chooses."""
+USUAL_FACETING, FEWEST_TO_CHOOSE = 0.9, 50
+"""That of a fit to so few particles that they cannot tell."""
+N_TRIED, N_COMPARED = CHUNK, 2 * CHUNK
+"""Particles by which what comes out is compared with the sample: to choose, and after."""
+ROUNDS = 6
+"""Corrections of what is asked for, with each of the facetings, and after."""
+FORM_STEPS = (1, 2)
+"""Corrections of the form before and after the share of the hull is set."""
 
 
 @dataclass(frozen=True)
@@ -82,6 +77,8 @@ class HullField:
         Length unit of the sample.
     shift, spread
         What is asked for is median + shift + spread (drawn - median), shapes (l_max + 4,).
+    faceting
+        How far the rough field is drawn to its hull, 0 to 1.
     """
 
     numbers: GaussianCopula
@@ -90,6 +87,7 @@ class HullField:
     unit: str = "um"
     shift: FloatArray | None = None
     spread: FloatArray | None = None
+    faceting: float = USUAL_FACETING
     key: ClassVar[str] = KEY
 
     def __post_init__(self) -> None:
@@ -128,35 +126,31 @@ class HullField:
     def _shapes(self, numbers: FloatArray, rng: np.random.Generator) -> FloatArray:
         """Coefficients of ln r, up to size, of particles that come out with these numbers (n, d)."""
         shapes, asked = shape_grid(self.l_max), self._asked(numbers)
+        grid, form = shapes.grid, np.maximum(numbers[:, FORM], 0.0)
         power = np.column_stack([np.zeros(len(asked)), np.exp(asked[:, POWERS])])
         frames = Rotation.from_quat(rng.standard_normal((len(asked), 4))).as_matrix()
-        ellipsoids = log_ellipsoids(shapes.grid.directions, asked[:, FORM], frames)
+        ellipsoids = log_ellipsoids(grid.directions, form, frames)
         field = rng.standard_normal((len(asked), (self.l_max + 1) ** 2))
         field[:, 0] = 0.0
-        rough = ellipsoids + with_powers(field, ROUGHNESS**2 * power) @ shapes.grid.basis
-        surface = shapes.grid.expanded(shapes.drawn(rough, FACETING) - ellipsoids)
-        finished = ellipsoids + with_powers(surface, power) @ shapes.grid.basis
+        rough = ellipsoids + with_powers(field, ROUGHNESS**2 * power) @ grid.basis
+        surface = grid.expanded(shapes.drawn(rough, self.faceting) - ellipsoids)
+        finished = ellipsoids + with_powers(surface, power) @ grid.basis
         shares = 1 / (1 + np.exp(-asked[:, CONVEXITY]))
-        return shapes.grid.expanded(shapes.with_convexities(finished, shares))
+        filled = shapes.with_convexities(with_forms(finished, form, grid, FORM_STEPS[0]), shares)
+        return grid.expanded(with_forms(filled, form, grid, FORM_STEPS[1]))
 
     def _asked(self, numbers: FloatArray) -> FloatArray:
         middle = self.numbers.quantiles[len(self.numbers.quantiles) // 2]
-        asked = middle + np.asarray(self.shift) + np.asarray(self.spread) * (numbers - middle)
-        asked[:, FORM] = np.maximum(asked[:, FORM], 0.0)
-        return np.asarray(asked)
+        return np.asarray(middle + self.shift + np.asarray(self.spread) * (numbers - middle))
 
-    def corrected(self, mean: FloatArray, deviation: FloatArray) -> "HullField":
-        """The field with one more round of correction towards the sample's numbers, each of shape (d,)."""
+    def corrected(self, aim: Aim, n: int) -> tuple["HullField", float]:
+        """The field with one more round of correction, and how far its particles were from the aim."""
         rng = np.random.default_rng(np.random.SeedSequence(0))
-        radii, _ = self.sizes.draw(N_COMPARED, rng)
-        rows = self._shapes(self.numbers.draw(np.log(radii), rng), rng)
-        grid = shape_grid(self.l_max).grid
-        found = shape_numbers(grid.expanded(np.exp(sized(rows, radii) @ grid.basis)))
-        shift = np.asarray(self.shift) + RATE * (mean - found.mean(axis=0))
-        ratio = (deviation + 1e-9) / (found.std(axis=0) + 1e-9)
-        spread = np.clip(np.asarray(self.spread) * ratio**RATE, *SPREADS)
-        shift[SIZE], spread[[SIZE, CONVEXITY]] = 0.0, 1.0
-        return replace(self, shift=np.clip(shift, -MOST_SHIFT, MOST_SHIFT), spread=spread)
+        radii, _ = self.sizes.draw(n, rng)
+        numbers, outer = come_to(self._shapes(self.numbers.draw(np.log(radii), rng), rng), radii)
+        request = Request(np.asarray(self.shift), np.asarray(self.spread))
+        better = aim.corrected(request, numbers, outer)
+        return replace(self, shift=better.shift, spread=better.spread), aim.distance(outer)
 
     def stored(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
         """Plain values for JSON, no arrays."""
@@ -167,6 +161,7 @@ class HullField:
             "unit": self.unit,
             "shift": np.asarray(self.shift).tolist(),
             "spread": np.asarray(self.spread).tolist(),
+            "faceting": self.faceting,
         }
         return values, {}
 
@@ -197,14 +192,15 @@ class HullFieldModel:
                 f"A field drawn to its hull has l_max {DEGREES[0]} to {DEGREES[1]}, got {chosen.l_max}."
             )
         usable = cut.star_shaped()
-        table = shape_numbers(usable.coefficients)
+        table, aim = numbers_and_aim(usable.coefficients)
         mean_powers = log_shapes(usable).powers.mean(axis=0)
         sizes = SIZE_LAWS[chosen.size_law](usable.equivalent_radii)
         spectrum = mean_powers / (2 * np.arange(chosen.l_max + 1) + 1)
-        fitted = HullField(GaussianCopula.of(table), sizes, spectrum, sample.unit)
-        for _ in range(ROUNDS):
-            fitted = fitted.corrected(table.mean(axis=0), table.std(axis=0))
-        return fitted
+        plain = HullField(GaussianCopula.of(table), sizes, spectrum, sample.unit)
+        if len(usable) < FEWEST_TO_CHOOSE:
+            return _settled(plain, aim, N_COMPARED)[0]
+        tried = [_settled(replace(plain, faceting=share), aim, N_TRIED) for share in FACETINGS]
+        return _settled(min(tried, key=lambda each: each[1])[0], aim, N_COMPARED)[0]
 
     def restored(self, values: Mapping[str, Any], _arrays: Mapping[str, NDArray[Any]]) -> HullField:
         """The field from what it stored."""
@@ -216,7 +212,16 @@ class HullFieldModel:
             str(values["unit"]),
             np.array(values["shift"]),
             np.array(values["spread"]),
+            float(values["faceting"]),
         )
+
+
+def _settled(field: HullField, aim: Aim, n: int) -> tuple[HullField, float]:
+    """The field after some rounds of correction, and how far from the aim it was in the last."""
+    distance = np.inf
+    for _ in range(ROUNDS):
+        field, distance = field.corrected(aim, n)
+    return field, distance
 
 
 MODEL = HullFieldModel()
