@@ -227,6 +227,10 @@ class Session:
         """Stop one task; harmless if it has ended."""
         self._board.cancel(task_id)
 
+    def pause(self, task_id: int, held: bool = True) -> None:
+        """Hold one task back between two of its steps, or let it go on; harmless if that cannot be done."""
+        (self._board.pause if held else self._board.resume)(task_id)
+
     def close(self) -> None:
         """Stop everything and wait for it."""
         for task in self.tasks:

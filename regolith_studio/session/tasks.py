@@ -6,12 +6,15 @@ from dataclasses import dataclass
 from typing import Any
 
 from regolith_studio.jobs.events import Event, Failed, Finished, Job, Partial, Progress, Started, Stopped
-from regolith_studio.jobs.runners.protocol import Handle, Runner
+from regolith_studio.jobs.runners.protocol import Handle, Pausable, Runner
 
 
 @dataclass(frozen=True)
 class Task:
-    """One request under way; `total` is 0 while its length is not known."""
+    """One request under way; `total` is 0 while its length is not known.
+
+    `pausable` says whether it can be held back between two of its steps, `paused` whether it is.
+    """
 
     id: int
     lane: str
@@ -19,6 +22,8 @@ class Task:
     done: int = 0
     total: int = 0
     message: str = ""
+    pausable: bool = False
+    paused: bool = False
 
 
 @dataclass(frozen=True)
@@ -66,6 +71,8 @@ class TaskBoard:
         handle = self._runner.submit(job, lambda event: self._hear(number, event, reactions), lane)
         if number in self._tasks:
             self._handles[number] = handle
+            if isinstance(handle, Pausable):
+                self._update(number, pausable=True)
         return number
 
     def stop_lane(self, lane: str) -> None:
@@ -80,6 +87,20 @@ class TaskBoard:
         """Cancel one task; its `stopped` reaction follows when it has stopped."""
         if handle := self._handles.get(number):
             handle.cancel()
+
+    def pause(self, number: int) -> None:
+        """Hold one task back after the step that it is at, where its runner can do that."""
+        handle = self._handles.get(number)
+        if isinstance(handle, Pausable) and not self._tasks[number].paused:
+            handle.pause()
+            self._update(number, paused=True)
+
+    def resume(self, number: int) -> None:
+        """Let a task that was held back go on."""
+        handle = self._handles.get(number)
+        if isinstance(handle, Pausable) and self._tasks[number].paused:
+            handle.resume()
+            self._update(number, paused=False)
 
     def _forget(self, number: int) -> bool:
         self._handles.pop(number, None)

@@ -1,6 +1,6 @@
 """What every runner offers."""
 
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from regolith_studio.jobs.events import Job, Listener
 
@@ -15,6 +15,19 @@ class Handle(Protocol):
 
     def cancel(self) -> None:
         """Ask the job to stop between two of its steps; harmless when it has ended."""
+        ...
+
+
+@runtime_checkable
+class Pausable(Handle, Protocol):
+    """A handle of a runner that can hold a job back between two of its steps."""
+
+    def pause(self) -> None:
+        """Let the job wait after the step that it is at; harmless when it has ended."""
+        ...
+
+    def resume(self) -> None:
+        """Let it go on."""
         ...
 
 

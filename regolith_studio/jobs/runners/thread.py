@@ -15,6 +15,7 @@ from regolith_studio.jobs.events import (
     Stopped,
 )
 from regolith_studio.jobs.runners.drive import drive
+from regolith_studio.jobs.runners.gate import Gate
 
 Post = Callable[[Callable[[], None]], None]
 """Takes a function and calls it, soon and in order, in the thread that owns the listeners."""
@@ -48,7 +49,7 @@ class _Mailbox:
 class _ThreadHandle:
     job: Job
     mailbox: _Mailbox
-    stop: threading.Event = field(default_factory=threading.Event)
+    gate: Gate = field(default_factory=Gate)
     end: threading.Event = field(default_factory=threading.Event)
 
     @property
@@ -56,13 +57,19 @@ class _ThreadHandle:
         return self.end.is_set()
 
     def cancel(self) -> None:
-        self.stop.set()
+        self.gate.stop()
+
+    def pause(self) -> None:
+        self.gate.hold()
+
+    def resume(self) -> None:
+        self.gate.release()
 
     def run(self) -> None:
-        self.finish(drive(self.job, self.mailbox.put, self.stop.is_set))
+        self.finish(drive(self.job, self.mailbox.put, lambda: not self.gate.passed()))
 
     def finish(self, ending: Ending) -> None:
-        if self.stop.is_set() and isinstance(ending, Finished):
+        if self.gate.stopped and isinstance(ending, Finished):
             ending = Stopped()
         self.end.set()
         self.mailbox.put(ending)
