@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from regolith_studio.harmonics.expansion import Expansion
     from regolith_studio.harmonics.fit import HarmonicFit
 
-_TITLES = {
+TITLES = {
     Kind.FIT: "Fitting spherical harmonics",
     Kind.SURFACE: "Drawing the fit",
     Kind.DESCRIPTORS: "Measuring the fit",
@@ -124,10 +124,10 @@ class LiveResults:
                 return
             self._drop_dependents(kind)
             self._show_nothing(kind)
-            self._owner.tell_failure(_TITLES[kind])(failure)
+            self._owner.tell_failure(TITLES[kind])(failure)
 
         reactions = Reactions(finished, partial, failed, lambda: self._drop_dependents(kind))
-        self._board.start(kind, _TITLES[kind], job, reactions)
+        self._board.start(kind, TITLES[kind], job, reactions)
 
     def _drop_dependents(self, kind: Kind) -> None:
         """Give up what is made from `kind`, and show nothing rather than something old."""

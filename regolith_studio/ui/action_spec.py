@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from regolith_studio.ui.translation import mark
+
 
 @dataclass(frozen=True)
 class ActionSpec:
@@ -36,12 +38,7 @@ class ActionSpec:
     checked: bool | None = None
     bar: str = ""
 
-    @property
-    def plain(self) -> str:
-        """The text as it is read aloud: no mark, no dots."""
-        return self.text.replace("&", "").rstrip(" …")
-
 
 BREAK = "-"
-PAGE_MENU = "&Page"
+PAGE_MENU = mark("&Page")
 """Menu of the commands of the page that is seen."""

@@ -11,10 +11,12 @@ from regolith_studio.ui.action_spec import BREAK, PAGE_MENU, ActionSpec
 from regolith_studio.ui.dialogs.command_palette import Command
 from regolith_studio.ui.icons import icon
 from regolith_studio.ui.page import Page
+from regolith_studio.ui.shortcuts import plain, shown_keys, with_keys
 from regolith_studio.ui.theme import Theme
+from regolith_studio.ui.translation import mark, tr
 
-WITHIN_VIEW = ("Look &from", "&Theme")
-MENUS = ("&File", "&Edit", "&View", "&Go", PAGE_MENU, "&Help")
+WITHIN_VIEW = (mark("Look &from"), mark("&Theme"))
+MENUS = (mark("&File"), mark("&Edit"), mark("&View"), mark("&Go"), PAGE_MENU, mark("&Help"))
 
 ROWS: tuple[ActionSpec, ...] = (
     ActionSpec("&File", "open", "&Open …", "open", "Ctrl+O", "Open mesh files", None, "words"),
@@ -41,6 +43,7 @@ ROWS: tuple[ActionSpec, ...] = (
     ActionSpec("&Edit", "copy_python", "Copy as &Python", "", "", "A script that does the same"),
     ActionSpec("&Edit", BREAK, ""),
     ActionSpec("&Edit", "palette", "&Commands …", "", "Ctrl+Shift+P", "Any command by a few letters"),
+    ActionSpec("&Edit", "preferences", "P&references …", "", "Ctrl+,", "Language, theme, size of letters"),
     ActionSpec("&Go", "next_page", "&Next page", "", "Ctrl+PgDown"),
     ActionSpec("&Go", "previous_page", "&Previous page", "", "Ctrl+PgUp"),
     ActionSpec("&Go", BREAK, ""),
@@ -84,7 +87,7 @@ class Actions:
         self._icons: list[tuple[QAction, str]] = []
         self._of_page: dict[str, list[QAction]] = {key: [] for key in pages}
         self.by_name: dict[str, QAction] = {}
-        self.bar = QToolBar("Tools")
+        self.bar = QToolBar(tr("Tools"))
         self.bar.setObjectName("tool_bar")
         self.bar.setMovable(False)
         window.addToolBar(self.bar)
@@ -92,7 +95,7 @@ class Actions:
             self._menu(title)
         for row in ROWS:
             self._add(row, row.name, commands.get(row.name))
-        self.recent = QMenu("Open &recent", window)
+        self.recent = QMenu(tr("Open &recent"), window)
         self.by_name["recent"].setMenu(self.recent)
         self.bar.insertSeparator(self.by_name["undo"])
         for number, page in enumerate(pages.values(), start=1):
@@ -110,7 +113,7 @@ class Actions:
 
     def places(self) -> dict[str, str]:
         """Where each command belongs: its page, or its menu."""
-        titles = {key: page.title for key, page in self._pages.items()}
+        titles = {key: tr(page.title) for key, page in self._pages.items()}
         return {
             name: titles.get(name.split(".")[0]) or each.data() or "" for name, each in self.by_name.items()
         }
@@ -120,13 +123,12 @@ class Actions:
         found = []
         for name, action in self.by_name.items():
             key, _, command = name.partition(".")
-            place = pages[key].title if key in pages else action.data() or ""
+            place = tr(pages[key].title) if key in pages else action.data() or ""
             begin: Callable[[], object] = action.trigger
             if key in pages and not action.isEnabled() and not action.isCheckable():
                 begin = partial(run, key, command)
             if action.menu() is None and name != "palette":
-                keys = action.shortcut().toString()
-                found.append(Command(place, action.text().replace("&", "").rstrip(" …"), keys, begin))
+                found.append(Command(place, plain(action), shown_keys(action.shortcut()), begin))
         return found
 
     def set_theme(self, theme: Theme) -> None:
@@ -137,7 +139,8 @@ class Actions:
     def _add_page(
         self, page: Page, number: int, run: Callable[..., object], go: Callable[[str], object]
     ) -> None:
-        row = ActionSpec("&Go", page.key, f"&{number} {page.title}", page.icon, f"Alt+{number}", page.tip)
+        words = f"&{number} {tr(page.title)}"
+        row = ActionSpec("&Go", page.key, words, page.icon, f"Alt+{number}", page.tip)
         self._add(row, f"go.{page.key}", partial(go, page.key))
         mine = self._of_page[page.key]
         if any(each.bar for each in page.actions):
@@ -149,13 +152,12 @@ class Actions:
         menu = self._menu(row.menu)
         if row.name == BREAK:
             return menu.addSeparator()
-        action = QAction(row.text, self._window)
+        action = QAction(tr(row.text), self._window)
         action.setObjectName(name)
-        action.setData(row.menu.replace("&", ""))
+        action.setData(tr(row.menu).replace("&", ""))
         if row.shortcut:
             action.setShortcut(QKeySequence(row.shortcut))
-        keys = f" ({row.shortcut})" if row.shortcut else ""
-        action.setToolTip((row.tip or row.plain) + keys)
+        action.setToolTip(with_keys(tr(row.tip) or plain(action), action.shortcut()))
         if row.checked is not None and command:
             action.setCheckable(True)
             action.setChecked(row.checked)
@@ -174,13 +176,13 @@ class Actions:
         self.bar.addAction(action)
         button = self.bar.widgetForAction(action)
         if isinstance(button, QToolButton):
-            button.setAccessibleName(row.tip or row.plain)
+            button.setAccessibleName(tr(row.tip) or plain(action))
             words, only = Qt.ToolButtonStyle.ToolButtonTextBesideIcon, Qt.ToolButtonStyle.ToolButtonIconOnly
             button.setToolButtonStyle(words if row.bar == "words" else only)
 
     def _menu(self, title: str) -> QMenu:
         if title not in self._menus:
             parent = self._menus["&View"] if title in WITHIN_VIEW else None
-            made = parent.addMenu(title) if parent else self._window.menuBar().addMenu(title)
+            made = parent.addMenu(tr(title)) if parent else self._window.menuBar().addMenu(tr(title))
             self._menus[title] = made
         return self._menus[title]

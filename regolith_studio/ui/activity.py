@@ -7,6 +7,7 @@ from regolith_studio.session.session import Session
 from regolith_studio.ui.layout import tabs
 from regolith_studio.ui.panels.log import LogPanel
 from regolith_studio.ui.panels.task_list import TaskListPanel
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.toast import Toast
 from regolith_studio.ui.wiring import Wiring
 
@@ -15,10 +16,10 @@ class ActivityDock(QDockWidget):
     """Two tabs: tasks and log."""
 
     def __init__(self, window: QMainWindow) -> None:
-        super().__init__("Activity", window)
+        super().__init__(tr("Activity"), window)
         self.setObjectName("activity")
         self.tasks, self.log = TaskListPanel(), LogPanel()
-        self.tabs = tabs("activity_tabs", [(self.tasks, "Tasks"), (self.log, "Log")])
+        self.tabs = tabs("activity_tabs", [(self.tasks, tr("Tasks")), (self.log, tr("Log"))])
         self.setWidget(self.tabs)
         self.setAllowedAreas(Qt.DockWidgetArea.BottomDockWidgetArea)
         window.addDockWidget(Qt.DockWidgetArea.BottomDockWidgetArea, self)
@@ -27,9 +28,13 @@ class ActivityDock(QDockWidget):
     def wire(self, session: Session, wiring: Wiring, toast: Toast) -> None:
         """Follow the session and what the toast says, from now on."""
         wiring.refresh("tasks", lambda: self.tasks.show_tasks(session.tasks), slow=True)
-        wiring.hear("exported", lambda folder: self.log.add("note", f"A dataset was written to {folder}."))
+        wiring.hear("exported", self._note_export)
         self.tasks.cancelRequested.connect(session.cancel)
+        self.tasks.pauseRequested.connect(session.pause)
         toast.said.connect(self.log.add)
+
+    def _note_export(self, folder: object) -> None:
+        self.log.add("note", tr("A dataset was written to {folder}.", folder=folder))
 
     def show_tab(self, name: str) -> None:
         """Show ``tasks`` or ``log``; hide the dock if that is seen already."""

@@ -19,6 +19,7 @@ from regolith_studio.session.session import Session
 from regolith_studio.ui.main_window import MainWindow
 from regolith_studio.ui.posting import Poster
 from regolith_studio.ui.tour import TOUR_SEEN
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.factory import best_kind
 
 
@@ -76,6 +77,7 @@ def telling_hook(tell: Callable[[str, str], None]) -> Hook:
         if isinstance(error, RegolithError):
             tell(str(error), details)
         else:
-            tell(f"Something went wrong in the program ({kind.__name__}); the work goes on.", details)
+            name = kind.__name__
+            tell(tr("Something went wrong in the program ({name}); the work goes on.", name=name), details)
 
     return hook

@@ -14,12 +14,13 @@ from regolith_studio.session.project import inputs_of, without_file
 from regolith_studio.session.recipe import Recipe, read_recipe
 from regolith_studio.session.session import Session
 from regolith_studio.ui.dialogs.batch import BatchDialog, BatchOrder
+from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.toast import Toast
 
 if TYPE_CHECKING:  # what it brings is loaded when a batch runs
     from regolith_studio.session.performing import Performed
 
-TITLE = "Running the recipe"
+TITLE = mark("Running the recipe")
 
 
 class Batches(QObject):
@@ -93,15 +94,16 @@ class Batches(QObject):
             self._dialog.show_hired(value)
 
     def _done(self, done: "Performed") -> None:
-        failed = f" {len(done.problems)} problems are listed in failed.csv." if done.problems else ""
-        self._end(f"Done: {len(done.files)} files in {done.folder}.{failed}", report=True)
+        written = tr("Done: {count} files in {folder}.", count=len(done.files), folder=done.folder)
+        failed = tr("{count} problems are listed in failed.csv.", count=len(done.problems))
+        self._end(" ".join((written, *((failed,) if done.problems else ()))), report=True)
 
     def _failed(self, failure: Failed) -> None:
         self._end(failure.sentence)
         self._toast.problem(failure.sentence, failure.details)
 
     def _stopped(self) -> None:
-        self._end("Stopped. What was done is kept: run again into the same folder to go on.")
+        self._end(tr("Stopped. What was done is kept: run again into the same folder to go on."))
 
     def _end(self, sentence: str, report: bool = False) -> None:
         self._task = 0

@@ -20,16 +20,15 @@ from regolith_studio.session.scripting import as_command, as_python
 from regolith_studio.session.session import Session
 from regolith_studio.ui.dialogs.export import ExportDialog, ExportOrder
 from regolith_studio.ui.dialogs.unit import UnitDialog
+from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.toast import Toast
 
-MESH_FILTER = ";;".join(
-    (
-        "Particles (*.stl *.ply *.obj *.off *.glb *.gltf *.3mf *.anm *.sh *.shc)",
-        "Tables of coefficients (*.anm *.sh *.shc *.txt *.dat *.csv)",
-        "Projects (*.regolith)",
-        "Recipes (*.json)",
-        "All files (*)",
-    )
+MESH_FILTERS = (
+    mark("Particles (*.stl *.ply *.obj *.off *.glb *.gltf *.3mf *.anm *.sh *.shc)"),
+    mark("Tables of coefficients (*.anm *.sh *.shc *.txt *.dat *.csv)"),
+    mark("Projects (*.regolith)"),
+    mark("Recipes (*.json)"),
+    mark("All files (*)"),
 )
 T = TypeVar("T")
 
@@ -58,12 +57,13 @@ class Commands(QObject):
 
     def open(self) -> None:
         """Ask for files and open them."""
-        names, _ = QFileDialog.getOpenFileNames(self._window, "Open particles", self._folder(), MESH_FILTER)
+        kinds = ";;".join(map(tr, MESH_FILTERS))
+        names, _ = QFileDialog.getOpenFileNames(self._window, tr("Open particles"), self._folder(), kinds)
         self.open_paths([Path(name) for name in names])
 
     def open_folder(self) -> None:
         """Ask for a folder and open every mesh in it."""
-        name = QFileDialog.getExistingDirectory(self._window, "Open a folder of meshes", self._folder())
+        name = QFileDialog.getExistingDirectory(self._window, tr("Open a folder of meshes"), self._folder())
         self.open_paths([Path(name)] if name else [])
 
     def open_sample(self) -> None:
@@ -91,7 +91,8 @@ class Commands(QObject):
     def save_recipe(self) -> None:
         """Ask for a file and write the present choices into it."""
         start = str(Path(self._folder()) / "recipe.json")
-        name, _ = QFileDialog.getSaveFileName(self._window, "Save recipe", start, "Recipes (*.json)")
+        kinds = tr("Recipes (*.json)")
+        name, _ = QFileDialog.getSaveFileName(self._window, tr("Save recipe"), start, kinds)
         if not name:
             return
         text = Recipe.from_choices(self._session.choices, inputs_of(self._session)).to_json()
@@ -100,23 +101,24 @@ class Commands(QObject):
         except OSError as error:
             self._toast.problem(f"The recipe {name} cannot be written ({error.strerror}).")
             return
-        self._toast.note(f"Saved {name}; run it with: regolith-studio run {Path(name).name}")
+        command = f"regolith-studio run {Path(name).name}"
+        self._toast.note(tr("Saved {name}; run it with: {command}", name=name, command=command))
 
     def copy_command(self) -> None:
         """Put the command line that does the same onto the clipboard."""
         QGuiApplication.clipboard().setText(as_command(self._session.choices, inputs_of(self._session)))
-        self._toast.note("The command is on the clipboard.")
+        self._toast.note(tr("The command is on the clipboard."))
 
     def copy_python(self) -> None:
         """Put a script that does the same onto the clipboard."""
         QGuiApplication.clipboard().setText(as_python(self._session.choices, input_shown(self._session)))
-        self._toast.note("The script is on the clipboard.")
+        self._toast.note(tr("The script is on the clipboard."))
 
     def export(self) -> None:
         """Show what will be written, ask for the folder, and export."""
         count = len(self._session.particles)
         if not count:
-            self._toast.problem("There is nothing to export: open a particle first.")
+            self._toast.problem(tr("There is nothing to export: open a particle first."))
             return
         folder = Path(self._folder()) / "dataset"
         dialog = self._export = ExportDialog(count, self._session.choices, folder, self._window)
@@ -154,14 +156,16 @@ class Commands(QObject):
 
     def tell_exported(self, folder: Path) -> None:
         """Say where the dataset is."""
-        self._toast.note(f"The dataset is in {folder}.")
+        self._toast.note(tr("The dataset is in {folder}.", folder=folder))
 
     def _open_recipe(self, path: Path) -> int | None:
         recipe = read_recipe(path)
         names = {each.name for each in dataclasses.fields(Choices)} - {"selected"}
         self._session.choose(**{name: getattr(recipe.choices(), name) for name in names})
         if recipe.volumes or recipe.population:
-            self._toast.note("Its choices are taken; Run as a batch makes its grains and virtual particles.")
+            self._toast.note(
+                tr("Its choices are taken; Run as a batch makes its grains and virtual particles.")
+            )
         if not recipe.inputs:
             return None
         inputs = [path.parent / name for name in recipe.inputs if name != SAMPLE]

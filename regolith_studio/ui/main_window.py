@@ -20,6 +20,7 @@ from regolith_studio.ui.dialogs.closing import may_close, worth_asking
 from regolith_studio.ui.dialogs.command_palette import CommandPalette
 from regolith_studio.ui.dialogs.help import about_dialog
 from regolith_studio.ui.dialogs.shortcuts import ShortcutsDialog
+from regolith_studio.ui.looks import Looks
 from regolith_studio.ui.memory import LayoutMemory
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.page_stack import PageStack
@@ -27,8 +28,9 @@ from regolith_studio.ui.pages import pages
 from regolith_studio.ui.panels.tasks import TasksPanel
 from regolith_studio.ui.projects import Projects
 from regolith_studio.ui.shortcuts import Shortcuts
-from regolith_studio.ui.theme import THEMES, apply_theme, choose_theme, current_theme
+from regolith_studio.ui.theme import THEMES, apply_theme, current_theme
 from regolith_studio.ui.tour import start_tour
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.toast import Toast
 from regolith_studio.ui.wiring import Wiring
 
@@ -53,7 +55,7 @@ class MainWindow(QMainWindow):
         self.setAcceptDrops(True)
         self.session, self.preferences = session, preferences
         self._views = views
-        choose_theme(str(preferences.window.get("theme", "system")))
+        self.looks = Looks(preferences, self._apply_theme, self)
         self.toast = Toast(self)
         self.commands = Commands(session, preferences, self.toast, self)
         self.batches = Batches(session, preferences, self.toast, self)
@@ -100,12 +102,13 @@ class MainWindow(QMainWindow):
         copying = ("copy_command", "copy_python")
         return {
             **{name: getattr(self.commands, name) for name in (*ours, *copying)},
-            **{f"theme_{name}": partial(self._choose_theme, name) for name in ("system", *THEMES)},
+            **{f"theme_{name}": partial(self.looks.choose, theme=name) for name in ("system", *THEMES)},
             **{name: partial(self.activity.show_tab, name) for name in ("tasks", "log")},
             "run_batch": self.batches.ask,
             "save_project": self.projects.save,
             "save_project_as": self.projects.save_as,
             "palette": self._open_palette,
+            "preferences": self.looks.ask,
             "standard_layout": self._standard_layout,
             "tour": self.show_round,
             "quit": self.close,
@@ -145,7 +148,7 @@ class MainWindow(QMainWindow):
 
     def _standard_layout(self) -> None:
         self.memory.forget()
-        self.toast.note("The next window stands as a new one.")
+        self.toast.note(tr("The next window stands as a new one."))
 
     def _show_undo(self) -> None:
         self.menus.by_name["undo"].setEnabled(self.session.can_undo)
@@ -155,12 +158,6 @@ class MainWindow(QMainWindow):
         self.menus.recent.clear()
         for name in self.preferences.recent:
             self.menus.recent.addAction(name, partial(self.commands.open_paths, [Path(name)]))
-
-    def _choose_theme(self, name: str) -> None:
-        choose_theme(name)
-        self.preferences.window = self.preferences.window | {"theme": name}
-        self.preferences.save()
-        self._apply_theme()
 
     def _apply_theme(self) -> None:
         theme = current_theme()

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from functools import partial
 
 from PySide6.QtCore import QSize, Qt, Signal
+from PySide6.QtGui import QKeySequence
 from PySide6.QtWidgets import (
     QAbstractItemView,
     QButtonGroup,
@@ -18,7 +19,9 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.ui.icons import icon
 from regolith_studio.ui.page import Page, PageContext, PageWidget
+from regolith_studio.ui.shortcuts import with_keys
 from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.translation import tr
 
 _ICON = 24
 
@@ -129,9 +132,9 @@ class PageStack(QWidget):
     def _button(self, page: Page, number: int) -> QToolButton:
         button = QToolButton()
         button.setObjectName(f"page_{page.key}")
-        button.setText(page.title)
-        button.setAccessibleName(f"Page {page.title}")
-        button.setToolTip(f"{page.tip} (Alt+{number})")
+        button.setText(tr(page.title))
+        button.setAccessibleName(tr("Page {title}", title=tr(page.title)))
+        button.setToolTip(with_keys(tr(page.tip), QKeySequence(f"Alt+{number}")))
         button.setCheckable(True)
         button.setAutoRaise(True)
         button.setIconSize(QSize(_ICON, _ICON))

@@ -12,9 +12,10 @@ from regolith_studio.session.preferences import preferences_path
 from regolith_studio.session.project import SUFFIX, Project, read_project, without_file
 from regolith_studio.session.session import Session
 from regolith_studio.ui.page_stack import PageStack
+from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.toast import Toast
 
-FILTER = f"Projects (*{SUFFIX})"
+FILTER = mark("Projects (*.regolith)")
 AUTOSAVE_SECONDS = 10
 """Between a change and the copy of it that is kept for the case of a crash."""
 
@@ -60,7 +61,9 @@ class Projects(QObject):
 
     def unsaved(self) -> list[str]:
         """What closing would lose, in sentences."""
-        return [f"{self.path.name} has changes that are not saved."] if self.path and self.modified else []
+        if self.path is None or not self.modified:
+            return []
+        return [tr("{name} has changes that are not saved.", name=self.path.name)]
 
     def save(self) -> bool:
         """Write the project into its file, asking for one the first time; says whether it was written."""
@@ -69,7 +72,7 @@ class Projects(QObject):
     def save_as(self) -> bool:
         """Ask for a file and write the project into it."""
         start = str(self.path or Path.home() / f"project{SUFFIX}")
-        name, _ = QFileDialog.getSaveFileName(self._window, "Save project", start, FILTER)
+        name, _ = QFileDialog.getSaveFileName(self._window, tr("Save project"), start, tr(FILTER))
         return bool(name) and self._write(Path(name).with_suffix(SUFFIX))
 
     def open(self, path: Path) -> None:
@@ -84,8 +87,8 @@ class Projects(QObject):
         left = stale_autosaves()
         if not left:
             return
-        text = "Regolith Studio was not closed properly the last time. Bring its state back?"
-        box = QMessageBox(QMessageBox.Icon.Question, "Recover", text, parent=self._window)
+        text = tr("Regolith Studio was not closed properly the last time. Bring its state back?")
+        box = QMessageBox(QMessageBox.Icon.Question, tr("Recover"), text, parent=self._window)
         box.setObjectName("recovery")
         box.setStandardButtons(QMessageBox.StandardButton.Yes | QMessageBox.StandardButton.No)
 
@@ -121,8 +124,8 @@ class Projects(QObject):
             return False
         self.path, self._saved = path, state
         lost = without_file(self._session)
-        note = f" {len(lost)} particles came from no file and are not in it; export them." if lost else ""
-        self._toast.note(f"Saved {path}.{note}")
+        note = tr("{count} particles came from no file and are not in it; export them.", count=len(lost))
+        self._toast.note(" ".join((tr("Saved {path}.", path=path), *((note,) if lost else ()))))
         self.changed.emit()
         return True
 

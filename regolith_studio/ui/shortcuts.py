@@ -6,6 +6,7 @@ from PySide6.QtGui import QAction, QKeySequence
 
 from regolith_studio.errors import InputError
 from regolith_studio.session.preferences import Preferences
+from regolith_studio.ui.translation import tr
 
 SHORTCUTS = "shortcuts"
 """In the preferences of the window: keys by the name of the command, where they are not the usual ones."""
@@ -58,12 +59,13 @@ class Shortcuts:
         if not keys:
             return ""
         if not text or sequence.count() != 1:
-            return f"{keys} is no key that a command can have."
+            return tr("{keys} is no key that a command can have.", keys=keys)
         if text in _NEEDED or (len(text) == 1 and text.isprintable()):
-            return f"{text} is needed for typing and for moving about; add Ctrl or Alt."
+            return tr("{keys} is needed for typing and for moving about; add Ctrl or Alt.", keys=text)
         for other in self.actions:
             if other != name and self.keys(other) == text and self._meet(name, other):
-                return f"{text} already runs “{plain(self.actions[other])}”."
+                name_of_other = plain(self.actions[other])
+                return tr("{keys} already runs “{command}”.", keys=text, command=name_of_other)
         return ""
 
     def change(self, name: str, keys: str) -> None:
@@ -87,11 +89,9 @@ class Shortcuts:
 
     def _set(self, name: str, keys: str) -> None:
         action = self.actions[name]
-        before = action.shortcut().toString()
+        tip = action.toolTip().removesuffix(with_keys("", action.shortcut()))
         action.setShortcut(QKeySequence(keys))
-        tip = action.toolTip().removesuffix(f" ({before})") if before else action.toolTip()
-        now = action.shortcut().toString()
-        action.setToolTip(f"{tip} ({now})" if now else tip)
+        action.setToolTip(with_keys(tip, action.shortcut()))
 
     def _keep(self) -> None:
         changed = {name: self.keys(name) for name, usual in self.usual.items() if self.keys(name) != usual}
@@ -102,6 +102,16 @@ class Shortcuts:
         """Whether both can be run on the same page."""
         owners = [name.split(".")[0] if name.split(".")[0] in self._pages else "" for name in (one, other)]
         return "" in owners or owners[0] == owners[1]
+
+
+def shown_keys(keys: QKeySequence) -> str:
+    """Keys as the keyboard of the user names them."""
+    return keys.toString(QKeySequence.SequenceFormat.NativeText)
+
+
+def with_keys(words: str, keys: QKeySequence) -> str:
+    """A tool tip that ends with the keys, if there are any."""
+    return words if keys.isEmpty() else f"{words} ({shown_keys(keys)})"
 
 
 def plain(action: QAction) -> str:

@@ -37,9 +37,14 @@ def run(paths: Sequence[str | Path] = (), unit: str | None = None) -> int:
     splash = make_splash()
     splash.show()
     app.processEvents()
+    from regolith_studio.session.preferences import Preferences
+    from regolith_studio.ui.translation.language import SETTING, SYSTEM, speak
+
+    preferences = Preferences.load()
+    speak(app, str(preferences.window.get(SETTING, SYSTEM)))
     from regolith_studio.ui.app import open_window, telling_hook, welcome
 
-    window = open_window(paths, unit)
+    window = open_window(paths, unit, preferences=preferences)
     sys.excepthook = telling_hook(window.toast.problem)
     window.show()
     splash.close()
@@ -66,7 +71,7 @@ def make_splash() -> QLabel:
     painter.drawText(150, 82, "Regolith Studio")
     painter.setFont(QFont())
     painter.setPen(QColor(_QUIET))
-    painter.drawText(150, 108, f"{__version__}   from CT scans to DEM particles")
+    painter.drawText(150, 108, f"{__version__}   CT → DEM")
     painter.end()
     splash = QLabel()
     splash.setWindowFlags(Qt.WindowType.SplashScreen | Qt.WindowType.WindowStaysOnTopHint)

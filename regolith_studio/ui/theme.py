@@ -90,7 +90,11 @@ DARK = Theme(
 
 THEMES = {"light": LIGHT, "dark": DARK}
 
+SMALLEST, USUAL, LARGEST = 80.0, 100.0, 200.0
+"""Sizes of letters in percent."""
+
 _chosen: list[str] = ["system"]
+_letters: list[float] = [USUAL]
 
 
 def choose_theme(name: str) -> None:
@@ -104,8 +108,20 @@ def current_theme() -> Theme:
     return THEMES.get(_chosen[0], DARK if dark else LIGHT)
 
 
+def choose_letters(percent: object) -> None:
+    """From now on letters of this size in percent of what the system asks for."""
+    known = isinstance(percent, int | float) and not isinstance(percent, bool)
+    _letters[0] = min(max(float(percent), SMALLEST), LARGEST) if known else USUAL  # type: ignore[arg-type]
+
+
 def apply_theme(app: QApplication, theme: Theme) -> None:
-    """Give the whole application a theme."""
+    """Give the whole application a theme, and letters of the chosen size."""
+    font = app.font()
+    of_system = float(app.property("system_letters") or font.pointSizeF())
+    app.setProperty("system_letters", of_system)
+    font.setPointSizeF(of_system * _letters[0] / USUAL)
+    if font != app.font():
+        app.setFont(font)
     app.setStyle("Fusion")
     app.setPalette(_palette(theme))
     app.setStyleSheet(_style_sheet(theme))

@@ -11,11 +11,12 @@ from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QPushButton, QVBoxLay
 from regolith_studio.resources import resource
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.ui.theme import current_theme
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import heading, remark
 
 TOUR_SEEN = "tour_seen"
 """In the preferences of the window: that the tour need not start by itself any more."""
-_WIDTH = 340
+_WIDTH = 364
 _GAP = 14
 
 
@@ -32,7 +33,8 @@ class Step:
 def steps() -> tuple[Step, ...]:
     """All stops, in order."""
     entries = json.loads(resource("tour", "en.json").read_text(encoding="utf-8"))
-    return tuple(Step(**entry) for entry in entries)
+    shown = ({**entry, "title": tr(entry["title"]), "text": tr(entry["text"])} for entry in entries)
+    return tuple(Step(**entry) for entry in shown)
 
 
 def start_tour(window: QWidget, go: Callable[[str], object], preferences: Preferences) -> "Tour":
@@ -58,7 +60,8 @@ class Tour(QWidget):
         self._bubble.setProperty("mood", "note")
         self._title, self._text, self._count = heading(""), QLabel(), remark()
         self._text.setWordWrap(True)
-        self.back, self.next, self.end = QPushButton("Back"), QPushButton("Next"), QPushButton("End tour")
+        self.back, self.next = QPushButton(tr("Back")), QPushButton(tr("Next"))
+        self.end = QPushButton(tr("End tour"))
         for button, name in ((self.back, "tour_back"), (self.next, "tour_next"), (self.end, "tour_end")):
             button.setObjectName(name)
         self._arrange()
@@ -84,9 +87,9 @@ class Tour(QWidget):
         self._go(step.page)
         self._title.setText(step.title)
         self._text.setText(step.text)
-        self._count.setText(f"{self._at + 1} of {len(self._steps)}")
+        self._count.setText(tr("{at} of {total}", at=self._at + 1, total=len(self._steps)))
         self.back.setEnabled(self._at > 0)
-        self.next.setText("Done" if self._at == len(self._steps) - 1 else "Next")
+        self.next.setText(tr("Done") if self._at == len(self._steps) - 1 else tr("Next"))
         self._bubble.setAccessibleName(f"{step.title}. {step.text}")
         self._place()
 
@@ -123,7 +126,8 @@ class Tour(QWidget):
         self._spot &= self.rect()
         ring = QRegion(self._spot) - QRegion(self._spot.adjusted(5, 5, -5, -5))
         self.setMask(ring)  # nothing but the frame is drawn over views that draw by themselves
-        self._bubble.setFixedSize(_WIDTH, max(90, self._bubble.heightForWidth(_WIDTH)))
+        width = max(_WIDTH, self._bubble.minimumSizeHint().width())
+        self._bubble.setFixedSize(width, max(90, self._bubble.heightForWidth(width)))
         self._bubble.move(_beside(self._spot, self._bubble.rect(), self.rect()))
         for widget in (self, self._bubble):
             widget.show()

@@ -62,8 +62,8 @@ def test_that_bars_are_a_row_a_category(shown, tmp_path):
 
 
 def test_that_a_plot_without_numbers_offers_the_figure_alone(shown, curves):
-    assert _offered(curves) == ["Save &figure ...", "Save &numbers ..."]
-    assert _offered(shown(Plot("x", "y", "Nothing yet."))) == ["Save &figure ..."]
+    assert _offered(curves) == ["Save &figure …", "Save &numbers …"]
+    assert _offered(shown(Plot("x", "y", "Nothing yet."))) == ["Save &figure …"]
 
 
 def _offered(plot):

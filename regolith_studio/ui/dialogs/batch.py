@@ -25,16 +25,17 @@ from regolith_studio.session.hired import Hired, is_unfinished
 from regolith_studio.session.recipe import Outputs
 from regolith_studio.session.tasks import Task
 from regolith_studio.ui.dialogs.batch_fields import PathField, SourceField, WorkersField
+from regolith_studio.ui.translation import mark, tr, tr_count
 from regolith_studio.ui.widgets.labels import remark
 
 RESULTS = {
-    "descriptors": "Descriptors",
-    "fits": "Fits",
-    "meshes": "Polyhedra (STL)",
-    "dataset": "Dataset",
-    "lmax_study": "Study of l_max",
-    "coarsening_study": "Study of the coarsening",
-    "summary": "Report (HTML)",
+    "descriptors": mark("Descriptors"),
+    "fits": mark("Fits"),
+    "meshes": mark("Polyhedra (STL)"),
+    "dataset": mark("Dataset"),
+    "lmax_study": mark("Study of the degree"),
+    "coarsening_study": mark("Study of the coarsening"),
+    "summary": mark("Report (HTML)"),
 }
 
 
@@ -74,18 +75,18 @@ class BatchDialog(QDialog):
 
     def __init__(self, count: int, unsaved: int, folder: Path, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self.setWindowTitle("Run as a batch")
+        self.setWindowTitle(tr("Run as a batch"))
         self.setObjectName("batch_dialog")
         self.setMinimumWidth(600)
         self._running = False
         self.source = SourceField(count, unsaved)
-        self.folder = PathField("batch_folder", "Folder of the results", folder=True)
+        self.folder = PathField("batch_folder", tr("Folder of the results"), folder=True)
         self.folder.setValue(folder)
-        self.results = {key: QCheckBox(label) for key, label in RESULTS.items()}
+        self.results = {key: QCheckBox(tr(label)) for key, label in RESULTS.items()}
         for key, box in self.results.items():
             box.setObjectName(f"batch_{key}")
             box.setChecked(getattr(Outputs(), key))
-        self.resume = QCheckBox("Go on with the run that has not ended")
+        self.resume = QCheckBox(tr("Go on with the run that has not ended"))
         self.resume.setObjectName("batch_resume")
         self.resume.setChecked(True)
         self.workers = WorkersField()
@@ -95,7 +96,7 @@ class BatchDialog(QDialog):
         self.place.setOpenExternalLinks(True)
         self.place.setTextInteractionFlags(Qt.TextInteractionFlag.TextBrowserInteraction)
         self.bar = QProgressBar()
-        self.bar.setAccessibleName("Progress of the batch")
+        self.bar.setAccessibleName(tr("Progress of the batch"))
         self._buttons()
         self._arrange()
         for changed in (self.source.changed, self.folder.changed, self.workers.changed):
@@ -114,10 +115,10 @@ class BatchDialog(QDialog):
         """
         folder = self.folder.value()
         if folder is None or folder.is_file():
-            raise InputError("Name a folder for the results.")
+            raise InputError(tr("Name a folder for the results."))
         outputs = Outputs(**{key: box.isChecked() for key, box in self.results.items()})
         if self.source.value() is None and not any(box.isChecked() for box in self.results.values()):
-            raise InputError("Choose what is to be written.")
+            raise InputError(tr("Choose what is to be written."))
         resume = is_unfinished(folder) and self.resume.isChecked()
         return BatchOrder(self.source.checked(), folder, resume, outputs, self.workers.value())
 
@@ -138,14 +139,14 @@ class BatchDialog(QDialog):
         """Show how far the work is."""
         self.bar.setRange(0, task.total)
         self.bar.setValue(task.done)
-        count = f"{task.done:,} of {task.total:,}" if task.total else ""
-        self.state.setText(", ".join(filter(None, [f"{task.title} {count}".strip(), task.message])))
+        count = tr("{at:,} of {total:,}", at=task.done, total=task.total) if task.total else ""
+        self.state.setText(", ".join(filter(None, [f"{tr(task.title)} {count}".strip(), task.message])))
 
     def show_hired(self, hired: Hired) -> None:
         """Say who works, and where that can be watched."""
-        who = "1 worker" if hired.workers == 1 else f"{hired.workers} workers"
-        page = f', watched at <a href="{hired.dashboard}">{hired.dashboard}</a>' if hired.dashboard else ""
-        self.place.setText(f"{who}{page}")
+        who = tr_count("1 worker", "{count} workers", hired.workers)
+        link = f'<a href="{hired.dashboard}">{hired.dashboard}</a>'
+        self.place.setText(tr("{who}, watched at {link}", who=who, link=link) if hired.dashboard else who)
         self.place.show()
 
     def finish(self, sentence: str, report: bool = False) -> None:
@@ -158,9 +159,9 @@ class BatchDialog(QDialog):
 
     def _buttons(self) -> None:
         self.box = QDialogButtonBox(QDialogButtonBox.StandardButton.Close)
-        self.go = self.box.addButton("Run", QDialogButtonBox.ButtonRole.ActionRole)
-        self.halt = self.box.addButton("Stop", QDialogButtonBox.ButtonRole.ActionRole)
-        self.report = self.box.addButton("Open the results", QDialogButtonBox.ButtonRole.ActionRole)
+        self.go = self.box.addButton(tr("Run"), QDialogButtonBox.ButtonRole.ActionRole)
+        self.halt = self.box.addButton(tr("Stop"), QDialogButtonBox.ButtonRole.ActionRole)
+        self.report = self.box.addButton(tr("Open the results"), QDialogButtonBox.ButtonRole.ActionRole)
         for name, button in (("go", self.go), ("stop", self.halt), ("results", self.report)):
             button.setObjectName(f"batch_{name}")
         self.go.setDefault(True)
@@ -175,16 +176,15 @@ class BatchDialog(QDialog):
             grid.addWidget(box, at // 3, at % 3)
         form = QFormLayout()
         form.setVerticalSpacing(7)
-        form.addRow("Recipe:", self.source)
-        form.addRow("Write:", grid)
-        form.addRow("Into:", self.folder)
+        form.addRow(tr("Recipe:"), self.source)
+        form.addRow(tr("Write:"), grid)
+        form.addRow(tr("Into:"), self.folder)
         form.addRow("", self.resume)
-        form.addRow("Work done by:", self.workers)
+        form.addRow(tr("Work done by:"), self.workers)
         layout = QVBoxLayout(self)
         layout.addLayout(form)
-        layout.addWidget(
-            remark("The results are the same bytes whoever works, and a run that was stopped can go on.")
-        )
+        promise = tr("The results are the same bytes whoever works, and a run that was stopped can go on.")
+        layout.addWidget(remark(promise))
         layout.addStretch(1)
         for widget in (self.state, self.place, self.bar, self.box):
             layout.addWidget(widget)
@@ -205,8 +205,8 @@ class BatchDialog(QDialog):
             sentence = str(error)
         else:
             blocked = is_unfinished(order.folder) and not order.resume
-            sentence = "The folder holds a run that has not ended: go on with it, or choose another folder."
-            sentence = sentence if blocked else ""
+            begun = tr("The folder holds a run that has not ended: go on with it, or choose another folder.")
+            sentence = begun if blocked else ""
         self.state.setText(sentence)
         self.go.setEnabled(not sentence)
 
@@ -224,7 +224,7 @@ class BatchDialog(QDialog):
         self.report.hide()
         self.place.hide()
         self.bar.setRange(0, 0)
-        self.state.setText("Starting …")
+        self.state.setText(tr("Starting …"))
         self.started.emit(order)
 
     def _open_results(self) -> None:

@@ -21,12 +21,13 @@ from regolith_studio.errors import InputError
 from regolith_studio.jobs.hiring import TLS_NAMES, Hiring
 from regolith_studio.jobs.runners.process_pool import cores
 from regolith_studio.jobs.runners.scheduler_address import SchedulerAddress
+from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.labels import remark
 
 PLACES = {
-    "processes": "Processes of this machine",
-    "local": "A Dask cluster started on this machine",
-    "address": "A Dask cluster at an address",
+    "processes": mark("Processes of this machine"),
+    "local": mark("A Dask cluster started on this machine"),
+    "address": mark("A Dask cluster at an address"),
 }
 
 
@@ -41,7 +42,7 @@ class PathField(QWidget):
         self.text = QLineEdit()
         self.text.setObjectName(name)
         self.text.setAccessibleName(title)
-        self.browse = QPushButton("Browse …")
+        self.browse = QPushButton(tr("Browse …"))
         layout = QHBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(self.text, 1)
@@ -77,13 +78,16 @@ class SourceField(QWidget):
         self._count = count - unsaved
         self.kind = QComboBox()
         self.kind.setObjectName("batch_source")
-        self.kind.setAccessibleName("Recipe")
-        self.kind.addItem(f"The files of the {self._count} open particles, as chosen now", "open")
-        self.kind.addItem("A recipe file", "file")
-        self.file = PathField("batch_recipe", "Recipe", folder=False, filter="Recipes (*.json)")
-        self.missing = remark(
-            f"{unsaved} of the open particles come from no file and cannot be part of a batch.", "warning"
+        self.kind.setAccessibleName(tr("Recipe"))
+        ours = tr("The files of the {count} open particles, as chosen now", count=self._count)
+        self.kind.addItem(ours, "open")
+        self.kind.addItem(tr("A recipe file"), "file")
+        kinds = tr("Recipes (*.json)")
+        self.file = PathField("batch_recipe", tr("Recipe"), folder=False, filter=kinds)
+        left_out = tr(
+            "{count} of the open particles come from no file and cannot be part of a batch.", count=unsaved
         )
+        self.missing = remark(left_out, "warning")
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         for widget in (self.kind, self.file, self.missing):
@@ -108,9 +112,9 @@ class SourceField(QWidget):
         """
         path = self.value()
         if path is None and self._count < 1:
-            raise InputError("No open particle comes from a file: open some, or choose a recipe file.")
+            raise InputError(tr("No open particle comes from a file: open some, or choose a recipe file."))
         if path is not None and not path.is_file():
-            raise InputError("Choose a recipe file.")
+            raise InputError(tr("Choose a recipe file."))
         return path
 
     def _changed(self) -> None:
@@ -129,26 +133,27 @@ class WorkersField(QWidget):
         super().__init__()
         self.place = QComboBox()
         self.place.setObjectName("batch_place")
-        self.place.setAccessibleName("Work done by")
+        self.place.setAccessibleName(tr("Work done by"))
         for key, label in PLACES.items():
-            self.place.addItem(label, key)
+            self.place.addItem(tr(label), key)
         self.count = QSpinBox()
         self.count.setObjectName("batch_workers")
-        self.count.setAccessibleName("Number of processes")
+        self.count.setAccessibleName(tr("Number of processes"))
         self.count.setRange(1, 1024)
         self.count.setValue(cores())
         self.address = QLineEdit()
         self.address.setObjectName("batch_address")
-        self.address.setAccessibleName("Address of the scheduler")
-        self.address.setPlaceholderText("tcp://HOST:8786 or tls://HOST:8786")
-        self.tls = PathField("batch_tls", f"Folder with {', '.join(TLS_NAMES)}", folder=True)
-        self.tls.text.setPlaceholderText(f"folder with {', '.join(TLS_NAMES)}")
+        self.address.setAccessibleName(tr("Address of the scheduler"))
+        self.address.setPlaceholderText(tr("tcp://HOST:8786 or tls://HOST:8786"))
+        names = ", ".join(TLS_NAMES)
+        self.tls = PathField("batch_tls", tr("Folder with {names}", names=names), folder=True)
+        self.tls.text.setPlaceholderText(tr("folder with {names}", names=names))
         self._form = QFormLayout(self)
         self._form.setContentsMargins(0, 0, 0, 0)
         self._form.addRow(self.place)
-        self._form.addRow("Processes", self.count)
-        self._form.addRow("Scheduler", self.address)
-        self._form.addRow("Certificates", self.tls)
+        self._form.addRow(tr("Processes"), self.count)
+        self._form.addRow(tr("Scheduler"), self.address)
+        self._form.addRow(tr("Certificates"), self.tls)
         self.place.currentIndexChanged.connect(self._changed)
         self.count.valueChanged.connect(self._changed)
         self.address.textChanged.connect(self._changed)
@@ -172,7 +177,8 @@ class WorkersField(QWidget):
         tls = self.tls.value() if address.scheme == "tls" else None
         missing = [name for name in TLS_NAMES if tls and not (tls / name).is_file()]
         if address.scheme == "tls" and (tls is None or missing):
-            raise InputError(f"An encrypted cluster needs a folder with {', '.join(TLS_NAMES)}.")
+            names = ", ".join(TLS_NAMES)
+            raise InputError(tr("An encrypted cluster needs a folder with {names}.", names=names))
         return Hiring("dask", 0, str(address), tls)
 
     def remembered(self) -> dict[str, str]:

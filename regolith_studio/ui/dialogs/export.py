@@ -23,8 +23,9 @@ from regolith_studio.coarsening.methods import METHODS
 from regolith_studio.coarsening.weights import JACCARD, presets
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.jobs.building import DatasetOptions
-from regolith_studio.session.choices import TARGETS, Choices
+from regolith_studio.session.choices import Choices
 from regolith_studio.session.tasks import Task
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import remark, rich_symbol
 
 
@@ -45,17 +46,24 @@ def summary(count: int, choices: Choices) -> list[tuple[str, str]]:
         for key, value in choices.weights.items()
         if value
     )
-    modified = ", modified" if choices.preset_modified else ""
-    target = TARGETS[choices.target]
+    preset = tr(presets()[choices.preset].label)
+    if choices.preset_modified:
+        preset = tr("{preset}, modified", preset=preset)
+    target = tr("the CT particle itself")
     if choices.target == "fit":
-        target += f" at l<sub>max</sub> = {choices.l_max}"
+        target = tr(
+            "the surface of the spherical-harmonics fit at l<sub>max</sub> = {l_max}", l_max=choices.l_max
+        )
+    files = tr("{count}, as unit-volume STL files, {size:,.0f} KiB in all", count=count, size=size / 1024)
+    facets = tr("at most {faces} facets, {triangles} triangles", faces=choices.n_faces, triangles=triangles)
+    method = tr("{method}, seed {seed}", method=tr(METHODS[choices.method].label), seed=choices.seed)
     return [
-        ("Particles", f"{count}, as unit-volume STL files, {size / 1024:,.0f} KiB in all"),
-        ("Each with", f"at most {choices.n_faces} facets, {triangles} triangles"),
-        ("Imitating", f"the {target}"),
-        ("Method", f"{METHODS[choices.method].label}, seed {choices.seed}"),
-        ("Weights", f"{weights or 'none'} ({presets()[choices.preset].label}{modified})"),
-        ("Also", "weights, size distribution, descriptors, provenance (JSON)"),
+        (tr("Particles"), files),
+        (tr("Each with"), facets),
+        (tr("Imitating"), target),
+        (tr("Method"), method),
+        (tr("Weights"), f"{weights or tr('none')} ({preset})"),
+        (tr("Also"), tr("weights, size distribution, descriptors, provenance (JSON)")),
     ]
 
 
@@ -67,26 +75,26 @@ class ExportDialog(QDialog):
 
     def __init__(self, count: int, choices: Choices, folder: Path, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self.setWindowTitle("Export dataset")
+        self.setWindowTitle(tr("Export dataset"))
         self.setObjectName("export_dialog")
         self.setMinimumWidth(520)
         self._running = False
         self.folder = QLineEdit(str(folder))
         self.folder.setObjectName("export_folder")
-        self.folder.setAccessibleName("Folder of the dataset")
-        self.browse = QPushButton("Browse …")
+        self.folder.setAccessibleName(tr("Folder of the dataset"))
+        self.browse = QPushButton(tr("Browse …"))
         self.name = QLineEdit()
         self.name.setObjectName("export_name")
-        self.name.setAccessibleName("Name of the dataset")
-        self.name.setPlaceholderText("as the folder")
-        self.overwrite = QCheckBox("Replace the dataset that is there")
+        self.name.setAccessibleName(tr("Name of the dataset"))
+        self.name.setPlaceholderText(tr("as the folder"))
+        self.overwrite = QCheckBox(tr("Replace the dataset that is there"))
         self.overwrite.setObjectName("export_overwrite")
         self.state = remark()
         self.bar = QProgressBar()
-        self.bar.setAccessibleName("Progress of the export")
+        self.bar.setAccessibleName(tr("Progress of the export"))
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Cancel)
         self.cancel = buttons.button(QDialogButtonBox.StandardButton.Cancel)
-        self.go = buttons.addButton("Export", QDialogButtonBox.ButtonRole.AcceptRole)
+        self.go = buttons.addButton(tr("Export"), QDialogButtonBox.ButtonRole.AcceptRole)
         self.go.setObjectName("export_go")
         self._arrange(summary(count, choices), buttons)
         self.go.setDefault(True)
@@ -106,7 +114,8 @@ class ExportDialog(QDialog):
         """Show how far the work is."""
         self.bar.setRange(0, task.total)
         self.bar.setValue(task.done)
-        self.state.setText(f"{task.title}: {task.done} of {task.total} {task.message}".strip())
+        steps = tr("{at} of {total}", at=task.done, total=task.total)
+        self.state.setText(f"{tr(task.title)}: {steps} {task.message}".strip())
 
     def finish(self) -> None:
         """The dataset is written, or the work has ended otherwise."""
@@ -130,8 +139,8 @@ class ExportDialog(QDialog):
             label = QLabel(text)
             label.setWordWrap(True)
             form.addRow(f"{word}:", label)
-        form.addRow("Folder:", where)
-        form.addRow("Name:", self.name)
+        form.addRow(tr("Folder:"), where)
+        form.addRow(tr("Name:"), self.name)
         form.addRow("", self.overwrite)
         layout = QVBoxLayout(self)
         layout.addLayout(form)
@@ -148,14 +157,14 @@ class ExportDialog(QDialog):
         self.overwrite.setVisible(used)
         sentence = ""
         if blocked:
-            sentence = "Name a folder, new or empty."
+            sentence = tr("Name a folder, new or empty.")
         elif used and not self.overwrite.isChecked():
-            sentence = "The folder is not empty: choose another one, or replace the dataset in it."
+            sentence = tr("The folder is not empty: choose another one, or replace the dataset in it.")
         self.state.setText(sentence)
         self.go.setEnabled(not sentence)
 
     def _browse(self) -> None:
-        chosen = QFileDialog.getExistingDirectory(self, "Folder of the dataset", self.folder.text())
+        chosen = QFileDialog.getExistingDirectory(self, tr("Folder of the dataset"), self.folder.text())
         if chosen:
             self.folder.setText(chosen)
 
@@ -165,5 +174,5 @@ class ExportDialog(QDialog):
             widget.setEnabled(False)
         self.bar.setRange(0, 0)
         self.bar.show()
-        self.state.setText("Starting …")
+        self.state.setText(tr("Starting …"))
         self.started.emit(self.value())

@@ -14,22 +14,26 @@ from PySide6.QtWidgets import (
 
 from regolith_studio import __version__
 from regolith_studio.ui.icons import pixmap
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import heading, remark
 
 
 def about_dialog(parent: QWidget, renderer: str) -> QDialog:
     """Version, purpose, and the libraries that matter when something looks wrong."""
     dialog = QDialog(parent)
-    dialog.setWindowTitle("About Regolith Studio")
+    dialog.setObjectName("about_dialog")
+    dialog.setWindowTitle(tr("About Regolith Studio"))
     mark = QLabel()
     mark.setPixmap(pixmap("app", "#000000", 72))
     mark.setAlignment(Qt.AlignmentFlag.AlignTop)
     text = QVBoxLayout()
     text.addWidget(heading(f"Regolith Studio {__version__}"))
-    text.addWidget(QLabel("From X-ray micro-CT to DEM-ready regolith particles whose geometry is right."))
+    purpose = tr("From X-ray micro-CT to DEM-ready regolith particles whose geometry is right.")
+    text.addWidget(QLabel(purpose))
     names = ("PySide6-Essentials", "vtk", "pyvista", "pyqtgraph", "numpy", "numba")
     text.addWidget(remark(", ".join(f"{name} {_version(name)}" for name in names)))
-    text.addWidget(remark(f"Three-dimensional views: {renderer}"))
+    drawn = tr("drawn by OpenGL in the window") if renderer == "live" else tr("pictures, drawn off-screen")
+    text.addWidget(remark(tr("Three-dimensional views: {how}", how=drawn)))
     row = QHBoxLayout()
     row.setSpacing(16)
     row.addWidget(mark)
@@ -51,4 +55,4 @@ def _version(name: str) -> str:
     try:
         return version(name)
     except PackageNotFoundError:
-        return "(not installed)"
+        return tr("(not installed)")

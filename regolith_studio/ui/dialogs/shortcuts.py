@@ -21,13 +21,14 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.errors import InputError
 from regolith_studio.ui.shortcuts import Shortcuts, plain
+from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.labels import heading, remark
 
 MOUSE = (
-    ("Left drag", "Turn the particle"),
-    ("Right or middle drag, Shift + drag", "Shift the picture"),
-    ("Ctrl + drag", "Roll the picture"),
-    ("Wheel", "Zoom"),
+    (mark("Left drag"), mark("Turn the particle")),
+    (mark("Right or middle drag, Shift + drag"), mark("Shift the picture")),
+    (mark("Ctrl + drag"), mark("Roll the picture")),
+    (mark("Wheel"), mark("Zoom")),
 )
 
 
@@ -36,20 +37,20 @@ class ShortcutsDialog(QDialog):
 
     def __init__(self, shortcuts: Shortcuts, titles: dict[str, str], parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self.setWindowTitle("Keyboard and mouse")
+        self.setWindowTitle(tr("Keyboard and mouse"))
         self.setObjectName("shortcuts_dialog")
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.resize(620, 640)
         self._shortcuts, self._titles = shortcuts, titles
         self.search = QLineEdit()
         self.search.setObjectName("shortcuts_search")
-        self.search.setAccessibleName("Search commands")
-        self.search.setPlaceholderText("Search commands and keys")
+        self.search.setAccessibleName(tr("Search commands"))
+        self.search.setPlaceholderText(tr("Search commands and keys"))
         self.search.setClearButtonEnabled(True)
         self.table = QTableWidget(0, 2)
         self.table.setObjectName("shortcuts_table")
-        self.table.setAccessibleName("Commands and their keys")
-        self.table.setHorizontalHeaderLabels(["Command", "Keys"])
+        self.table.setAccessibleName(tr("Commands and their keys"))
+        self.table.setHorizontalHeaderLabels([tr("Command"), tr("Keys")])
         self.table.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
         self.table.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)
         self.table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
@@ -60,11 +61,11 @@ class ShortcutsDialog(QDialog):
         self.table.horizontalHeader().setSectionResizeMode(1, QHeaderView.ResizeMode.ResizeToContents)
         self.editor = QKeySequenceEdit()
         self.editor.setObjectName("shortcuts_keys")
-        self.editor.setAccessibleName("New keys of the chosen command")
+        self.editor.setAccessibleName(tr("New keys of the chosen command"))
         self.editor.setMaximumSequenceLength(1)
         self.editor.setClearButtonEnabled(True)
         self.change, self.usual, self.all_usual = (
-            QPushButton(words) for words in ("Change", "Usual keys", "All usual keys")
+            QPushButton(words) for words in (tr("Change"), tr("Usual keys"), tr("All usual keys"))
         )
         for button, name in ((self.change, "change"), (self.usual, "usual"), (self.all_usual, "all_usual")):
             button.setObjectName(f"shortcuts_{name}")
@@ -131,14 +132,14 @@ class ShortcutsDialog(QDialog):
 
     def _arrange(self) -> None:
         row = QHBoxLayout()
-        row.addWidget(QLabel("Keys:"))
+        row.addWidget(QLabel(tr("Keys:")))
         row.addWidget(self.editor, 1)
         for button in (self.change, self.usual, self.all_usual):
             row.addWidget(button)
         mouse = QFormLayout()
         mouse.setHorizontalSpacing(24)
         for gesture, meaning in MOUSE:
-            mouse.addRow(gesture, QLabel(meaning))
+            mouse.addRow(tr(gesture), QLabel(tr(meaning)))
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close)
         buttons.button(QDialogButtonBox.StandardButton.Close).setAutoDefault(False)  # Enter searches
         buttons.rejected.connect(self.reject)
@@ -147,6 +148,6 @@ class ShortcutsDialog(QDialog):
         layout.addWidget(self.table, 1)
         layout.addLayout(row)
         layout.addWidget(self.sentence)
-        layout.addWidget(heading("Mouse in the views"))
+        layout.addWidget(heading(tr("Mouse in the views")))
         layout.addLayout(mouse)
         layout.addWidget(buttons)

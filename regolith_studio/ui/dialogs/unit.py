@@ -14,15 +14,16 @@ from PySide6.QtWidgets import (
 )
 
 from regolith_studio.readers.units import UNITS
+from regolith_studio.ui.translation import mark, tr, tr_count
 from regolith_studio.ui.widgets.labels import remark
 
 LABELS = {
-    "um": "Micrometres (µm)",
-    "mm": "Millimetres (mm)",
-    "m": "Metres (m)",
-    "nm": "Nanometres (nm)",
-    "cm": "Centimetres (cm)",
-    "voxel": "Voxels of a CT volume",
+    "um": mark("Micrometres (µm)"),
+    "mm": mark("Millimetres (mm)"),
+    "m": mark("Metres (m)"),
+    "nm": mark("Nanometres (nm)"),
+    "cm": mark("Centimetres (cm)"),
+    "voxel": mark("Voxels of a CT volume"),
 }
 
 
@@ -31,26 +32,32 @@ class UnitDialog(QDialog):
 
     def __init__(self, paths: list[Path], suggestion: str, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self.setWindowTitle("Length unit")
+        self.setWindowTitle(tr("Length unit"))
         self.setObjectName("unit_dialog")
-        what = paths[0].name if len(paths) == 1 else f"these {len(paths)} files and folders"
-        question = QLabel(f"In which unit are the numbers of {what}?")
+        question = QLabel(
+            tr_count(
+                "In which unit are the numbers of {name}?",
+                "In which unit are the numbers of these {count} files and folders?",
+                len(paths),
+                name=paths[0].name,
+            )
+        )
         question.setWordWrap(True)
         self.unit = QComboBox()
         self.unit.setObjectName("unit")
-        self.unit.setAccessibleName("Length unit")
+        self.unit.setAccessibleName(tr("Length unit"))
         for key in UNITS:
-            self.unit.addItem(LABELS.get(key, key), key)
+            self.unit.addItem(tr(LABELS.get(key, key)), key)
         self.voxel = QDoubleSpinBox()
         self.voxel.setObjectName("voxel_size")
-        self.voxel.setAccessibleName("Edge of a voxel in micrometres")
+        self.voxel.setAccessibleName(tr("Edge of a voxel in micrometres"))
         self.voxel.setRange(0.001, 10_000.0)
         self.voxel.setDecimals(3)
         self.voxel.setSuffix(" µm")
         self.voxel.setValue(2.3)
-        self._voxel_label = QLabel("Edge of a voxel")
+        self._voxel_label = QLabel(tr("Edge of a voxel"))
         form = QFormLayout()
-        form.addRow("Unit", self.unit)
+        form.addRow(tr("Unit"), self.unit)
         form.addRow(self._voxel_label, self.voxel)
         buttons = QDialogButtonBox(
             QDialogButtonBox.StandardButton.Open | QDialogButtonBox.StandardButton.Cancel
@@ -60,7 +67,7 @@ class UnitDialog(QDialog):
         layout = QVBoxLayout(self)
         layout.addWidget(question)
         layout.addLayout(form)
-        layout.addWidget(remark("Mesh files carry no unit. The answer is kept for their folder."))
+        layout.addWidget(remark(tr("Mesh files carry no unit. The answer is kept for their folder.")))
         layout.addWidget(buttons)
         self.unit.currentIndexChanged.connect(self._show_voxel)
         self.setValue(suggestion)

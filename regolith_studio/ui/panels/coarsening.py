@@ -17,6 +17,8 @@ from regolith_studio.coarsening.coarsen import FACES_LIMITS
 from regolith_studio.coarsening.methods import METHODS
 from regolith_studio.ui.icons import icon
 from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.choice_box import ChoiceBox
 from regolith_studio.ui.widgets.collapsible import Collapsible
 from regolith_studio.ui.widgets.labels import heading, remark
@@ -24,14 +26,14 @@ from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
 from regolith_studio.ui.widgets.settings_form import SettingsForm
 
 FACES = NumberSpec(
-    "Facets n",
-    "Number of facets",
+    mark("Facets n"),
+    mark("Number of facets"),
     FACES_LIMITS[0],
     60,
     limit=FACES_LIMITS[1],
-    tip="Half-spaces of Eq. 5; n facets in general position have 2n−4 vertices and 4n−12 triangles.",
+    tip=mark("Half-spaces of Eq. 5; n facets in general position have 2n−4 vertices and 4n−12 triangles."),
 )
-TARGET_LABELS = {"fit": "Spherical-harmonics fit", "particle": "CT particle"}
+TARGET_LABELS = {"fit": mark("Spherical-harmonics fit"), "particle": mark("CT particle")}
 SEED_LIMIT = 2**31 - 1
 
 
@@ -48,18 +50,18 @@ class CoarseningPanel(QWidget):
         self.n_faces = NumberSlider(FACES)
         self.n_faces.slider.setObjectName("n_faces_slider")
         self.n_faces.field.setObjectName("n_faces")
-        self.target = ChoiceBox("target", "What is imitated", TARGET_LABELS)
-        self.method = ChoiceBox("method", "Coarsening method", {k: m.label for k, m in METHODS.items()})
+        self.target = ChoiceBox("target", tr("What is imitated"), TARGET_LABELS)
+        self.method = ChoiceBox("method", tr("Coarsening method"), {k: m.label for k, m in METHODS.items()})
         self.seed = _seed_field()
         self.dice = QToolButton()
         self.dice.setObjectName("next_seed")
-        self.dice.setToolTip("Next seed: the same method with other random numbers")
-        self.dice.setAccessibleName("Next seed")
+        self.dice.setToolTip(tr("Next seed: the same method with other random numbers"))
+        self.dice.setAccessibleName(tr("Next seed"))
         self._forms: dict[str, SettingsForm] = {}
         inside = QWidget()
         self._settings = QVBoxLayout(inside)
         self._settings.setContentsMargins(14, 0, 0, 0)
-        self.more = Collapsible("Settings of the method", inside)
+        self.more = Collapsible(tr("Settings of the method"), inside)
         self.more.button.setObjectName("method_settings")
         self.outcome = remark(role="warning")
         self.outcome.hide()
@@ -93,7 +95,7 @@ class CoarseningPanel(QWidget):
 
     def set_outcome(self, sentence: str | None) -> None:
         """Say why a request could not be met, or nothing."""
-        self.outcome.setText(sentence or "")
+        self.outcome.setText(retold(sentence) if sentence else "")
         self.outcome.setVisible(bool(sentence))
 
     def set_theme(self, theme: Theme) -> None:
@@ -106,12 +108,12 @@ class CoarseningPanel(QWidget):
         seed.addWidget(self.dice)
         form = QFormLayout()
         form.setContentsMargins(0, 0, 0, 0)
-        form.addRow("Method", self.method)
-        form.addRow("Imitate", self.target)
-        form.addRow("Seed", seed)
+        form.addRow(tr("Method"), self.method)
+        form.addRow(tr("Imitate"), self.target)
+        form.addRow(tr("Seed"), seed)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(heading("Coarsened polyhedron"))
+        layout.addWidget(heading(tr("Coarsened polyhedron")))
         layout.addWidget(self.n_faces)
         layout.addLayout(form)
         layout.addWidget(self.more)
@@ -148,8 +150,8 @@ class CoarseningPanel(QWidget):
 def _seed_field() -> QSpinBox:
     field = QSpinBox()
     field.setObjectName("seed")
-    field.setAccessibleName("Seed")
-    field.setToolTip("Of all random numbers: the same seed gives the same polyhedron.")
+    field.setAccessibleName(tr("Seed"))
+    field.setToolTip(tr("Of all random numbers: the same seed gives the same polyhedron."))
     field.setRange(0, SEED_LIMIT)
     field.setKeyboardTracking(False)
     return field

@@ -15,10 +15,11 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.session.results import Results
+from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.labels import plain_symbol
 
 _UNITS = {0: "", 1: " [µm]", 2: " [µm²]", 3: " [µm³]", 5: " [µm⁵]"}
-COLUMNS = ("Particle", "Fit", "Polyhedron")
+COLUMNS = (mark("Particle"), mark("Fit"), mark("Polyhedron"))
 _ROOM_FOR_LABELS = 440
 
 
@@ -30,8 +31,8 @@ class DescriptorTablePanel(QWidget):
         self.setObjectName("descriptor_table")
         self._keys = [key for key, row in CATALOGUE.items() if not row.costly and row.dimension in _UNITS]
         self.table = QTableWidget(len(self._keys), len(COLUMNS))
-        self.table.setAccessibleName("Descriptors")
-        self.table.setHorizontalHeaderLabels(COLUMNS)
+        self.table.setAccessibleName(tr("Descriptors"))
+        self.table.setHorizontalHeaderLabels([tr(each) for each in COLUMNS])
         self.table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
         self.table.setSelectionMode(QAbstractItemView.SelectionMode.NoSelection)
         self.table.setFocusPolicy(Qt.FocusPolicy.NoFocus)
@@ -62,8 +63,8 @@ class DescriptorTablePanel(QWidget):
         for number, key in enumerate(self._keys):
             row = CATALOGUE[key]
             short = plain_symbol(row.symbol) + _UNITS[row.dimension]
-            item = QTableWidgetItem(f"{row.label} {short}" if self.width() > _ROOM_FOR_LABELS else short)
-            item.setToolTip(f"{row.label}: {row.formula}")
+            item = QTableWidgetItem(f"{tr(row.label)} {short}" if self.width() > _ROOM_FOR_LABELS else short)
+            item.setToolTip(f"{tr(row.label)}: {tr(row.formula)}")
             self.table.setVerticalHeaderItem(number, item)
 
 

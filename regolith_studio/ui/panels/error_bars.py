@@ -9,6 +9,7 @@ from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.results import Results
 from regolith_studio.ui.theme import Theme
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.bar_plot import BarPlot, BarSeries
 from regolith_studio.ui.widgets.labels import plain_symbol
 
@@ -21,7 +22,9 @@ class ErrorBarsPanel(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setObjectName("error_bars")
-        self.plot = BarPlot("Descriptor", "Relative error [%]", "The errors appear when the fit is measured.")
+        self.plot = BarPlot(
+            tr("Descriptor"), tr("Relative error [%]"), tr("The errors appear when the fit is measured.")
+        )
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(self.plot)
@@ -39,11 +42,12 @@ class ErrorBarsPanel(QWidget):
         if done is not None:
             self._polyhedron = {**done.errors, JACCARD: done.jaccard_distance}
             self._bounds = dict(done.bounds)
-        theme, target = self.plot.theme, "fit" if choices.target == "fit" else "particle"
+        theme = self.plot.theme
+        imitating_fit = choices.target == "fit"
         series = [
-            BarSeries("Fit vs. particle", theme.fit, _percent(results.fit_errors)),
+            BarSeries(tr("Fit vs. particle"), theme.fit, _percent(results.fit_errors)),
             BarSeries(
-                f"Polyhedron vs. {target}",
+                tr("Polyhedron vs. fit") if imitating_fit else tr("Polyhedron vs. particle"),
                 theme.polyhedron,
                 _percent(self._polyhedron),
                 done is None,
@@ -51,7 +55,7 @@ class ErrorBarsPanel(QWidget):
             ),
         ]
         self.plot.set_bars([*(plain_symbol(CATALOGUE[key].symbol) for key in LOSS_KEYS), "Jaccard"], series)
-        self.plot.set_remark("" if done is None else f"loss (Eq. 9): {done.loss:.4g}")
+        self.plot.set_remark("" if done is None else tr("loss (Eq. 9): {loss:.4g}", loss=done.loss))
 
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""

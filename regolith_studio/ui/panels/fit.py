@@ -9,6 +9,8 @@ from PySide6.QtWidgets import QFormLayout, QVBoxLayout, QWidget
 
 from regolith_studio.harmonics.expansion import AUTOMATIC
 from regolith_studio.session.choices import L_MAX_LIMIT
+from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.choice_box import ChoiceBox
 from regolith_studio.ui.widgets.collapsible import Collapsible
 from regolith_studio.ui.widgets.labels import heading, remark
@@ -16,26 +18,36 @@ from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
 
 L_MAX = NumberSpec(
     "l<sub>max</sub>",
-    "Maximum degree",
+    mark("Maximum degree"),
     0,
     L_MAX_LIMIT,
-    tip="Degree at which the series of Eq. 4 is cut: 0 is a sphere; the paper uses 10.",
+    tip=mark("Degree at which the series of Eq. 4 is cut: 0 is a sphere; the paper uses 10."),
 )
 STAR_POINTS = {
-    AUTOMATIC: "Automatic",
-    "centre_of_mass": "Centre of mass",
-    "kernel_centre": "Centre of the kernel",
-    "least_hidden_volume": "Least hidden volume",
+    AUTOMATIC: mark("Automatic"),
+    "centre_of_mass": mark("Centre of mass"),
+    "kernel_centre": mark("Centre of the kernel"),
+    "least_hidden_volume": mark("Least hidden volume"),
 }
-RULES = {"volume": "Keep the volume", "outermost": "Last crossing", "first": "First crossing"}
-REFERENCES = {"sphere": "Sphere", "ellipsoid": "Best-fit ellipsoid"}
+RULES = {
+    "volume": mark("Keep the volume"),
+    "outermost": mark("Last crossing"),
+    "first": mark("First crossing"),
+}
+REFERENCES = {"sphere": mark("Sphere"), "ellipsoid": mark("Best-fit ellipsoid")}
 TIPS = {
-    "star_point": "Where radii begin. Automatic: the centre of mass or, where that is not inside, "
-    "the point that hides the least volume.",
-    "rule": "Which radius counts where a ray crosses the surface more than once. Keep the volume: the cube "
-    "root of the signed sum of r³ over all crossings.",
-    "reference": "What radii are divided by before they are expanded. An ellipsoid lowers the oscillation on "
-    "flat and elongated grains.",
+    "star_point": mark(
+        "Where radii begin. Automatic: the centre of mass or, where that is not inside, "
+        "the point that hides the least volume."
+    ),
+    "rule": mark(
+        "Which radius counts where a ray crosses the surface more than once. Keep the volume: the cube "
+        "root of the signed sum of r³ over all crossings."
+    ),
+    "reference": mark(
+        "What radii are divided by before they are expanded. An ellipsoid lowers the oscillation on "
+        "flat and elongated grains."
+    ),
 }
 
 
@@ -53,17 +65,17 @@ class FitPanel(QWidget):
         self.l_max.slider.setObjectName("l_max_slider")
         self.l_max.field.setObjectName("l_max")
         self.ways = {
-            "star_point": ChoiceBox("star_point", "Star point", STAR_POINTS),
-            "rule": ChoiceBox("rule", "Radius rule", RULES),
-            "reference": ChoiceBox("reference", "Reference of the radius", REFERENCES),
+            "star_point": ChoiceBox("star_point", tr("Star point"), STAR_POINTS),
+            "rule": ChoiceBox("rule", tr("Radius rule"), RULES),
+            "reference": ChoiceBox("reference", tr("Reference of the radius"), REFERENCES),
         }
-        self.more = Collapsible("How radii are taken", self._form())
+        self.more = Collapsible(tr("How radii are taken"), self._form())
         self.more.button.setObjectName("radius_settings")
         self.findings = remark()
         self.warnings = remark(role="warning")
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(heading("Spherical-harmonics fit"))
+        layout.addWidget(heading(tr("Spherical-harmonics fit")))
         for widget in (self.l_max, self.more, self.findings, self.warnings):
             layout.addWidget(widget)
         self.set_findings(None)
@@ -83,27 +95,32 @@ class FitPanel(QWidget):
     def set_findings(self, fit: Any | None) -> None:
         """Say what the radius function of a ``HarmonicFit`` cannot represent."""
         if fit is None:
-            self.findings.setText("Not fitted yet.")
+            self.findings.setText(tr("Not fitted yet."))
             self.findings.show()
             self.warnings.hide()
             return
         self.findings.setVisible(not fit.warnings)
         if fit.star_shaped:
-            self.findings.setText("Star-shaped: no part of the surface is hidden from the star point.")
+            self.findings.setText(tr("Star-shaped: no part of the surface is hidden from the star point."))
         else:
             self.findings.setText(
-                f"{fit.hidden_surface_share:.2%} of the surface is hidden from the star point; "
-                f"{fit.unrepresentable_volume_share:.2%} of the volume cannot be represented."
+                tr(
+                    "{surface:.2%} of the surface is hidden from the star point; "
+                    "{volume:.2%} of the volume cannot be represented.",
+                    surface=fit.hidden_surface_share,
+                    volume=fit.unrepresentable_volume_share,
+                )
             )
-        self.warnings.setText(" ".join(fit.warnings))
+        self.warnings.setText(" ".join(map(retold, fit.warnings)))
         self.warnings.setVisible(bool(fit.warnings))
 
     def _form(self) -> QWidget:
         form = QFormLayout(content := QWidget())
         form.setContentsMargins(14, 0, 0, 0)
-        for label, name in (("Star point", "star_point"), ("Radius", "rule"), ("Divide by", "reference")):
+        labels = {"star_point": tr("Star point"), "rule": tr("Radius"), "reference": tr("Divide by")}
+        for name, label in labels.items():
             box = self.ways[name]
-            box.setToolTip(TIPS[name])
+            box.setToolTip(tr(TIPS[name]))
             box.activated.connect(partial(self._announce, name))
             form.addRow(label, box)
         return content

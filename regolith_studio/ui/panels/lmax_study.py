@@ -8,6 +8,7 @@ from PySide6.QtWidgets import QDoubleSpinBox, QHBoxLayout, QLabel, QVBoxLayout, 
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.scene.palette import DESCRIPTOR_COLOURS
 from regolith_studio.ui.theme import Theme
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.curve_plot import Curve, CurvePlot
 from regolith_studio.ui.widgets.labels import rich_symbol
 from regolith_studio.ui.widgets.study_frame import StudyFrame
@@ -67,7 +68,7 @@ class LmaxStudyPanel(QWidget):
         """How large an error may be, and the answer."""
         self.tolerance = QDoubleSpinBox()
         self.tolerance.setObjectName("lmax_study_tolerance")
-        self.tolerance.setAccessibleName("Largest error in percent")
+        self.tolerance.setAccessibleName(tr("Largest error in percent"))
         self.tolerance.setRange(0.1, 100.0)
         self.tolerance.setDecimals(1)
         self.tolerance.setValue(5.0)

@@ -4,8 +4,11 @@ import time
 
 from PySide6.QtWidgets import QApplication, QHBoxLayout, QPlainTextEdit, QPushButton, QVBoxLayout, QWidget
 
+from regolith_studio.ui.translation import mark, tr
+
 LIMIT = 2000
 """Lines kept."""
+MOODS = {"note": mark("note"), "problem": mark("problem")}
 
 
 class LogPanel(QWidget):
@@ -17,8 +20,8 @@ class LogPanel(QWidget):
         self.text = QPlainTextEdit()
         self.text.setReadOnly(True)
         self.text.setMaximumBlockCount(LIMIT)
-        self.text.setAccessibleName("Log")
-        self.copy = QPushButton("Copy report")
+        self.text.setAccessibleName(tr("Log"))
+        self.copy = QPushButton(tr("Copy report"))
         self.copy.setObjectName("copy_log")
         self.copy.clicked.connect(lambda: QApplication.clipboard().setText(self.text.toPlainText()))
         row = QHBoxLayout()
@@ -31,6 +34,6 @@ class LogPanel(QWidget):
     def add(self, mood: str, sentence: str, details: str = "") -> None:
         """Note down a sentence of the mood ``note`` or ``problem``."""
         clock = time.strftime("%H:%M:%S")
-        lines = [f"{clock}  {mood:8s} {sentence}"]
+        lines = [f"{clock}  {tr(MOODS[mood]):8s} {sentence}"]
         lines += [f"          {line}" for line in details.splitlines()]
         self.text.appendPlainText("\n".join(lines))

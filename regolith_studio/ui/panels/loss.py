@@ -10,6 +10,7 @@ from regolith_studio.coarsening.weights import JACCARD, WEIGHT_KEYS, LossWeights
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.errors import InputError
 from regolith_studio.session.own_presets import OwnPresets
+from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.labels import heading, remark, rich_symbol
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
 from regolith_studio.ui.widgets.preset_bar import PresetBar, PresetEntry
@@ -23,12 +24,18 @@ LARGEST = 100.0
 def weight_spec(key: str) -> NumberSpec:
     """The slider of one term; the catalogue knows its symbol and formula."""
     if key == JACCARD:
-        label, name, formula = "Jaccard", "Jaccard distance", "Jaccard distance, Eq. 7 (paper: IoU)"
+        label, name, formula = "Jaccard", tr("Jaccard distance"), tr("Jaccard distance, Eq. 7 (paper: IoU)")
     else:
         row = CATALOGUE[key]
-        label, name = rich_symbol(row.symbol), row.label
-        formula = f"Relative error of {row.symbol}, Eq. 8: {row.label.lower()}, {row.formula}"
-    return NumberSpec(label, f"Weight of {name}", 0.0, SLIDER_END, 0.05, limit=LARGEST, tip=formula)
+        label, name = rich_symbol(row.symbol), tr(row.label)
+        formula = tr(
+            "Relative error of {symbol}, Eq. 8: {name}, {formula}",
+            symbol=row.symbol,
+            name=name,
+            formula=tr(row.formula),
+        )
+    words = tr("Weight of {name}", name=name)
+    return NumberSpec(label, words, 0.0, SLIDER_END, 0.05, limit=LARGEST, tip=formula)
 
 
 class LossPanel(QWidget):
@@ -53,7 +60,7 @@ class LossPanel(QWidget):
         self._own = own or OwnPresets("weights")
         self._preset = self._chosen = next(iter(presets()))
         self._known: dict[str, Preset] = {}
-        self.bar = PresetBar("preset", "Preset of weights")
+        self.bar = PresetBar("preset", tr("Preset of weights"))
         self.preset, self.reset = self.bar.box, self.bar.reset
         self.reset.setObjectName("reset_weights")
         self.sliders = {key: NumberSlider(weight_spec(key)) for key in WEIGHT_KEYS}
@@ -110,10 +117,14 @@ class LossPanel(QWidget):
             except (InputError, KeyError, TypeError, ValueError):
                 continue  # of another version, or edited by hand
             if values.get("preset") in presets():
-                found[OWN + name] = Preset(values["preset"], name, weights, "Own preset")
+                found[OWN + name] = Preset(values["preset"], name, weights, mark("Own preset"))
         self._known = found
         self.bar.set_entries(
-            [PresetEntry(key, each.label, each.origin, key.startswith(OWN)) for key, each in found.items()]
+            [
+                PresetEntry(key, each.label if key.startswith(OWN) else tr(each.label), tr(each.origin), own)
+                for key, each in found.items()
+                for own in (key.startswith(OWN),)
+            ]
         )
 
     def _source(self, weights: LossWeights) -> str:
@@ -136,7 +147,7 @@ class LossPanel(QWidget):
             grid.addWidget(slider, row, 0)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(heading("Weights of the loss (Eq. 9)"))
+        layout.addWidget(heading(tr("Weights of the loss (Eq. 9)")))
         layout.addWidget(self.bar)
         layout.addLayout(grid)
         layout.addWidget(self.origin)
@@ -163,4 +174,4 @@ class LossPanel(QWidget):
 
     def _show_mark(self) -> None:
         self.bar.show_state(self._chosen, self.is_modified())
-        self.origin.setText(self._known[self._chosen].origin + ".")
+        self.origin.setText(tr(self._known[self._chosen].origin) + ".")

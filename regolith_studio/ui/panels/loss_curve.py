@@ -6,6 +6,7 @@ from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from regolith_studio.session.results import Results
 from regolith_studio.ui.theme import Theme
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.curve_plot import Curve, CurvePlot
 
 
@@ -15,7 +16,9 @@ class LossCurvePanel(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setObjectName("loss_curve")
-        self.plot = CurvePlot("Step", "Loss (Eq. 9)", "The loss appears when the coarsening begins.")
+        self.plot = CurvePlot(
+            tr("Step"), tr("Loss (Eq. 9)"), tr("The loss appears when the coarsening begins.")
+        )
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(self.plot)
@@ -31,16 +34,16 @@ class LossCurvePanel(QWidget):
         best = tuple(accumulate(losses, min))
         theme = self.plot.theme
         curves = [
-            Curve("present", theme.polyhedron, steps, losses, markers=len(steps) < 40),
-            Curve("best so far", theme.muted, steps, best, dash=True),
+            Curve(tr("present"), theme.polyhedron, steps, losses, markers=len(steps) < 40),
+            Curve(tr("best so far"), theme.muted, steps, best, dash=True),
         ]
         self.plot.set_curves(curves)
         progress = results.coarsening_progress
         running = results.coarsened is None and progress is not None
         self.plot.set_remark(
-            f"step {progress.step} of {progress.steps}"
+            tr("step {at} of {total}", at=progress.step, total=progress.steps)
             if running and progress
-            else f"lowest {min(losses):.4g}"
+            else tr("lowest {loss:.4g}", loss=min(losses))
         )
 
     def set_theme(self, theme: Theme) -> None:

@@ -18,6 +18,7 @@ from PySide6.QtWidgets import QVBoxLayout, QWidget
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import health_sentences, health_word
 from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.health_icons import health_pixmaps
 from regolith_studio.ui.widgets.labels import heading, remark
 from regolith_studio.ui.widgets.table import ListTable
@@ -60,11 +61,16 @@ def _descriptor(key: str, form: str) -> tuple[Callable[[ParticleEntry], Any], Ca
 
 
 COLUMNS = (
-    Column("Particle", "Name and health of the mesh", lambda e: e.id, lambda e: e.id),
-    Column("Group", "Sample or size fraction", lambda e: e.particle.group, lambda e: e.particle.group),
-    Column("V [µm³]", "Volume", *_descriptor("volume", "{:.3g}")),
-    Column("S", "Sphericity, Eq. 1 (Wadell)", *_descriptor("sphericity", "{:.3f}")),
-    Column("AR", "Aspect ratio, Eq. 2", *_descriptor("aspect_ratio", "{:.2f}")),
+    Column(mark("Particle"), mark("Name and health of the mesh"), lambda e: e.id, lambda e: e.id),
+    Column(
+        mark("Group"),
+        mark("Sample or size fraction"),
+        lambda e: e.particle.group,
+        lambda e: e.particle.group,
+    ),
+    Column("V [µm³]", mark("Volume"), *_descriptor("volume", "{:.3g}")),
+    Column("S", mark("Sphericity, Eq. 1 (Wadell)"), *_descriptor("sphericity", "{:.3f}")),
+    Column("AR", mark("Aspect ratio, Eq. 2"), *_descriptor("aspect_ratio", "{:.2f}")),
 )
 
 
@@ -91,7 +97,7 @@ class _Model(QAbstractTableModel):
             case Qt.ItemDataRole.DecorationRole if index.column() == 0:
                 return self.icons.get(health_word(entry))
             case Qt.ItemDataRole.ToolTipRole:
-                return health_sentences(entry)
+                return "\n".join(map(tr, health_sentences(entry).split("\n")))
             case Qt.ItemDataRole.TextAlignmentRole if index.column() >= 2:
                 return int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
         return column.key(entry) if role == SORT_ROLE else None
@@ -102,9 +108,9 @@ class _Model(QAbstractTableModel):
         if orientation == Qt.Orientation.Horizontal:
             match role:
                 case Qt.ItemDataRole.DisplayRole:
-                    return COLUMNS[section].title
+                    return tr(COLUMNS[section].title)
                 case Qt.ItemDataRole.ToolTipRole:
-                    return COLUMNS[section].tip
+                    return tr(COLUMNS[section].tip)
         return None
 
 
@@ -126,8 +132,8 @@ class ParticleListPanel(QWidget):
         self.table = self._make_table()
         self._selected = ""
         self._quiet = False
-        self.title = heading("Particles")
-        self.hint = remark("Drop mesh files or folders anywhere in the window to open them.")
+        self.title = heading(tr("Particles"))
+        self.hint = remark(tr("Drop mesh files or folders anywhere in the window to open them."))
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(self.title)
@@ -168,7 +174,8 @@ class ParticleListPanel(QWidget):
         self._quiet = False
         self._mark()
         self.table.fit_columns()
-        self.title.setText(f"Particles ({len(entries)})" if entries else "Particles")
+        count = len(entries)
+        self.title.setText(tr("Particles ({count})", count=count) if count else tr("Particles"))
 
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
@@ -178,7 +185,7 @@ class ParticleListPanel(QWidget):
     def _make_table(self) -> ListTable:
         table = ListTable()
         table.setObjectName("particle_table")
-        table.setAccessibleName("Particles")
+        table.setAccessibleName(tr("Particles"))
         table.setModel(self._sorted)
         table.setSortingEnabled(True)
         table.horizontalHeader().setSortIndicator(-1, Qt.SortOrder.AscendingOrder)

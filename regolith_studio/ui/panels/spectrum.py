@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QVBoxLayout, QWidget
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.results import Results
 from regolith_studio.ui.theme import Theme
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.plot import Numbers, Plot
 
 DECADES = 6.5
@@ -27,7 +28,7 @@ class SpectrumPlot(Plot):
         return f"l = {degree}: {self.shares[degree - 1]:.3g} %" if 1 <= degree <= len(self.shares) else ""
 
     def numbers(self) -> Numbers:
-        return ("l", "amplitude [%]"), [
+        return ("l", tr("amplitude [%]")), [
             (degree, float(share)) for degree, share in enumerate(self.shares, start=1)
         ]
 
@@ -39,9 +40,9 @@ class SpectrumPanel(QWidget):
         super().__init__(parent)
         self.setObjectName("spectrum")
         self.plot = SpectrumPlot(
-            "Degree l",
-            "Amplitude √A<sub>l</sub> / c<sub>00</sub> [%]",
-            "The spectrum appears when the particle is fitted.",
+            tr("Degree l"),
+            tr("Amplitude √A<sub>l</sub> / c<sub>00</sub> [%]"),
+            tr("The spectrum appears when the particle is fitted."),
         )
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
@@ -59,9 +60,8 @@ class SpectrumPanel(QWidget):
         self.plot.shares = shares
         self._draw(np.log10(np.maximum(shares, 1e-12)), choices.l_max)
         theme = self.plot.theme
-        self.plot.set_legend(
-            [(theme.fit, f"up to l<sub>max</sub> = {choices.l_max}"), (theme.border, "cut off")]
-        )
+        kept = tr("up to l<sub>max</sub> = {l_max}", l_max=choices.l_max)
+        self.plot.set_legend([(theme.fit, kept), (theme.border, tr("cut off"))])
 
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""

@@ -7,6 +7,7 @@ from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QGridLayout, QLabel, QProgressBar, QPushButton, QVBoxLayout, QWidget
 
 from regolith_studio.session.tasks import Task
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import remark
 
 
@@ -16,21 +17,65 @@ def time_left(done: int, total: int, seconds: float) -> str:
         return ""
     rest = seconds * (total - done) / done
     if rest < 60:
-        return f"about {max(1, round(rest))} s left"
-    return f"about {round(rest / 60)} min left" if rest < 5400 else f"about {rest / 3600:.1f} h left"
+        return tr("about {seconds} s left", seconds=max(1, round(rest)))
+    if rest < 5400:
+        return tr("about {minutes} min left", minutes=round(rest / 60))
+    return tr("about {hours:.1f} h left", hours=rest / 3600)
+
+
+class _Clock:
+    """Seconds that a task has been at work, without its pauses."""
+
+    def __init__(self) -> None:
+        self._worked, self._since = 0.0, time.monotonic()
+        self._running = True
+
+    def seconds(self) -> float:
+        return self._worked + (time.monotonic() - self._since if self._running else 0.0)
+
+    def run(self, running: bool) -> None:
+        """Go on, or stand still."""
+        self._worked, self._since, self._running = self.seconds(), time.monotonic(), running
+
+
+class _Row:
+    """The widgets of one task."""
+
+    def __init__(self, number: int) -> None:
+        self.clock = _Clock()
+        self.title, self.bar, self.left = QLabel(), QProgressBar(), remark()
+        self.bar.setAccessibleName(tr("Progress"))
+        self.bar.setFixedHeight(14)
+        self.pause, self.stop = QPushButton(tr("Pause")), QPushButton(tr("Stop"))
+        self.pause.setObjectName(f"pause_task_{number}")
+        self.pause.setToolTip(tr("Hold it back after the step that it is at, or let it go on"))
+        self.pause.setCheckable(True)
+        self.stop.setObjectName(f"stop_task_{number}")
+        self.widgets = (self.title, self.bar, self.left, self.pause, self.stop)
+
+    def show(self, task: Task) -> None:
+        self.clock.run(not task.paused)
+        self.title.setText(f"{tr(task.title)}: {task.message}" if task.message else tr(task.title))
+        self.bar.setRange(0, task.total)
+        self.bar.setValue(task.done)
+        rest = time_left(task.done, task.total, self.clock.seconds())
+        self.left.setText(tr("held back") if task.paused else rest)
+        self.pause.setVisible(task.pausable)
+        self.pause.setChecked(task.paused)
+        self.pause.setText(tr("Resume") if task.paused else tr("Pause"))
 
 
 class TaskListPanel(QWidget):
     """Rows come and go with the tasks."""
 
     cancelRequested = Signal(int)  # noqa: N815
+    pauseRequested = Signal(int, bool)  # noqa: N815
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setObjectName("task_list")
-        self._since: dict[int, float] = {}
-        self._rows: dict[int, tuple[QLabel, QProgressBar, QLabel, QPushButton]] = {}
-        self.idle = remark("Nothing is running.")
+        self._rows: dict[int, _Row] = {}
+        self.idle = remark(tr("Nothing is running."))
         self._grid = QGridLayout()
         self._grid.setColumnStretch(0, 2)
         self._grid.setColumnStretch(1, 1)
@@ -41,30 +86,23 @@ class TaskListPanel(QWidget):
 
     def show_tasks(self, tasks: Sequence[Task]) -> None:
         """List these instead."""
-        now = time.monotonic()
-        self._since = {task.id: self._since.get(task.id, now) for task in tasks}
-        for number in [number for number in self._rows if number not in self._since]:
+        listed = {task.id for task in tasks}
+        for number in [number for number in self._rows if number not in listed]:
             self._remove(number)
         for task in tasks:
-            title, bar, left, _stop = self._rows.get(task.id) or self._add(task.id)
-            title.setText(f"{task.title}: {task.message}" if task.message else task.title)
-            bar.setRange(0, task.total)
-            bar.setValue(task.done)
-            left.setText(time_left(task.done, task.total, now - self._since[task.id]))
+            row = self._rows.get(task.id) or self._add(task.id)
+            row.show(task)
         self.idle.setVisible(not tasks)
 
-    def _add(self, number: int) -> tuple[QLabel, QProgressBar, QLabel, QPushButton]:
-        bar, stop = QProgressBar(), QPushButton("Stop")
-        bar.setAccessibleName("Progress")
-        bar.setFixedHeight(14)
-        stop.setObjectName(f"stop_task_{number}")
-        stop.clicked.connect(lambda: self.cancelRequested.emit(number))
-        row = self._rows[number] = (QLabel(), bar, remark(), stop)
-        for column, widget in enumerate(row):
+    def _add(self, number: int) -> _Row:
+        row = self._rows[number] = _Row(number)
+        row.stop.clicked.connect(lambda: self.cancelRequested.emit(number))
+        row.pause.clicked.connect(lambda held: self.pauseRequested.emit(number, held))
+        for column, widget in enumerate(row.widgets):
             self._grid.addWidget(widget, number, column)
         return row
 
     def _remove(self, number: int) -> None:
-        for widget in self._rows.pop(number):
+        for widget in self._rows.pop(number).widgets:
             self._grid.removeWidget(widget)
             widget.deleteLater()

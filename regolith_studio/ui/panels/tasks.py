@@ -9,11 +9,12 @@ from PySide6.QtWidgets import QHBoxLayout, QProgressBar, QToolButton, QWidget
 from regolith_studio.session.tasks import Task
 from regolith_studio.ui.icons import icon
 from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.labels import ElidedLabel
 
 PATIENCE = 250
 """Milliseconds that something must run before it is worth a progress bar."""
-IDLE = "Ready"
+IDLE = mark("Ready")
 
 
 class TasksPanel(QWidget):
@@ -26,17 +27,17 @@ class TasksPanel(QWidget):
         self.setObjectName("tasks")
         self._tasks: tuple[Task, ...] = ()
         self._since: dict[int, float] = {}
-        self.text = ElidedLabel(IDLE)
+        self.text = ElidedLabel(tr(IDLE))
         self.text.setObjectName("tasks_text")
         self.bar = QProgressBar()
-        self.bar.setAccessibleName("Progress")
+        self.bar.setAccessibleName(tr("Progress"))
         self.bar.setFixedWidth(150)
         self.bar.setFixedHeight(12)
         self.bar.setTextVisible(False)
         self.stop = QToolButton()
         self.stop.setObjectName("tasks_stop")
-        self.stop.setAccessibleName("Stop")
-        self.stop.setToolTip("Stop what is running")
+        self.stop.setAccessibleName(tr("Stop"))
+        self.stop.setToolTip(tr("Stop what is running"))
         self.stop.setAutoRaise(True)
         layout = QHBoxLayout(self)
         layout.setContentsMargins(6, 1, 6, 1)
@@ -73,15 +74,17 @@ class TasksPanel(QWidget):
         self.bar.setVisible(bool(seen))
         self.stop.setVisible(bool(seen))
         if not seen:
-            self.text.setText(IDLE)
+            self.text.setText(tr(IDLE))
             return
         first, others = seen[0], len(seen) - 1
         self.bar.setRange(0, first.total)
         self.bar.setValue(first.done)
-        count = f" ({first.done} of {first.total})" if first.total else ""
+        steps = tr("{at} of {total}", at=first.done, total=first.total)
+        count = f" ({steps})" if first.total else ""
         message = f": {first.message}" if first.message else ""
-        more = f"   and {others} more" if others else ""
-        self.text.setText(f"{first.title}{count}{message}{more}")
+        more = "   " + tr("and {count} more", count=others) if others else ""
+        held = " – " + tr("held back") if first.paused else ""
+        self.text.setText(f"{tr(first.title)}{count}{message}{held}{more}")
 
     def _request(self) -> None:
         if self._tasks:

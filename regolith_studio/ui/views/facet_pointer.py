@@ -9,6 +9,7 @@ from regolith_studio.scene import facets
 from regolith_studio.scene.palette import Surroundings
 from regolith_studio.scene.shapes import Shape
 from regolith_studio.scene.sight import Sight
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.protocol import SceneView
 
 
@@ -64,4 +65,21 @@ class FacetPointer:
             self._known = (shape, met)
             facet, ink = facets.facet_of(shape.polyhedron, met), self._ink()
             self._view.draw(lambda plotter: facets.show_facet(plotter, facet, shape.origin, ink))
-            self._tell(facet.words)
+            self._tell(words_of(facet))
+
+
+def words_of(facet: facets.Facet) -> str:
+    """One line; lengths in micrometres, facets counted from 1."""
+    return tr(
+        "facet {number} of {count}: {area:,.4g} µm² ({share:.1%}), normal ({x:.2f}, {y:.2f}, {z:.2f}),"
+        " {offset:.4g} µm from the centre, {corners} corners",
+        number=facet.index + 1,
+        count=facet.count,
+        area=facet.area,
+        share=facet.share,
+        x=facet.normal[0],
+        y=facet.normal[1],
+        z=facet.normal[2],
+        offset=facet.offset,
+        corners=len(facet.corners),
+    )

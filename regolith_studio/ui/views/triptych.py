@@ -19,8 +19,9 @@ from regolith_studio.scene.shapes import FIT, NAMES, PARTICLE, POLYHEDRON, Shape
 from regolith_studio.scene.sight import Sight
 from regolith_studio.session.results import ParticleEntry, Results
 from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.camera_link import CameraLink
-from regolith_studio.ui.views.comparison import Comparison, partners_of
+from regolith_studio.ui.views.comparison import COMPARE, Comparison, partners_of
 from regolith_studio.ui.views.facet_pointer import FacetPointer
 from regolith_studio.ui.views.factory import make_view
 from regolith_studio.ui.views.sections import Sections
@@ -45,7 +46,9 @@ class Triptych(QSplitter):
         self.setChildrenCollapsible(False)
         self._theme = current_theme()
         ink = self._theme.surroundings
-        self.frames = {name: ViewFrame(make_view(kind, ink), name, partners_of(name)) for name in NAMES}
+        self.frames = {
+            name: ViewFrame(make_view(kind, ink), name, partners_of(name), COMPARE[name]) for name in NAMES
+        }
         self.views = {name: frame.view for name, frame in self.frames.items()}
         self.link = CameraLink(list(self.views.values()))
         for name, frame in self.frames.items():
@@ -85,7 +88,9 @@ class Triptych(QSplitter):
         self.views[PARTICLE].draw(lambda plotter: surfaces.show_particle(plotter, mesh))
         self.comparison.set_shapes(self._shapes, *NAMES)
         self.frames[PARTICLE].set_texts(
-            f"CT particle, {html.escape(entry.id)}", f"{_lengths(mesh.bounds)}, {len(mesh.faces):,} triangles"
+            tr("CT particle, {name}", name=html.escape(entry.id)),
+            tr("{size}, {count:,} triangles", size=_lengths(mesh.bounds), count=len(mesh.faces)),
+            html.escape(entry.id),
         )
         self.link.frame(mesh.vertices)
 
@@ -95,10 +100,12 @@ class Triptych(QSplitter):
             return
         self._shapes[FIT] = Shape(FIT, mesh)
         degree = f"l<sub>max</sub>&nbsp;=&nbsp;{l_max}"
+        count = (l_max + 1) ** 2
         self.frames[FIT].set_texts(
-            f"Spherical-harmonics fit, {degree}",
-            f"{(l_max + 1) ** 2:,} coefficients, {len(mesh.faces):,} triangles",
-            f"Harmonics fit, {degree}",
+            tr("Spherical-harmonics fit, {degree}", degree=degree),
+            tr("{count:,} coefficients, {triangles:,} triangles", count=count, triangles=len(mesh.faces)),
+            tr("Harmonics fit, {degree}", degree=degree),
+            tr("Fit, {degree}", degree=degree),
         )
         self._draw_fit()
         self.comparison.set_shapes(self._shapes, FIT)
@@ -114,8 +121,10 @@ class Triptych(QSplitter):
         self.pointer.forget()
         self.views[POLYHEDRON].draw(lambda plotter: surfaces.show_polyhedron(plotter, solid, centre, ink))
         self.frames[POLYHEDRON].set_texts(
-            f"Polyhedron, {solid.n_faces} facets",
-            f"{solid.n_vertices} vertices, {solid.n_triangles} triangles{_shortfall(results)}",
+            tr("Polyhedron, {count} facets", count=solid.n_faces),
+            tr("{count} vertices, {triangles} triangles", count=solid.n_vertices, triangles=solid.n_triangles)
+            + _shortfall(results),
+            tr("{count} facets", count=solid.n_faces),
         )
         self._draw_extras(POLYHEDRON)
         self.comparison.set_shapes(self._shapes, POLYHEDRON)
@@ -213,7 +222,7 @@ class Triptych(QSplitter):
         self.views[FIT].draw(lambda plotter: surfaces.show_fit(plotter, mesh, distances, None, ink))
         if distances is not None:
             reach = float(np.abs(distances).max(initial=0.0))
-            self.frames[FIT].set_detail(f"at most {reach:.3g} µm from the particle")
+            self.frames[FIT].set_detail(tr("at most {reach:.3g} µm from the particle", reach=reach))
         self._draw_extras(FIT)
 
     def _draw_extras(self, *names: str) -> None:
@@ -244,9 +253,10 @@ class Triptych(QSplitter):
         return self._hidden
 
     def _empty_titles(self) -> None:
-        self.frames[PARTICLE].set_texts("CT particle")
-        self.frames[FIT].set_texts("Spherical-harmonics fit", "waiting for the coefficients …")
-        self.frames[POLYHEDRON].set_texts("Polyhedron", "on its way; the very first one takes longer …")
+        self.frames[PARTICLE].set_texts(tr("CT particle"))
+        self.frames[FIT].set_texts(tr("Spherical-harmonics fit"), tr("waiting for the coefficients …"))
+        late = tr("on its way; the very first one takes longer …")
+        self.frames[POLYHEDRON].set_texts(tr("Polyhedron"), late)
 
 
 def _lengths(bounds: FloatArray) -> str:
@@ -259,4 +269,4 @@ def _shortfall(results: Results) -> str:
     done = results.coarsened
     if done is None or done.n_faces == done.n_faces_asked:
         return ""
-    return f"; {done.n_faces_asked} facets were asked for"
+    return tr("; {count} facets were asked for", count=done.n_faces_asked)

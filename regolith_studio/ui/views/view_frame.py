@@ -1,14 +1,17 @@
 """A view with its title above it."""
 
+import html
 from collections.abc import Mapping
 
-from PySide6.QtCore import Qt, Signal
+from PySide6.QtCore import QEvent, Qt, Signal
 from PySide6.QtGui import QMouseEvent, QResizeEvent
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.protocol import SceneView
 from regolith_studio.ui.widgets.choice_box import ChoiceBox
 from regolith_studio.ui.widgets.labels import ElidedLabel
+from regolith_studio.ui.widgets.plot_files import plain_text
 
 _PADDING = 9
 
@@ -24,6 +27,8 @@ class ViewFrame(QFrame):
         Object name, and plain name for screen readers.
     partners
         What it can be compared with, by key; the box is shown when :meth:`set_comparing` says so.
+    compare
+        What the box asks, for screen readers.
     """
 
     partnerChanged = Signal(str)  # noqa: N815
@@ -34,23 +39,25 @@ class ViewFrame(QFrame):
         view: SceneView,
         name: str,
         partners: Mapping[str, str] | None = None,
+        compare: str = "",
         parent: QWidget | None = None,
     ) -> None:
         super().__init__(parent)
         self.setObjectName(f"view_{name}")
         self.setProperty("role", "card")
         self.view = view
-        self._titles = ("", "")
+        self._titles: tuple[str, ...] = ("",)
         self._detail = ""
         self._mark = QLabel()
         self._title = QLabel()
         self._title.setTextFormat(Qt.TextFormat.RichText)
         self._title.setProperty("role", "heading")
         self._title.setMinimumWidth(10)
+        self._title.setObjectName(f"title_{name}")
         self.detail = ElidedLabel(role="remark")
-        self.partner = ChoiceBox(f"partner_{name}", f"Compare the {name} with", partners or {})
+        self.partner = ChoiceBox(f"partner_{name}", tr(compare), partners or {})
         self.partner.setMinimumContentsLength(7)
-        self.partner.setToolTip("What is laid over it, or shown to the right of the line")
+        self.partner.setToolTip(tr("What is laid over it, or shown to the right of the line"))
         self.partner.currentIndexChanged.connect(lambda _: self.partnerChanged.emit(self.partner.value()))
         self.partner.hide()
         view.widget.setObjectName(f"scene_{name}")
@@ -60,9 +67,9 @@ class ViewFrame(QFrame):
         """Colour of the mark before the title: the same as in the plots."""
         self._mark.setText(f'<span style="color:{colour}">&#9632;</span>')
 
-    def set_texts(self, title: str, detail: str = "", short: str = "") -> None:
-        """Title as rich text, the quiet line, and a title for views too narrow for the first one."""
-        self._titles = (title, short or title)
+    def set_texts(self, title: str, detail: str = "", *shorter: str) -> None:
+        """Title as rich text, the quiet line, and titles for views too narrow for the first one."""
+        self._titles = (title, *shorter)
         self._choose_title()
         self.set_detail(detail)
         self.view.widget.setAccessibleName(f"{title}. {detail}")
@@ -113,9 +120,20 @@ class ViewFrame(QFrame):
         layout.addLayout(under)
         layout.addWidget(self.view.widget, 1)
 
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() in (QEvent.Type.FontChange, QEvent.Type.StyleChange):
+            self._choose_title()
+
     def _choose_title(self) -> None:
+        """The longest title that there is room for; the shortest with dots where there is none."""
+        self._title.ensurePolished()
+        self._title.setToolTip(self._titles[0])
         room = self.width() - 2 * _PADDING - 8 - self._mark.sizeHint().width()
         for title in self._titles:
             self._title.setText(title)
             if self._title.sizeHint().width() <= room:
                 return
+        words = plain_text(self._titles[-1])
+        dotted = self._title.fontMetrics().elidedText(words, Qt.TextElideMode.ElideRight, room)
+        self._title.setText(html.escape(dotted))

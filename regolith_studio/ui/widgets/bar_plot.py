@@ -10,6 +10,7 @@ from PySide6.QtCore import QPointF
 from PySide6.QtGui import QColor
 from PySide6.QtWidgets import QWidget
 
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.plot import Numbers, Plot
 
 
@@ -66,7 +67,7 @@ class BarPlot(Plot):
             (category, *(each.values[place] for each in self._series))
             for place, category in enumerate(self._categories)
         ]
-        return ("category", *(f"{each.label} [{self._unit}]" for each in self._series)), rows
+        return (tr("category"), *(f"{each.label} [{self._unit}]" for each in self._series)), rows
 
     def redraw(self) -> None:
         for item in self._items:
@@ -115,7 +116,7 @@ class BarPlot(Plot):
             return ""
         lines = [f"{each.label}: {each.values[category]:.3g} {self._unit}" for each in self._series]
         lines += [
-            f"not below {each.bounds[category]:.3g} {self._unit} (line)"
+            tr("not below {bound:.3g} {unit} (line)", bound=each.bounds[category], unit=self._unit)
             for each in self._series
             if each.bounds and each.bounds[category] > 0.0
         ]

@@ -5,9 +5,11 @@ from collections.abc import Mapping
 from PySide6.QtCore import QSignalBlocker
 from PySide6.QtWidgets import QComboBox
 
+from regolith_studio.ui.translation import tr
+
 
 class ChoiceBox(QComboBox):
-    """One of `entries`, which map keys to labels; it may be narrower than the longest of them."""
+    """One of `entries`, which map keys to labels that are translated; may be narrower than the longest."""
 
     def __init__(self, name: str, accessible: str, entries: Mapping[str, str]) -> None:
         super().__init__()
@@ -16,7 +18,8 @@ class ChoiceBox(QComboBox):
         self.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
         self.setMinimumContentsLength(12)
         for key, label in entries.items():
-            self.addItem(label[:1].upper() + label[1:], key)
+            words = tr(label)
+            self.addItem(words[:1].upper() + words[1:], key)
 
     def value(self) -> str:
         """The key that is chosen."""

@@ -8,6 +8,7 @@ import pyqtgraph as pg
 from PySide6.QtCore import QPointF
 from PySide6.QtWidgets import QWidget
 
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.plot import Numbers, Plot
 from regolith_studio.ui.widgets.plot_files import plain_text
 
@@ -87,7 +88,7 @@ class CurvePlot(Plot):
             for curve in self._curves
             for x, y in zip(curve.x, curve.y, strict=True)
         ]
-        return ("curve", *self._labels), rows
+        return (tr("curve"), *self._labels), rows
 
     def set_marker(self, x: float | None) -> None:
         """A vertical line at `x`, or none."""

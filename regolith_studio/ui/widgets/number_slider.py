@@ -5,13 +5,15 @@ from dataclasses import dataclass
 from PySide6.QtCore import QSignalBlocker, Qt, QTimer, Signal
 from PySide6.QtWidgets import QDoubleSpinBox, QGridLayout, QLabel, QSlider, QSpinBox, QWidget
 
+from regolith_studio.ui.translation import tr
+
 THROTTLE = 30
 """Milliseconds between two announcements while a slider is dragged: the first at once, the last always."""
 
 
 @dataclass(frozen=True)
 class NumberSpec:
-    """What number is asked for.
+    """What number is asked for; words are translated where they are shown.
 
     Parameters
     ----------
@@ -63,7 +65,7 @@ class NumberSlider(QWidget):
     def __init__(self, spec: NumberSpec, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.spec = spec
-        self.label = QLabel(spec.label)
+        self.label = QLabel(tr(spec.label))
         self.slider = QSlider(Qt.Orientation.Horizontal)
         self.field = QSpinBox() if spec.whole else QDoubleSpinBox()
         self._timer = QTimer(self, interval=THROTTLE, singleShot=True)
@@ -113,19 +115,19 @@ class NumberSlider(QWidget):
         else:
             field.setRange(int(spec.minimum), int(limit))
             field.setSingleStep(int(spec.step))
-        field.setSuffix(spec.suffix)
+        field.setSuffix(spec.suffix and tr(spec.suffix))
         field.setKeyboardTracking(False)
         field.setAlignment(Qt.AlignmentFlag.AlignRight)
-        field.setAccessibleName(spec.name)
+        field.setAccessibleName(tr(spec.name))
         field.setFixedWidth(field.fontMetrics().horizontalAdvance("0000.00") + 28)
         self.slider.setRange(self._ticks(spec.minimum), self._ticks(spec.maximum))
         self.slider.setPageStep(max(1, (self.slider.maximum() - self.slider.minimum()) // 10))
-        self.slider.setAccessibleName(f"{spec.name}, slider")
+        self.slider.setAccessibleName(tr("{name}, slider", name=tr(spec.name)))
         self.slider.setMinimumWidth(60)
         self.label.setBuddy(field)
         self.setFocusProxy(self.slider)
         for part in (self.label, self.slider, field):
-            part.setToolTip(spec.tip)
+            part.setToolTip(tr(spec.tip))
 
     def _ticks(self, value: float) -> int:
         return round(value / self.spec.step)

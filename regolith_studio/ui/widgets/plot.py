@@ -20,6 +20,7 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.errors import RegolithError
 from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import unbroken
 from regolith_studio.ui.widgets.plot_files import DRAWN, plain_text, save_figure, save_numbers
 
@@ -173,11 +174,9 @@ class Plot(QWidget):
         """What can be done with the plot."""
         menu = QMenu(self)
         menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        menu.addAction("Save &figure ...", lambda: self._save("Save figure", DRAWN, self.save_figure))
+        menu.addAction(tr("Save &figure …"), self._ask_for_figure)
         if self.numbers()[0]:
-            menu.addAction(
-                "Save &numbers ...", lambda: self._save("Save numbers", (".csv",), self.save_numbers)
-            )
+            menu.addAction(tr("Save &numbers …"), self._ask_for_numbers)
         return menu
 
     def save_figure(self, path: Path) -> None:
@@ -203,10 +202,10 @@ class Plot(QWidget):
         save_numbers(self.accessibleName() or self.objectName(), *self.numbers(), path)
 
     def _ask_for_figure(self) -> None:
-        self._save("Save figure", DRAWN, self.save_figure)
+        self._save(tr("Save figure"), DRAWN, self.save_figure)
 
     def _ask_for_numbers(self) -> None:
-        self._save("Save numbers", (".csv",), self.save_numbers)
+        self._save(tr("Save numbers"), (".csv",), self.save_numbers)
 
     def _save(self, title: str, endings: Iterable[str], write: Callable[[Path], None]) -> None:
         known = tuple(endings)

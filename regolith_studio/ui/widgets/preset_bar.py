@@ -7,7 +7,9 @@ from PySide6.QtCore import QSignalBlocker, Qt, Signal
 from PySide6.QtGui import QAction
 from PySide6.QtWidgets import QComboBox, QHBoxLayout, QInputDialog, QMenu, QPushButton, QToolButton, QWidget
 
-MODIFIED = " (modified)"
+from regolith_studio.ui.translation import mark, tr
+
+MODIFIED = mark("{preset} (modified)")
 
 
 @dataclass(frozen=True)
@@ -52,13 +54,13 @@ class PresetBar(QWidget):
         self.box.setAccessibleName(accessible)
         self.box.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
         self.box.setMinimumContentsLength(12)
-        self.reset = QPushButton("Reset")
-        self.reset.setToolTip("Back to the values of the preset")
+        self.reset = QPushButton(tr("Reset"))
+        self.reset.setToolTip(tr("Back to the values of the preset"))
         self.more = QToolButton()
         self.more.setText("⋯")
         self.more.setObjectName(f"{name}_more")
-        self.more.setAccessibleName("Save or delete a preset")
-        self.more.setToolTip("Save or delete a preset of your own")
+        self.more.setAccessibleName(tr("Save or delete a preset"))
+        self.more.setToolTip(tr("Save or delete a preset of your own"))
         self.more.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
         self.more.setMenu(self._menu())
         row = QHBoxLayout(self)
@@ -89,7 +91,8 @@ class PresetBar(QWidget):
         with QSignalBlocker(self.box):
             self.box.setCurrentIndex(self.box.findData(key))
             for row, entry in enumerate(self._entries):
-                self.box.setItemText(row, entry.label + (MODIFIED if modified and entry.key == key else ""))
+                moved = modified and entry.key == key
+                self.box.setItemText(row, tr(MODIFIED, preset=entry.label) if moved else entry.label)
         self.reset.setEnabled(modified)
         own = any(entry.own and entry.key == key for entry in self._entries)
         self.delete.setEnabled(own)
@@ -98,8 +101,8 @@ class PresetBar(QWidget):
         """Ask under which name the present values shall be kept."""
         dialog = QInputDialog(self)
         dialog.setObjectName("preset_name")
-        dialog.setWindowTitle("Save as own preset")
-        dialog.setLabelText("Name of the preset:")
+        dialog.setWindowTitle(tr("Save as own preset"))
+        dialog.setLabelText(tr("Name of the preset:"))
         dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         mine = next((entry.label for entry in self._entries if entry.own and entry.key == self.current()), "")
         dialog.setTextValue(mine)
@@ -108,8 +111,8 @@ class PresetBar(QWidget):
 
     def _menu(self) -> QMenu:
         menu = QMenu(self)
-        self.save = QAction("Save as own preset …", menu)
-        self.delete = QAction("Delete this preset", menu)
+        self.save = QAction(tr("Save as own preset …"), menu)
+        self.delete = QAction(tr("Delete this preset"), menu)
         self.save.triggered.connect(self.ask_name)
         self.delete.triggered.connect(lambda: self.deleteRequested.emit(self.current()))
         menu.addActions([self.save, self.delete])

@@ -10,6 +10,7 @@ from typing import Any
 from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import QCheckBox, QComboBox, QDoubleSpinBox, QFormLayout, QLineEdit, QSpinBox, QWidget
 
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import rich_symbol
 
 Scalar = bool | int | float | str
@@ -30,11 +31,11 @@ class SettingsForm(QWidget):
             if each.default is dataclasses.MISSING or not isinstance(each.default, Scalar):
                 continue
             self._defaults[each.name] = each.default
-            label = str(each.metadata.get("label", each.name.replace("_", " ").capitalize()))
+            label = tr(str(each.metadata.get("label", each.name.replace("_", " ").capitalize())))
             editor = self._editors[each.name] = _editor(each.default, each.metadata)
             editor.setObjectName(f"setting_{each.name}")
             editor.setAccessibleName(label)
-            editor.setToolTip(str(each.metadata.get("tip", "")))
+            editor.setToolTip(tr(str(each.metadata.get("tip", ""))))
             _signal(editor).connect(lambda *_: self.valueChanged.emit(self.value()))
             if isinstance(editor, QCheckBox):
                 editor.setText(label)
@@ -66,7 +67,8 @@ def _editor(default: Scalar, metadata: Mapping[str, Any]) -> QWidget:
         if "choices" not in metadata:
             return QLineEdit()
         combo = QComboBox()
-        combo.addItems([str(choice) for choice in metadata["choices"]])
+        for choice in metadata["choices"]:
+            combo.addItem(tr(str(choice)), str(choice))
         return combo
     if isinstance(default, int):
         whole = QSpinBox()
@@ -99,7 +101,7 @@ def _read(editor: QWidget) -> Scalar:
         case QCheckBox():
             return editor.isChecked()
         case QComboBox():
-            return editor.currentText()
+            return str(editor.currentData())
         case QLineEdit():
             return editor.text()
         case QSpinBox() | QDoubleSpinBox():
@@ -112,7 +114,7 @@ def _write(editor: QWidget, value: Scalar) -> None:
         case QCheckBox():
             editor.setChecked(bool(value))
         case QComboBox():
-            editor.setCurrentText(str(value))
+            editor.setCurrentIndex(editor.findData(str(value)))
         case QLineEdit():
             editor.setText(str(value))
         case QSpinBox():

@@ -4,6 +4,7 @@ from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QHBoxLayout, QProgressBar, QPushButton, QVBoxLayout, QWidget
 
 from regolith_studio.session.tasks import Task
+from regolith_studio.ui.translation import tr, tr_count
 from regolith_studio.ui.widgets.labels import ElidedLabel
 
 
@@ -24,12 +25,12 @@ class StudyFrame(QWidget):
     def __init__(self, name: str, plot: QWidget, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._task = 0
-        self.start = QPushButton("Compute")
+        self.start = QPushButton(tr("Compute"))
         self.start.setObjectName(f"{name}_start")
-        self.stop = QPushButton("Stop")
+        self.stop = QPushButton(tr("Stop"))
         self.stop.setObjectName(f"{name}_stop")
         self.bar = QProgressBar()
-        self.bar.setAccessibleName("Progress of the study")
+        self.bar.setAccessibleName(tr("Progress of the study"))
         self.bar.setFixedHeight(12)
         self.bar.setTextVisible(False)
         self.remark = ElidedLabel(role="remark")
@@ -51,9 +52,7 @@ class StudyFrame(QWidget):
 
     def set_count(self, count: int) -> None:
         """Say over how many particles the study goes."""
-        self.start.setText(
-            "Compute for this particle" if count == 1 else f"Compute for all {count} particles"
-        )
+        self.start.setText(tr_count("Compute for this particle", "Compute for all {count} particles", count))
         self.start.setEnabled(count > 0)
 
     def show_task(self, task: Task | None) -> None:

@@ -14,6 +14,8 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from regolith_studio.ui.translation import tr
+
 SECONDS_OF_A_NOTE = 6
 SECONDS_OF_A_PROBLEM = 20
 _MARGIN = 14
@@ -38,13 +40,13 @@ class Toast(QFrame):
         self.sentence.setWordWrap(True)
         self.sentence.setMinimumWidth(300)
         self.sentence.setTextFormat(Qt.TextFormat.PlainText)
-        self.more = QPushButton("Details …")
+        self.more = QPushButton(tr("Details …"))
         self.more.setObjectName("toast_details")
         self.more.clicked.connect(self._show_details)
         dismiss = QToolButton()
         dismiss.setText("✕")
         dismiss.setAutoRaise(True)
-        dismiss.setAccessibleName("Close this message")
+        dismiss.setAccessibleName(tr("Close this message"))
         dismiss.clicked.connect(self.hide)
         row = QHBoxLayout(self)
         row.setContentsMargins(12, 8, 8, 8)
@@ -103,16 +105,16 @@ class Toast(QFrame):
 def show_details(parent: QWidget, sentence: str, details: str) -> None:
     """A dialog with the whole report, to be read and copied."""
     dialog = QDialog(parent)
-    dialog.setWindowTitle("What happened")
+    dialog.setWindowTitle(tr("What happened"))
     dialog.resize(680, 380)
     layout = QVBoxLayout(dialog)
     first = QLabel(sentence)
     first.setWordWrap(True)
     text = QPlainTextEdit(details)
     text.setReadOnly(True)
-    text.setAccessibleName("Details")
+    text.setAccessibleName(tr("Details"))
     buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close)
-    copy = buttons.addButton("Copy report", QDialogButtonBox.ButtonRole.ActionRole)
+    copy = buttons.addButton(tr("Copy report"), QDialogButtonBox.ButtonRole.ActionRole)
     copy.clicked.connect(text.selectAll)
     copy.clicked.connect(text.copy)
     buttons.rejected.connect(dialog.reject)

@@ -19,13 +19,22 @@ from regolith_studio.jobs.events import Job
 from regolith_studio.scene.animating import animate, draw_figure, turn
 from regolith_studio.scene.figure import view_titles
 from regolith_studio.ui.page import PageContext
+from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.views.triptych import Triptych
 from regolith_studio.ui.widgets.choice_box import ChoiceBox
 
 LARGEST_SCALE = 6
 SEEN, FIGURE = "seen", "figure"
-KINDS = {SEEN: "The views as they are seen", FIGURE: "A figure on white, 1860 × 560 times the scale"}
+KINDS = {
+    SEEN: mark("The views as they are seen"),
+    FIGURE: mark("A figure on white, 1860 × 560 times the scale"),
+}
 MOVING = "GIF (*.gif);;WebP (*.webp)"
+TOLD = {
+    "figure": mark("The picture is in {path}."),
+    "turntable": mark("The turntable is in {path}."),
+    "animation": mark("The animation is in {path}."),
+}
 
 
 class Pictures(QObject):
@@ -47,13 +56,14 @@ class Pictures(QObject):
         """Ask for kind, scale and file, and write the three views."""
         results, entry = self._context.session.results, self._context.session.selected
         if entry is None or results.surface is None or results.coarsened is None:
-            self._context.toast.problem("Wait until the three views are drawn.")
+            self._context.toast.problem(tr("Wait until the three views are drawn."))
             return
         asked = PictureDialog(self._window)
         accepted = asked.exec() == QDialog.DialogCode.Accepted
         kind, scale, transparent = asked.value()
         asked.deleteLater()
-        name = self._ask("Save picture", f"{entry.id}.png", "Pictures (*.png)") if accepted else ""
+        kinds = tr("Pictures (*.png)")
+        name = self._ask(tr("Save picture"), f"{entry.id}.png", kinds) if accepted else ""
         if not name:
             return
         path = Path(name).with_suffix(".png")
@@ -64,40 +74,42 @@ class Pictures(QObject):
         pose = self._triptych.views["particle"].pose
         surfaces = (entry.particle.mesh, results.surface, results.coarsened)
         job = Job(draw_figure, (*surfaces, titles, path, scale, pose, transparent))
-        self._context.start("Drawing the figure", job, self._told("picture", path))
+        self._context.start(tr("Drawing the figure"), job, self._told("figure", path))
 
     def save_turntable(self) -> None:
         """Ask for a file and write the bodies turning once, in the background."""
         entry = self._context.session.selected
         if entry is None or not self._triptych.shapes:
-            self._context.toast.problem("Wait until the views are drawn.")
+            self._context.toast.problem(tr("Wait until the views are drawn."))
             return
-        name, ending = self._ask_moving("Save turntable", f"{entry.id}-turning")
+        name, ending = self._ask_moving(tr("Save turntable"), f"{entry.id}-turning")
         if name:
             path = Path(name).with_suffix(ending)
             job = Job(turn, (self._triptych.shapes, self._triptych.views["particle"].pose, path))
-            self._context.start("Drawing the turntable", job, self._told("turntable", path), lane="turntable")
+            title = tr("Drawing the turntable")
+            self._context.start(title, job, self._told("turntable", path), lane="turntable")
 
     def save_animation(self) -> None:
         """Ask for a file and write the fit growing from degree 0 to 30, in the background."""
         fit, entry = self._context.session.results.fit, self._context.session.selected
         if entry is None or fit is None:
-            self._context.toast.problem("Wait until the particle is fitted.")
+            self._context.toast.problem(tr("Wait until the particle is fitted."))
             return
-        name, ending = self._ask_moving("Save animation", entry.id)
+        name, ending = self._ask_moving(tr("Save animation"), entry.id)
         if name:
             path = Path(name).with_suffix(ending)
             job = Job(animate, (entry.particle.mesh, fit, tuple(range(fit.l_max + 1)), path))
-            self._context.start("Drawing the animation", job, self._told("animation", path), lane="animation")
+            title = tr("Drawing the animation")
+            self._context.start(title, job, self._told("animation", path), lane="animation")
 
     def _told(self, what: str, path: Path) -> Callable[[object], None]:
-        return lambda _: self._context.toast.note(f"The {what} is in {path}.")
+        return lambda _: self._context.toast.note(tr(TOLD[what], path=path))
 
     def _write(self, picture: QImage, path: Path) -> None:
         if picture.save(str(path)):
-            self._context.toast.note(f"The picture is in {path}.")
+            self._context.toast.note(tr(TOLD["figure"], path=path))
         else:
-            self._context.toast.problem(f"The picture {path} cannot be written.")
+            self._context.toast.problem(tr("The picture {path} cannot be written.", path=path))
 
     def _ask_moving(self, title: str, name: str) -> tuple[str, str]:
         chosen = self._ask(title, f"{name}.gif", MOVING)
@@ -116,16 +128,16 @@ class PictureDialog(QDialog):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self.setWindowTitle("Save picture")
+        self.setWindowTitle(tr("Save picture"))
         self.setObjectName("picture_dialog")
-        self.kind = ChoiceBox("picture_kind", "Kind of picture", KINDS)
+        self.kind = ChoiceBox("picture_kind", tr("Kind of picture"), KINDS)
         self.kind.setMinimumContentsLength(30)
         self.scale = QSpinBox()
         self.scale.setObjectName("picture_scale")
-        self.scale.setAccessibleName("Scale of the picture")
+        self.scale.setAccessibleName(tr("Scale of the picture"))
         self.scale.setRange(1, LARGEST_SCALE)
         self.scale.setValue(2)
-        self.transparent = QCheckBox("Transparent background")
+        self.transparent = QCheckBox(tr("Transparent background"))
         self.transparent.setObjectName("picture_transparent")
         buttons = QDialogButtonBox(
             QDialogButtonBox.StandardButton.Save | QDialogButtonBox.StandardButton.Cancel
@@ -133,8 +145,8 @@ class PictureDialog(QDialog):
         buttons.accepted.connect(self.accept)
         buttons.rejected.connect(self.reject)
         form = QFormLayout(self)
-        form.addRow("Picture", self.kind)
-        form.addRow("Scale", self.scale)
+        form.addRow(tr("Picture"), self.kind)
+        form.addRow(tr("Scale"), self.scale)
         form.addRow("", self.transparent)
         form.addRow(buttons)
 

@@ -11,6 +11,7 @@ from regolith_studio.ui.panels.error_bars import ErrorBarsPanel
 from regolith_studio.ui.panels.loss_curve import LossCurvePanel
 from regolith_studio.ui.panels.spectrum import SpectrumPanel
 from regolith_studio.ui.theme import Theme
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.triptych import Triptych
 from regolith_studio.ui.wiring import Wiring
 
@@ -27,9 +28,9 @@ class PlotArea(QSplitter):
         self.section = SectionPanel(triptych)
         self.left = tabs(
             "plots_left",
-            [(self.error_bars, "Errors"), (self.table, "Descriptors"), (self.section, "Section")],
+            [(self.error_bars, tr("Errors")), (self.table, tr("Descriptors")), (self.section, tr("Section"))],
         )
-        self.right = tabs("plots_right", [(self.loss_curve, "Loss"), (self.spectrum, "Spectrum")])
+        self.right = tabs("plots_right", [(self.loss_curve, tr("Loss")), (self.spectrum, tr("Spectrum"))])
         for number, group in enumerate((self.left, self.right)):
             self.addWidget(group)
             self.setStretchFactor(number, 1)

@@ -8,6 +8,7 @@ from regolith_studio.geometry.plane_cut import PlaneCut
 from regolith_studio.scene.sectioning import DIRECTIONS
 from regolith_studio.scene.shapes import LABELS, NAMES, PARTICLE
 from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.views.triptych import Triptych
 from regolith_studio.ui.widgets.choice_box import ChoiceBox
 from regolith_studio.ui.widgets.curve_plot import Curve, CurvePlot
@@ -17,12 +18,12 @@ AXES = {"x": ("y", "z"), "y": ("x", "z"), "z": ("x", "y")}
 """What runs to the right and up in a drawing, by the direction of the cut."""
 PLACE = NumberSpec(
     "",
-    "Place of the section",
+    mark("Place of the section"),
     -100,
     100,
     0.1,
     suffix=" µm",
-    tip="Distance from the middle of the particle; the frame in the views can be dragged as well.",
+    tip=mark("Distance from the middle of the particle; the frame in the views can be dragged as well."),
 )
 
 
@@ -34,15 +35,15 @@ class SectionPanel(QWidget):
         self.setObjectName("section")
         self._triptych, self._sections = triptych, triptych.sections
         self._theme = current_theme()
-        self.direction = ChoiceBox("section_direction", "Direction of the section", DIRECTIONS)
+        self.direction = ChoiceBox("section_direction", tr("Direction of the section"), DIRECTIONS)
         self.direction.setMinimumContentsLength(7)
-        self.flipped = QCheckBox("Flip")
+        self.flipped = QCheckBox(tr("Flip"))
         self.flipped.setObjectName("section_flipped")
-        self.flipped.setToolTip("Take the other half away")
+        self.flipped.setToolTip(tr("Take the other half away"))
         self.place = NumberSlider(PLACE)
         self.place.setObjectName("section_place")
-        self.plot = CurvePlot("y [µm]", "z [µm]", "Turn the cross-section on in the tool bar.")
-        self.plot.setAccessibleName("Cross-section")
+        self.plot = CurvePlot("y [µm]", "z [µm]", tr("Turn the cross-section on in the tool bar."))
+        self.plot.setAccessibleName(tr("Cross-section"))
         self.plot.canvas.setAspectLocked(True)
         self._place()
         self.direction.currentIndexChanged.connect(lambda _: triptych.cut_across(self.direction.value()))
@@ -72,7 +73,7 @@ class SectionPanel(QWidget):
         self._draw(sections.cuts())
 
     def _draw(self, cuts: dict[str, PlaneCut]) -> None:
-        right, up = AXES.get(self._sections.direction, ("across", "up"))
+        right, up = AXES.get(self._sections.direction, (tr("across"), tr("up")))
         mirrored = bool(cuts) and _mirrored(next(iter(cuts.values())), self._sections.direction)
         self.plot.set_labels(f"{'-' if mirrored else ''}{right} [µm]", f"{up} [µm]")
         whole = cuts[PARTICLE].area if PARTICLE in cuts else 0.0
@@ -80,7 +81,7 @@ class SectionPanel(QWidget):
         for name in NAMES:
             if name in cuts:
                 x, y = _outline(cuts[name])
-                label = f"{LABELS[name]} {_area_words(cuts[name].area, whole, name)}"
+                label = f"{tr(LABELS[name])} {_area_words(cuts[name].area, whole, name)}"
                 curves.append(Curve(label, getattr(self._theme, name), tuple(x), tuple(y)))
         self.plot.set_curves(curves)
 

@@ -1,0 +1,78 @@
+"""What holds for every sitting: language, theme, size of letters."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from PySide6.QtCore import QSignalBlocker, Signal
+from PySide6.QtWidgets import QDialog, QDialogButtonBox, QFormLayout, QSpinBox, QVBoxLayout, QWidget
+
+from regolith_studio.ui.theme import LARGEST, SMALLEST, USUAL
+from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation.language import LANGUAGES, SETTING, SYSTEM
+from regolith_studio.ui.widgets.choice_box import ChoiceBox
+from regolith_studio.ui.widgets.labels import remark
+
+LETTERS = "letters"
+"""In the preferences of the window: size of letters in percent."""
+THEMES = {SYSTEM: mark("As the system"), "light": mark("Light"), "dark": mark("Dark")}
+
+
+class PreferencesDialog(QDialog):
+    """Edits settings of the window; what is changed holds at once, the language at the next start."""
+
+    valueChanged = Signal(dict)  # noqa: N815
+
+    def __init__(self, kept: Mapping[str, Any], parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setWindowTitle(tr("Preferences"))
+        self.setObjectName("preferences_dialog")
+        self.setMinimumWidth(420)
+        self.language = ChoiceBox("preferences_language", tr("Language"), LANGUAGES)
+        self.theme = ChoiceBox("preferences_theme", tr("Theme"), THEMES)
+        self.letters = QSpinBox()
+        self.letters.setObjectName("preferences_letters")
+        self.letters.setAccessibleName(tr("Size of letters"))
+        self.letters.setRange(int(SMALLEST), int(LARGEST))
+        self.letters.setSingleStep(10)
+        self.letters.setSuffix(" %")
+        self.letters.setKeyboardTracking(False)
+        self.note = remark(tr("The language takes effect when the program starts again."))
+        self._arrange()
+        self.setValue(kept)
+        self._begun = self.language.value()
+        self.language.activated.connect(self._change_language)
+        self.theme.activated.connect(lambda _: self.valueChanged.emit({"theme": self.theme.value()}))
+        self.letters.valueChanged.connect(lambda percent: self.valueChanged.emit({LETTERS: percent}))
+
+    def value(self) -> dict[str, Any]:
+        """All of it."""
+        return {
+            SETTING: self.language.value(),
+            "theme": self.theme.value(),
+            LETTERS: self.letters.value(),
+        }
+
+    def setValue(self, value: Mapping[str, Any]) -> None:
+        """Show these settings, the usual ones where they are missing or not known; announces nothing."""
+        for box, name, known in ((self.language, SETTING, LANGUAGES), (self.theme, "theme", THEMES)):
+            box.setValue(value[name] if value.get(name) in known else SYSTEM)
+        percent = value.get(LETTERS)
+        with QSignalBlocker(self.letters):
+            self.letters.setValue(int(percent) if isinstance(percent, int | float) else int(USUAL))
+
+    def _change_language(self) -> None:
+        self.note.setVisible(self.language.value() != self._begun)
+        self.valueChanged.emit({SETTING: self.language.value()})
+
+    def _arrange(self) -> None:
+        form = QFormLayout()
+        form.addRow(tr("Language"), self.language)
+        form.addRow("", self.note)
+        form.addRow(tr("Theme"), self.theme)
+        form.addRow(tr("Size of letters"), self.letters)
+        buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close)
+        buttons.rejected.connect(self.reject)
+        layout = QVBoxLayout(self)
+        layout.addLayout(form)
+        layout.addWidget(buttons)
+        self.note.hide()

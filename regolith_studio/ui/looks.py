@@ -1,0 +1,47 @@
+"""Language, theme and size of letters: taken from the preferences, asked for, and kept."""
+
+from collections.abc import Callable
+
+from PySide6.QtCore import QObject
+from PySide6.QtWidgets import QWidget
+
+from regolith_studio.session.preferences import Preferences
+from regolith_studio.ui.dialogs.preferences import LETTERS, PreferencesDialog
+from regolith_studio.ui.theme import choose_letters, choose_theme
+
+
+class Looks(QObject):
+    """Knows what was chosen before, from the beginning.
+
+    Parameters
+    ----------
+    preferences
+        Where it is kept.
+    apply
+        Called when theme or letters have changed.
+    window
+        Parent of the dialog.
+    """
+
+    def __init__(self, preferences: Preferences, apply: Callable[[], None], window: QWidget) -> None:
+        super().__init__(window)
+        self._preferences, self._apply, self._window = preferences, apply, window
+        self._take()
+
+    def ask(self) -> None:
+        """Show the dialog."""
+        dialog = PreferencesDialog(self._preferences.window, self._window)
+        dialog.valueChanged.connect(lambda changes: self.choose(**changes))
+        dialog.finished.connect(dialog.deleteLater)
+        dialog.open()
+
+    def choose(self, **changes: object) -> None:
+        """Keep settings by their names; theme and letters are seen at once."""
+        self._preferences.window = self._preferences.window | changes
+        self._preferences.save()
+        self._take()
+        self._apply()
+
+    def _take(self) -> None:
+        choose_theme(str(self._preferences.window.get("theme", "system")))
+        choose_letters(self._preferences.window.get(LETTERS))

@@ -1,0 +1,55 @@
+"""Sentences of the layers below, which know no languages: recognised by their words, told anew."""
+
+import re
+from functools import cache
+
+from regolith_studio.ui.translation import mark, tr
+
+SENTENCES = (
+    mark(
+        "{surface} of the surface and {volume} of the volume are hidden from the star point and cannot be"
+        " kept by a radius function."
+    ),
+    mark(
+        "The expansion up to l = {degree} misses the radius by {error} in the root mean square, at most"
+        " {most}: it oscillates, as it does on flat and elongated grains."
+    ),
+    mark(
+        "The expansion up to l = {degree} misses the radius by {error} in the root mean square: it"
+        " oscillates, as it does on flat and elongated grains."
+    ),
+    mark("The centre of mass lies outside the particle; the point with the least hidden volume is used."),
+    mark("Sphericity {sphericity} needs at least {needed} faces; with {faces} the most is {most}."),
+    mark("Sphericity {sphericity} needs more than 100,000 faces; with {faces} the most is {most}."),
+    mark(
+        "No polyhedron with {faces} faces was found that meets all descriptors: {name} is off by {error} %;"
+        " more faces or a weight of 0 would free it."
+    ),
+)
+"""Fits and coarsenings say these; what is in braces stands there filled in."""
+
+
+def retold(sentence: str) -> str:
+    """A sentence in the language of the window, with the numbers that it has; itself if it is not known."""
+    for template, form in _forms():
+        if match := form.fullmatch(sentence):
+            return tr(template, **{name: _word(value) for name, value in match.groupdict().items()})
+    return tr(sentence)
+
+
+def _word(value: str) -> str:
+    """A name of the catalogue inside a sentence; numbers stay what they are."""
+    if not value[:1].isalpha():
+        return value
+    known = tr(value[:1].upper() + value[1:])
+    return known if known.lower() != value else value
+
+
+@cache
+def _forms() -> tuple[tuple[str, re.Pattern[str]], ...]:
+    found = []
+    for template in SENTENCES:
+        parts = re.split(r"\{(\w+)\}", template)
+        form = "".join(f"(?P<{part}>.+?)" if at % 2 else re.escape(part) for at, part in enumerate(parts))
+        found.append((template, re.compile(form)))
+    return tuple(found)
