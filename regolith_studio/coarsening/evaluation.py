@@ -85,6 +85,10 @@ class LossFunction:
         status, values = self._values(normals, offsets, sample_angle)
         if status != FINE or values[SHORTEST] <= 0.0:
             return float("inf")
+        return self.of(values)
+
+    def of(self, values: FloatArray) -> float:
+        """The loss of values as from :func:`regolith_studio.coarsening.core.evaluate.evaluate`."""
         return weighted_loss(values, self._wanted, self._alphas)
 
     def _values(self, normals: FloatArray, offsets: FloatArray, angle: float) -> tuple[int, FloatArray]:

@@ -18,7 +18,6 @@ from regolith_studio.coarsening.core.box import (
 )
 from regolith_studio.coarsening.core.box_arcs import (
     ON_FACET,
-    STATIONARY,
     Arc,
     Sample,
     Spare,
@@ -29,9 +28,18 @@ from regolith_studio.coarsening.core.box_arcs import (
     spare_samples,
     worth_a_look,
 )
+from regolith_studio.coarsening.core.box_contacts import (
+    ROW,
+    at_minimum,
+    fill_points,
+    holds,
+    pose_of,
+    settled,
+    touched,
+)
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.compiled import kernel, leaf
-from regolith_studio.geometry.vectors import mixed, row
+from regolith_studio.geometry.vectors import along, mixed, row
 
 SAMPLE_ANGLE = float(np.radians(13.0))
 """Step along the arcs that misses few boxes, in radians."""
@@ -46,6 +54,8 @@ NO_ARC = 1e-7
 NO_FACET = 1e-13
 NEAR = float(np.cos(np.radians(7.0)))
 WINDOW = float(np.radians(7.0))
+SETTLING = 1e-3
+"""Most that a box turns to come to rest, in radians."""
 MOST = 64
 """Largest number of boxes returned."""
 
@@ -62,8 +72,8 @@ class Boxes(NamedTuple):
     extents
         Edge lengths along the axes, shape (k, 3).
     contacts
-        Slot of the third contact, the edge that is flush with the first side (from, to), the seven of the
-        piece, the vertex that ties with that in the slot: shape (k, 11).
+        As in :mod:`regolith_studio.coarsening.core.box_contacts`, shape (k, 13); no ties where the box could
+        not be brought to rest on them.
     """
 
     volumes: FloatArray
@@ -114,10 +124,12 @@ def local_boxes(solid: Solid, margin: float, sample_angle: float, near: FloatArr
     sample_angle
         Largest step between samples along an arc, in radians.
     near
-        Frames of boxes, shape (k, 3, 3): only boxes within about 7 degrees of one of them are looked for.
-        None (k = 0): everywhere.
+        Directions, shape (k, 3): only boxes with an axis within about 7 degrees of one of them, to which a
+        side flush with an edge is normal, are looked for. None (k = 0): everywhere.
     """
-    boxes = Boxes(np.empty(MOST), np.empty((MOST, 3, 3)), np.empty((MOST, 3)), np.empty((MOST, 11), np.int64))
+    boxes = Boxes(
+        np.empty(MOST), np.empty((MOST, 3, 3)), np.empty((MOST, 3)), np.empty((MOST, ROW), np.int64)
+    )
     n = len(solid.normals)
     facets = OnFacets(
         np.full(n, np.nan),
@@ -130,7 +142,34 @@ def local_boxes(solid: Solid, margin: float, sample_angle: float, near: FloatArr
         scratch_for(solid), empty_touch(), empty_touch(), empty_sample(), empty_sample(), spare_samples()
     )
     count, best = search(solid, margin, sample_angle, near, boxes, facets, work)
-    return ranked(boxes, count, best * (1.0 + margin))
+    return at_rest(solid, ranked(boxes, count, best * (1.0 + margin)))
+
+
+@kernel
+def no_boxes() -> Boxes:
+    """Nothing found."""
+    return Boxes(np.empty(0), np.empty((0, 3, 3)), np.empty((0, 3)), np.empty((0, ROW), np.int64))
+
+
+@kernel
+def at_rest(solid: Solid, boxes: Boxes) -> Boxes:
+    """Boxes on the vertices that they touch, without those that a small turn makes smaller but the first."""
+    frames, extents, contacts = boxes.frames, boxes.extents, boxes.contacts
+    points, ties, kept = np.empty((9, 3)), np.empty((3, 3)), np.full(len(frames), True)
+    for k in range(len(frames)):
+        frame = frames[k].copy()
+        touched(solid.vertices, frame, contacts[k], ties)
+        fill_points(solid.vertices, contacts[k], points)
+        if settled(points, contacts[k], frame, SETTLING) and holds(solid.vertices, contacts[k], frame):
+            pose = pose_of(points, contacts[k], frame)
+            kept[k] = k == 0 or at_minimum(pose, contacts[k])
+            frames[k] = frame
+            for axis in range(3):
+                extents[k, axis] = pose.extents[axis]
+            boxes.volumes[k] = pose.extents[0] * pose.extents[1] * pose.extents[2]
+        else:
+            contacts[k, 0] = 0
+    return Boxes(boxes.volumes[kept], frames[kept], extents[kept], contacts[kept])
 
 
 @leaf
@@ -166,10 +205,10 @@ def search(
                 lowest = two.number[1]
                 kept_aside(touch, fallback)
             if i > 0 and worth_a_look(one, two, best * (1.0 + margin) * SLACK):
-                slot, partner, volume = arc_minimum(arc, one, two, solid, scratch, touch, spare)
+                slot, _, volume = arc_minimum(arc, one, two, solid, scratch, touch, spare)
                 best = min(best, volume)
                 if slot != ON_FACET and volume <= best * (1.0 + margin):
-                    count = kept(count, boxes, volume, touch, slot, arc.start, arc.end, partner)
+                    count = kept(count, boxes, volume, touch)
             one, two = two, one
     for f in range(n):
         if (
@@ -177,13 +216,10 @@ def search(
             and facets.volume[f] <= best * (1.0 + margin)
             and is_near(solid.normals[f], near)
         ):
-            p, q, partner = corner_of(f, solid.edges)
-            if p >= 0:
-                recalled(facets, f, touch)
-                touch.piece[0] = p
-                count = kept(count, boxes, facets.volume[f], touch, 0, p, q, partner)
+            recalled(facets, f, touch)
+            count = kept(count, boxes, facets.volume[f], touch)
     if count == 0 and lowest < np.inf:
-        count = kept(0, boxes, np.exp(lowest), fallback, STATIONARY, fallback.piece[0], fallback.piece[0], -1)
+        count = kept(0, boxes, np.exp(lowest), fallback)
     return count, best
 
 
@@ -233,21 +269,18 @@ def box_on_facet(
 
 @leaf
 def window_on(arc: Arc, near: FloatArray) -> tuple[float, float]:
-    """Part of an arc that lies near an axis of the frames `near` (k, 3, 3); empty if the second is less."""
+    """Part of an arc near one of the directions (k, 3) or against it; empty if the second is less."""
     if len(near) == 0:
         return 0.0, arc.angle
     low, high = arc.angle + 1.0, -1.0
     for k in range(len(near)):
-        for a in range(3):
-            axis = near[k, a]
-            x = axis[0] * arc.one[0] + axis[1] * arc.one[1] + axis[2] * arc.one[2]
-            y = axis[0] * arc.across[0] + axis[1] * arc.across[1] + axis[2] * arc.across[2]
-            for way in range(2):
-                if way == 1:
-                    x, y = -x, -y
-                at = min(arc.angle, max(0.0, np.arctan2(y, x)))
-                if np.cos(at) * x + np.sin(at) * y > NEAR:
-                    low, high = min(low, max(0.0, at - WINDOW)), max(high, min(arc.angle, at + WINDOW))
+        x, y = along(near, k, arc.one), along(near, k, arc.across)
+        for way in range(2):
+            if way == 1:
+                x, y = -x, -y
+            at = min(arc.angle, max(0.0, np.arctan2(y, x)))
+            if np.cos(at) * x + np.sin(at) * y > NEAR:
+                low, high = min(low, max(0.0, at - WINDOW)), max(high, min(arc.angle, at + WINDOW))
     return low, high
 
 
@@ -255,10 +288,8 @@ def window_on(arc: Arc, near: FloatArray) -> tuple[float, float]:
 def is_near(normal: FloatArray, near: FloatArray) -> bool:
     """Whether all arcs around a facet have been searched."""
     for k in range(len(near)):
-        for a in range(3):
-            axis = near[k, a]
-            if abs(axis[0] * normal[0] + axis[1] * normal[1] + axis[2] * normal[2]) > NEAR:
-                return True
+        if abs(near[k, 0] * normal[0] + near[k, 1] * normal[1] + near[k, 2] * normal[2]) > NEAR:
+            return True
     return len(near) == 0
 
 
@@ -288,47 +319,26 @@ def sampled(  # type: ignore[no-untyped-def]
 
 
 @leaf
-def corner_of(facet: int, edges: IntArray) -> tuple[int, int, int]:
-    """Three vertices of a facet: the ends of one of its edges and another one."""
-    p = q = -1
-    for e in range(len(edges)):
-        if edges[e, 2] == facet or edges[e, 3] == facet:
-            if p < 0:
-                p, q = edges[e, 0], edges[e, 1]
-            elif edges[e, 0] != p and edges[e, 0] != q:
-                return p, q, edges[e, 0]
-            elif edges[e, 1] != p and edges[e, 1] != q:
-                return p, q, edges[e, 1]
-    return -1, -1, -1
-
-
-@leaf
-def kept(  # type: ignore[no-untyped-def]
-    count, boxes, volume, touch, slot, start, end, partner
-) -> int:
+def kept(count: int, boxes: Boxes, volume: float, touch: Touch) -> int:
     """Add a box unless the same one is there; the new number of boxes."""
     for i in range(count):
         if (
             abs(boxes.volumes[i] - volume) < 1e-6 * volume
             and likeness(boxes.frames[i], touch.frame) > 1.0 - 1e-9
         ):
-            return count  # type: ignore[no-any-return]
+            return count
     at = count
     if count == MOST:
-        at = np.argmax(boxes.volumes)
+        at = int(np.argmax(boxes.volumes))
         if boxes.volumes[at] <= volume:
-            return count  # type: ignore[no-any-return]
+            return count
         count -= 1
     boxes.volumes[at] = volume
     for a in range(3):
         boxes.extents[at, a] = touch.extents[a]
         for c in range(3):
             boxes.frames[at, a, c] = touch.frame[a, c]
-    boxes.contacts[at, 0], boxes.contacts[at, 1], boxes.contacts[at, 2] = slot, start, end
-    for c in range(7):
-        boxes.contacts[at, 3 + c] = touch.piece[c]
-    boxes.contacts[at, 10] = partner
-    return count + 1  # type: ignore[no-any-return]
+    return count + 1
 
 
 @leaf

@@ -47,7 +47,7 @@ def evaluate(
         extents = box_on_facets(solid)
         values[SHORTEST], values[LONGEST] = extents.min(), extents.max()
     elif box == LEAST_BOX:
-        boxes = local_boxes(solid, 1e-3, sample_angle, np.empty((0, 3, 3)))
+        boxes = local_boxes(solid, 1e-3, sample_angle, np.empty((0, 3)))
         if len(boxes.volumes) == 0:
             return DEGENERATE, values
         values[SHORTEST], values[LONGEST] = boxes.extents[0].min(), boxes.extents[0].max()

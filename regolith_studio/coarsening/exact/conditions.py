@@ -4,7 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from regolith_studio.coarsening.core.box_change import contact_points, extent_forces
+from regolith_studio.coarsening.core.box_change import extent_forces
+from regolith_studio.coarsening.core.box_contacts import fill_points
+from regolith_studio.coarsening.core.box_follow import Watched, watch
 from regolith_studio.coarsening.core.measures import area_charge, vertex_charge, volume_charge
 from regolith_studio.coarsening.core.planes import gradient_of
 from regolith_studio.coarsening.exact.problem import (
@@ -19,7 +21,6 @@ from regolith_studio.coarsening.exact.problem import (
 )
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.compiled import kernel
-from regolith_studio.geometry.vectors import row
 
 CLEARANCE = 1e-4
 """Other boxes must be larger than the wanted one by this share."""
@@ -44,8 +45,7 @@ class Conditions(NamedTuple):
     slack, rival_rows
         log(volume / volume of the wanted box) of each other box, and its derivative; (r,) and (r, 3 n).
     watched
-        Axes of the wanted box and of others that are to be looked for, shape (k, 3, 3); none where no box
-        is asked for.
+        The wanted box and others that are to be looked for; none where no box is asked for.
     sound
         Whether everything could be measured.
     """
@@ -54,7 +54,7 @@ class Conditions(NamedTuple):
     rows: FloatArray
     slack: FloatArray
     rival_rows: FloatArray
-    watched: FloatArray
+    watched: Watched
     sound: bool
 
 
@@ -64,8 +64,7 @@ def conditions_of(problem: Problem, shape: Shape, frames: FloatArray, levers: Fl
     n = len(shape.offsets)
     residual, rows = np.zeros(5), np.zeros((5, 3 * n))
     slack, rival_rows = np.zeros(MOST_RIVALS), np.zeros((MOST_RIVALS, 3 * n))
-    axes = np.empty((1 + MOST_RIVALS, 3, 3))
-    n_watched = 0
+    chosen, n_watched = np.empty(1 + MOST_RIVALS, np.int64), 0
     rivals = 0
     sound = True
     if problem.asked[VOLUME] or problem.asked[SPHERICITY]:
@@ -82,14 +81,14 @@ def conditions_of(problem: Problem, shape: Shape, frames: FloatArray, levers: Fl
             sound = False
         else:
             at = wanted_box(problem, shape)
-            axes[0], n_watched = shape.boxes.frames[at], 1
+            chosen[0], n_watched = at, 1
             own = box_rows(problem, shape, at, frames, levers, residual, rows)
             for b in range(len(shape.boxes.volumes)):
                 if b == at or rivals == MOST_RIVALS:
                     continue
                 apart = np.log(shape.boxes.volumes[b] / shape.boxes.volumes[at])
                 if apart < WATCHED and n_watched <= MOST_RIVALS:
-                    axes[n_watched] = shape.boxes.frames[b]
+                    chosen[n_watched] = b
                     n_watched += 1
                 if apart < CLOSE:
                     slack[rivals] = apart
@@ -101,7 +100,7 @@ def conditions_of(problem: Problem, shape: Shape, frames: FloatArray, levers: Fl
         rows[asked],
         slack[:rivals].copy(),
         rival_rows[:rivals].copy(),
-        axes[:n_watched].copy(),
+        watch(shape.boxes, chosen[:n_watched], shape.triples),
         sound,
     )
 
@@ -129,19 +128,17 @@ def extent_rows(
     shape: Shape, b: int, frames: FloatArray, levers: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Logarithms of the three edges of box b, and their derivatives (3, 3 n)."""
-    contact = shape.boxes.contacts[b]
-    points = contact_points(shape.vertices, contact)
-    forces = np.empty((3, 10, 3))
-    low, middle, high = extent_forces(points, contact[0], row(shape.boxes.frames[b], 0), forces)
+    contact, points, forces = shape.boxes.contacts[b], np.empty((9, 3)), np.empty((3, 9, 3))
+    fill_points(shape.vertices, contact, points)
+    low, middle, high = extent_forces(points, contact, shape.boxes.frames[b], forces)
     rows = np.empty((3, 3 * len(shape.offsets)))
     for k in range(3):
         charge = np.zeros((len(shape.offsets), 4))
-        for i in range(10):
-            v = contact[1 + i]
-            if v >= 0:
-                vertex_charge(
-                    shape.normals, shape.triples[v], shape.vertices[v], forces[k, i], shape.centroid, charge
-                )
+        for i in range(6 + contact[0]):
+            v = contact[1 + i] if i < 6 else contact[8 + 2 * (i - 6)]
+            vertex_charge(
+                shape.normals, shape.triples[v], shape.vertices[v], forces[k, i], shape.centroid, charge
+            )
         rows[k] = gradient_of(charge, frames, levers)
     return np.log(np.array([low, middle, high])), rows
 

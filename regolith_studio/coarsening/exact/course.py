@@ -5,7 +5,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from regolith_studio.coarsening.core.box_follow import Watched
 from regolith_studio.coarsening.core.cuts import SMALLEST_FACET, with_all_facets
+from regolith_studio.coarsening.core.evaluate import AREA, FACETS, LONGEST, SHARED, SHORTEST, VOLUME
 from regolith_studio.coarsening.core.planes import tangents_of
 from regolith_studio.coarsening.exact.descent import (
     OVERLAP,
@@ -26,7 +28,7 @@ from regolith_studio.coarsening.exact.starts import grouped_planes
 from regolith_studio.coarsening.target import Target
 from regolith_studio.geometry.arrays import FloatArray
 
-NOWHERE: FloatArray = np.empty((0, 3, 3))
+NOWHERE = Watched(np.empty((0, 3, 3)), np.empty((0, 13), dtype=np.int64), np.empty((0, 9, 3), dtype=np.int64))
 CUT_DEPTHS = (0.3, 0.3, 0.1, 0.03, 0.01)
 CHUNK = 8
 FREE_ROUNDS = 3
@@ -48,6 +50,9 @@ class Attempt:
         Largest residual of the conditions, in logarithms.
     n_facets
         Real facets.
+    values
+        As from :func:`regolith_studio.coarsening.core.evaluate.evaluate`; NaN for the box where no condition
+        is about it.
     """
 
     normals: FloatArray
@@ -55,6 +60,7 @@ class Attempt:
     jaccard_distance: float
     worst: float
     n_facets: int
+    values: FloatArray
 
     @property
     def exact(self) -> bool:
@@ -220,9 +226,14 @@ def reach(point: Polished) -> float:
 
 def attempt(problem: Problem, point: Polished) -> Attempt:
     """What is reported of a point."""
-    shape = point.shape
-    jaccard = objective_at(problem, shape, OVERLAP) if np.isfinite(point.worst) else 1.0
-    return Attempt(shape.normals, shape.offsets, jaccard, point.worst, n_facets(point))
+    shape, sound = point.shape, bool(np.isfinite(point.worst))
+    jaccard = objective_at(problem, shape, OVERLAP) if sound else 1.0
+    values = np.full(6, np.nan)
+    values[VOLUME], values[AREA], values[FACETS] = shape.volume, shape.surface, n_facets(point)
+    values[SHARED] = (1.0 - jaccard) * (1.0 + shape.volume) / (2.0 - jaccard)
+    if len(shape.boxes.extents):
+        values[SHORTEST], values[LONGEST] = shape.boxes.extents[0].min(), shape.boxes.extents[0].max()
+    return Attempt(shape.normals, shape.offsets, jaccard, point.worst, n_facets(point), values)
 
 
 def _with_cuts(

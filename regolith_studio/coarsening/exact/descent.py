@@ -26,6 +26,8 @@ TOLERANCE = 3e-8
 """Largest residual of a polyhedron that counts as exact."""
 SHORTEST_STEP = 2e-4
 CURVATURE = 0.1
+UNCHECKED = 4
+"""Steps between two searches for boxes everywhere."""
 REACH = 0.4
 """Longest step of a polish times the square root of the number of planes: facets shrink as n grows."""
 
@@ -187,8 +189,67 @@ def learned(metric: FloatArray, step: FloatArray, change: FloatArray) -> FloatAr
 
 
 @kernel
+def checked(problem: Problem, state: State, goal: int, polish_steps: int, cap: float) -> State:
+    """The state, searched for boxes everywhere and polished again where that found a smaller one."""
+    point = verified(problem, state.point, state.metric, polish_steps, TOLERANCE, cap)
+    if not point.worst < TOLERANCE:
+        return State(point, np.inf, state.gradient, state.metric, state.radius, True, state.iterations)
+    value = objective_at(problem, point.shape, goal)
+    gradient = objective_gradient(problem, point.shape, point.frames, goal)
+    return State(point, value, gradient, state.metric, state.radius, state.done, state.iterations)
+
+
+@kernel
 def descended(problem: Problem, state: State, goal: int, iterations: int, polish_steps: int) -> State:
-    """At most `iterations` more steps of the descent; every accepted polyhedron meets all conditions."""
+    """At most `iterations` more steps of the descent; the polyhedron returned meets all conditions.
+
+    Boxes are looked for everywhere after every few steps only. Where one has come in between that cannot be
+    pushed away again without loss, these steps are taken back, and from then on each is checked.
+    """
+    cap = REACH / np.sqrt(len(state.point.shape.offsets))
+    safe, unchecked, patience, failures = state, 0, UNCHECKED, 0
+    for _ in range(iterations):
+        if state.done:
+            break
+        better, state = stepped(problem, state, goal, polish_steps, cap)
+        failures = 0 if better else failures + 1
+        if not better and state.radius < SHORTEST_STEP:
+            metric = first_metric(state.point.shape)
+            done = failures > 3
+            state = State(state.point, state.value, state.gradient, metric, 0.02, done, state.iterations)
+            failures += 2
+        unchecked += better
+        if unchecked >= patience or (unchecked > 0 and state.done):
+            safe, state, patience = checked_or_back(problem, safe, state, goal, polish_steps, cap, patience)
+            unchecked = 0
+    if unchecked > 0:
+        _, state, _ = checked_or_back(problem, safe, state, goal, polish_steps, cap, patience)
+    return state
+
+
+@kernel
+def checked_or_back(
+    problem: Problem, safe: State, state: State, goal: int, polish_steps: int, cap: float, patience: int
+) -> tuple[State, State, int]:
+    """The last sound state, the one to go on from, and after how many steps to check again."""
+    then = checked(problem, state, goal, polish_steps, cap)
+    if then.value < safe.value:
+        return then, then, patience
+    back = State(
+        safe.point,
+        safe.value,
+        safe.gradient,
+        safe.metric,
+        min(safe.radius, state.radius),
+        patience == 1 and state.done,
+        state.iterations,
+    )
+    return safe, back, 1
+
+
+@kernel
+def stepped(problem: Problem, state: State, goal: int, polish_steps: int, cap: float) -> tuple[bool, State]:
+    """One step along the conditions and back to them; whether the objective fell."""
     point, value, gradient, metric, radius = (
         state.point,
         state.value,
@@ -196,51 +257,36 @@ def descended(problem: Problem, state: State, goal: int, iterations: int, polish
         state.metric,
         state.radius,
     )
-    done, spent, failures = state.done, state.iterations, 0
-    cap = REACH / np.sqrt(len(point.shape.offsets))
-    for _ in range(iterations):
-        if done:
-            break
-        spent += 1
+    spent = state.iterations + 1
+    step, shadow = tangent_step(point.conditions, gradient, metric)
+    length = np.abs(step).max()
+    if not np.isfinite(length) or np.sum(step * gradient) >= 0.0:
+        metric = first_metric(point.shape)
         step, shadow = tangent_step(point.conditions, gradient, metric)
         length = np.abs(step).max()
-        if not np.isfinite(length) or np.sum(step * gradient) >= 0.0:
-            metric = first_metric(point.shape)
-            step, shadow = tangent_step(point.conditions, gradient, metric)
-            length = np.abs(step).max()
-        if not length > 1e-9:
-            done = True
-            break
-        share = min(1.0, radius / length)
-        shape = point.shape
-        levers = levers_of(shape.area, LEAST_LEVER)
-        turned, shifted = moved(
-            shape.normals, shape.centroid, shape.offsets, point.frames, levers, share * step
-        )
-        better, then, reached = False, point, value
-        if shifted.min() > 0.0:
-            then = measured(problem, turned, shifted, carried(point.frames, turned), point.conditions.watched)
-            then = polished(problem, then, metric, polish_steps, TOLERANCE, cap)
-            if then.worst < TOLERANCE and objective_at(problem, then.shape, goal) < value:
-                then = verified(problem, then, metric, polish_steps, TOLERANCE, cap)
-                if then.worst < TOLERANCE:
-                    reached = objective_at(problem, then.shape, goal)
-                    better = reached < value
-        if not better:
-            failures += 1
-            radius = 0.35 * min(radius, share * length)
-            if radius < SHORTEST_STEP:
-                if failures > 3:
-                    done = True
-                metric = first_metric(point.shape)
-                radius = 0.02
-                failures += 2
-            continue
-        failures = 0
-        slope = objective_gradient(problem, then.shape, then.frames, goal)
-        _, after = tangent_step(then.conditions, slope, metric)
-        metric = learned(metric, share * step, after - shadow)
-        radius = min(0.25, max(radius, 2.0 * share * length))
-        done = value - reached < 1e-7 and goal == OVERLAP
-        point, value, gradient = then, reached, slope
-    return State(point, value, gradient, metric, radius, done, spent)
+    if not length > 1e-9:
+        return False, State(point, value, gradient, metric, radius, True, spent)
+    share = min(1.0, radius / length)
+    shape = point.shape
+    turned, shifted = moved(
+        shape.normals,
+        shape.centroid,
+        shape.offsets,
+        point.frames,
+        levers_of(shape.area, LEAST_LEVER),
+        share * step,
+    )
+    reached = np.inf
+    if shifted.min() > 0.0:
+        then = measured(problem, turned, shifted, carried(point.frames, turned), point.conditions.watched)
+        then = polished(problem, then, metric, polish_steps, TOLERANCE, cap)
+        if then.worst < TOLERANCE:
+            reached = objective_at(problem, then.shape, goal)
+            if reached < value:
+                slope = objective_gradient(problem, then.shape, then.frames, goal)
+                _, after = tangent_step(then.conditions, slope, metric)
+                metric = learned(metric, share * step, after - shadow)
+                radius = min(0.25, max(radius, 2.0 * share * length))
+                done = value - reached < 1e-7 and goal == OVERLAP
+                return True, State(then, reached, slope, metric, radius, done, spent)
+    return False, State(point, value, gradient, metric, 0.35 * min(radius, share * length), False, spent)

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from regolith_studio.coarsening.core.box_follow import Watched, nothing_watched
 from regolith_studio.coarsening.core.box_search import likeness
 from regolith_studio.coarsening.core.intersection import FINE
 from regolith_studio.coarsening.core.planes import carried, levers_of, moved
@@ -80,20 +81,20 @@ def solved(matrix: FloatArray, right: FloatArray) -> FloatArray:
 
 @kernel
 def measured(
-    problem: Problem, normals: FloatArray, offsets: FloatArray, frames: FloatArray, near: FloatArray
+    problem: Problem, normals: FloatArray, offsets: FloatArray, frames: FloatArray, near: Watched
 ) -> Polished:
-    """Shape and conditions of half-spaces; boxes are looked for near `near` first, else everywhere."""
+    """Shape and conditions of half-spaces; boxes are those of `near` if they are still there, else all."""
     shape = shape_of(problem, normals, offsets, near)
     if shape.status != FINE:
         nothing = np.zeros((0, 0))
         void = Conditions(np.zeros(0), nothing, np.zeros(0), nothing, near, False)
         return Polished(np.inf, shape, void, frames)
-    if len(near) > 0 and needs_box(problem):
+    if len(near.frames) > 0 and needs_box(problem):
         like = 0.0
         for b in range(len(shape.boxes.volumes)):
-            like = max(like, likeness(near[0], shape.boxes.frames[b]))
+            like = max(like, likeness(near.frames[0], shape.boxes.frames[b]))
         if like < ALIKE:
-            shape = shape_of(problem, normals, offsets, near[:0])
+            shape = shape_of(problem, normals, offsets, nothing_watched())
     conditions = conditions_of(problem, shape, frames, levers_of(shape.area, LEAST_LEVER))
     return Polished(worst_of(conditions), shape, conditions, frames)
 
@@ -103,7 +104,7 @@ def everywhere(problem: Problem, point: Polished) -> Polished:
     """The same polyhedron with boxes looked for everywhere."""
     if not needs_box(problem) or point.shape.status != FINE:
         return point
-    shape = shape_of(problem, point.shape.normals, point.shape.offsets, point.conditions.watched[:0])
+    shape = shape_of(problem, point.shape.normals, point.shape.offsets, nothing_watched())
     levers = levers_of(shape.area, LEAST_LEVER)
     conditions = conditions_of(problem, shape, point.frames, levers)
     return Polished(worst_of(conditions), shape, conditions, point.frames)

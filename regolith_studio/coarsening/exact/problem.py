@@ -5,7 +5,8 @@ from typing import NamedTuple
 import numpy as np
 
 from regolith_studio.coarsening.core.box import Solid
-from regolith_studio.coarsening.core.box_search import Boxes, local_boxes
+from regolith_studio.coarsening.core.box_follow import Watched, followed, lost_axes, together
+from regolith_studio.coarsening.core.box_search import Boxes, local_boxes, no_boxes
 from regolith_studio.coarsening.core.intersection import FINE, edges_of, intersect
 from regolith_studio.coarsening.core.measures import facets_of, volume_of
 from regolith_studio.coarsening.core.overlap import exits, shared_volume
@@ -82,9 +83,9 @@ def needs_box(problem: Problem) -> bool:
 
 
 @kernel
-def shape_of(problem: Problem, normals: FloatArray, offsets: FloatArray, near: FloatArray) -> Shape:
-    """Intersect and measure; boxes are looked for near the frames `near` (k, 3, 3), for k = 0 everywhere."""
-    boxes = Boxes(np.empty(0), np.empty((0, 3, 3)), np.empty((0, 3)), np.empty((0, 11), np.int64))
+def shape_of(problem: Problem, normals: FloatArray, offsets: FloatArray, near: Watched) -> Shape:
+    """Intersect and measure; the boxes are those of `near`, or others near them; if it is empty, all."""
+    boxes = no_boxes()
     status, vertices, triples = intersect(normals, offsets)
     if status != FINE:
         none = np.empty((0, 4), np.int64)
@@ -93,7 +94,14 @@ def shape_of(problem: Problem, normals: FloatArray, offsets: FloatArray, near: F
     edges = edges_of(triples, len(offsets))
     area, centroid = facets_of(normals, offsets, vertices, edges)
     if needs_box(problem):
-        boxes = local_boxes(Solid(vertices, normals, area, edges), MARGIN, problem.sample_angle, near)
+        solid = Solid(vertices, normals, area, edges)
+        if len(near.frames) == 0:
+            boxes = local_boxes(solid, MARGIN, problem.sample_angle, np.empty((0, 3)))
+        else:
+            boxes, lost = followed(solid, triples, near)
+            if lost.any():
+                others = local_boxes(solid, MARGIN, problem.sample_angle, lost_axes(near, lost))
+                boxes = together(boxes, others)
     volume = volume_of(offsets, area)
     return Shape(
         status, normals, offsets, vertices, triples, edges, area, centroid, volume, np.sum(area), boxes

@@ -17,6 +17,8 @@ from regolith_studio.coarsening.progress import MethodStep
 from regolith_studio.coarsening.result import MethodResult
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import LossWeights
+from regolith_studio.descriptors.catalogue import LOSS_KEYS
+from regolith_studio.descriptors.comparison import relative_errors
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.errors import GeometryError, InputError
 from regolith_studio.geometry.half_spaces import HalfSpaces
@@ -108,7 +110,7 @@ class ExactMethod:
                 if not found.better_than(best):
                     continue
                 best = found
-                history.append(judge.value(best.normals, best.offsets, SAMPLE_ANGLE))
+                history.append(judge.of(best.values))
                 yield MethodStep(tried, total, history[-1], HalfSpaces(best.normals, best.offsets))
             if tried >= level.starts and best is not None and best.exact:
                 best = confirmed(request, (fine, dense), best)
@@ -120,13 +122,13 @@ class ExactMethod:
             rest = request.problem(target.rays, SAMPLE_ANGLE, sphericity=False)
             for begun in (planes, (best.normals, best.offsets)):
                 for found in compromise(full, rest, begun, COMPROMISE_STEPS):
-                    value = judge.value(found.normals, found.offsets)
+                    value = judge.of(found.values)
                     if value < min(history[-1:], default=np.inf):
                         best = found
                         history.append(value)
                         yield MethodStep(total, total, value, HalfSpaces(best.normals, best.offsets))
-        verdict = judge(best.normals, best.offsets, DENSE_ANGLE)
-        reason = None if verdict is None else reason_for(target, request, n_faces, verdict.errors)
+        achieved = describe(polyhedron_of(real_planes(best)), LOSS_KEYS)
+        reason = reason_for(target, request, n_faces, relative_errors(target.descriptors, achieved))
         counts = {"starts": float(tried), "exact": float(best.exact)}
         return MethodResult(real_planes(best), tuple(history), reason, counts)
 

@@ -1,0 +1,254 @@
+"""Where a locally minimal box touches its solid, and how it settles there when the solid changes.
+
+Of the three freedoms of a box's orientation, each pair of vertices that lie in one side takes one: it *ties*.
+A minimum has three ties, or two and a volume that is stationary along the freedom that is left (O'Rourke
+1985); a side on a facet counts as two ties. For a rotation w, an axis x turns by w x x, so the difference d
+of a tied pair leaves its side at the rate <w, x x d>, and an extent <x, s> changes at the rate <w, x x s>.
+
+A row of contacts holds the number of ties; the vertices at the upper and the lower end of each axis; and for
+each tie its side (2 k + 1 for the lower side of axis k, 2 k for the upper) and the vertex that ties with the
+one at that end: 13 numbers.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from regolith_studio.geometry.arrays import FloatArray, IntArray
+from regolith_studio.geometry.compiled import leaf
+from regolith_studio.geometry.vectors import Vector, along, cross, dot, length, mixed, row
+
+ROW = 13
+"""Numbers in a row of contacts."""
+TOUCHING = 1e-6
+"""Vertices nearer to a side than this, at size 1, touch it."""
+OUTSIDE = 1e-9
+"""Vertices farther outside than this are outside."""
+APART = 1e-5
+"""Ties that leave less of a turn than this, at size 1, are none."""
+SETTLED = 1e-11
+"""Last turn of a box that has settled, in radians."""
+
+
+class Pose(NamedTuple):
+    """A box at rest, or on the way there.
+
+    Parameters
+    ----------
+    axes, spans, extents
+        Axes, vectors between the vertices at their ends, and their extents.
+    slopes
+        Derivatives of the logarithms of the extents with a rotation.
+    conditions
+        Derivatives with a rotation of the three conditions: ties, and that the volume is stationary.
+    residuals
+        Of the conditions.
+    free
+        The turn that two ties leave free; zero with three.
+    """
+
+    axes: tuple[Vector, Vector, Vector]
+    spans: tuple[Vector, Vector, Vector]
+    extents: Vector
+    slopes: tuple[Vector, Vector, Vector]
+    conditions: tuple[Vector, Vector, Vector]
+    residuals: Vector
+    free: Vector
+
+
+@leaf
+def touched(vertices: FloatArray, frame: FloatArray, contact: IntArray, ties: FloatArray) -> None:
+    """Fill a row of contacts for a box by its axes, one a row of `frame`.
+
+    Parameters
+    ----------
+    ties
+        Scratch, shape (3, 3).
+    """
+    contact[0] = 0
+    for axis in range(3):
+        x = row(frame, axis)
+        high, low = -np.inf, np.inf
+        for v in range(len(vertices)):
+            here = along(vertices, v, x)
+            if here > high:
+                high, contact[1 + 2 * axis] = here, v
+            if here < low:
+                low, contact[2 + 2 * axis] = here, v
+    for n in range(3):
+        most, most_side, most_vertex = APART, -1, -1
+        for side in range(6):
+            x, end = row(frame, side // 2), contact[1 + side]
+            for v in range(len(vertices)):
+                apart = mixed(row(vertices, v), 1.0, row(vertices, end), -1.0)
+                if v == end or abs(dot(apart, x)) > TOUCHING:
+                    continue
+                turn = cross(x, apart)
+                for t in range(n):
+                    turn = mixed(turn, 1.0, row(ties, t), -along(ties, t, turn))
+                if length(turn) > most:
+                    most, most_side, most_vertex = length(turn), side, v
+                    for c in range(3):
+                        ties[n, c] = turn[c] / most
+        if most_side < 0:
+            break
+        contact[0], contact[7 + 2 * n], contact[8 + 2 * n] = n + 1, most_side, most_vertex
+
+
+@leaf
+def settled(points: FloatArray, contact: IntArray, frame: FloatArray, farthest: float) -> bool:
+    """Turn the axes in `frame` until all conditions hold, by Newton's method; False where they cannot.
+
+    Parameters
+    ----------
+    points
+        Vertices of the row of contacts, shape (9, 3), as from :func:`fill_points`.
+    farthest
+        Most that the box may turn, in radians.
+    """
+    if contact[0] < 2:
+        return False
+    total = 0.0
+    for _ in range(12):
+        pose = pose_of(points, contact, frame)
+        sound, turn = solved(pose.conditions, pose.residuals)
+        angle = length(turn)
+        total += angle
+        if not (sound and total < farthest):
+            return False
+        turned(frame, mixed(turn, -1.0, turn, 0.0))
+        if angle < SETTLED:
+            return True
+    return False
+
+
+@leaf
+def fill_points(vertices: FloatArray, contact: IntArray, points: FloatArray) -> None:
+    """Coordinates of the vertices of a row of contacts, shape (9, 3): six ends of axes, three tied."""
+    for i in range(9):
+        v = contact[1 + i] if i < 6 else contact[8 + 2 * (i - 6)]
+        for c in range(3):
+            points[i, c] = vertices[v, c] if i < 6 + contact[0] else 0.0
+
+
+@leaf
+def pose_of(points: FloatArray, contact: IntArray, frame: FloatArray) -> Pose:
+    """Everything about a box that follows from its axes and the vertices that it touches."""
+    axes = (row(frame, 0), row(frame, 1), row(frame, 2))
+    spans = (
+        mixed(row(points, 0), 1.0, row(points, 1), -1.0),
+        mixed(row(points, 2), 1.0, row(points, 3), -1.0),
+        mixed(row(points, 4), 1.0, row(points, 5), -1.0),
+    )
+    extents = (dot(axes[0], spans[0]), dot(axes[1], spans[1]), dot(axes[2], spans[2]))
+    s0, s1, s2 = cross(axes[0], spans[0]), cross(axes[1], spans[1]), cross(axes[2], spans[2])
+    s0, s1 = mixed(s0, 1.0 / extents[0], s0, 0.0), mixed(s1, 1.0 / extents[1], s1, 0.0)
+    slopes = (s0, s1, mixed(s2, 1.0 / extents[2], s2, 0.0))
+    x, y, z = tied_axis(contact, 0, frame), tied_axis(contact, 1, frame), tied_axis(contact, 2, frame)
+    d, e, f = tied_pair(points, contact, 0), tied_pair(points, contact, 1), tied_pair(points, contact, 2)
+    one, two = cross(x, d), cross(y, e)
+    if contact[0] == 3:
+        conditions = (one, two, cross(z, f))
+        return Pose(
+            axes, spans, extents, slopes, conditions, (dot(x, d), dot(y, e), dot(z, f)), (0.0, 0.0, 0.0)
+        )
+    free = cross(one, two)
+    slope = mixed(mixed(slopes[0], 1.0, slopes[1], 1.0), 1.0, slopes[2], 1.0)
+    bend = (0.0, 0.0, 0.0)
+    for k in range(3):
+        unit = (1.0 if k == 0 else 0.0, 1.0 if k == 1 else 0.0, 1.0 if k == 2 else 0.0)
+        first = cross(cross(cross(unit, x), d), two)
+        second = cross(one, cross(cross(unit, y), e))
+        change = dot(slope, first) + dot(slope, second)
+        for axis in range(3):
+            pulled = cross(cross(unit, axes[axis]), spans[axis])
+            change += dot(free, pulled) / extents[axis] - slopes[axis][k] * dot(slopes[axis], free)
+        bend = (
+            change if k == 0 else bend[0],
+            change if k == 1 else bend[1],
+            change if k == 2 else bend[2],
+        )
+    residuals = (dot(x, d), dot(y, e), dot(slope, free))
+    return Pose(axes, spans, extents, slopes, (one, two, bend), residuals, free)
+
+
+@leaf
+def tied_axis(contact: IntArray, tie: int, frame: FloatArray) -> Vector:
+    """Axis of the side in which a tie lies."""
+    return row(frame, contact[7 + 2 * tie] // 2 if tie < contact[0] else 0)
+
+
+@leaf
+def tied_pair(points: FloatArray, contact: IntArray, tie: int) -> Vector:
+    """From the vertex at the end of the axis to the one that ties with it; zero for a tie that is none."""
+    if tie >= contact[0]:
+        return 0.0, 0.0, 0.0
+    return mixed(row(points, 6 + tie), 1.0, row(points, contact[7 + 2 * tie]), -1.0)
+
+
+@leaf
+def solved(rows: tuple[Vector, Vector, Vector], right: Vector) -> tuple[bool, Vector]:
+    """Solution w of <row, w> = right for three rows; False where they are nearly dependent."""
+    first, second, third = cross(rows[1], rows[2]), cross(rows[2], rows[0]), cross(rows[0], rows[1])
+    volume = dot(rows[0], first)
+    if not abs(volume) > APART * length(rows[0]) * length(rows[1]) * length(rows[2]):
+        return False, (0.0, 0.0, 0.0)
+    w = mixed(mixed(first, right[0], second, right[1]), 1.0 / volume, third, right[2] / volume)
+    return True, w
+
+
+@leaf
+def turned(frame: FloatArray, turn: Vector) -> None:
+    """Rotate the axes in `frame` by the angle and about the direction of `turn`."""
+    angle = length(turn)
+    if angle == 0.0:
+        return
+    axis = mixed(turn, 1.0 / angle, turn, 0.0)
+    cosine, sine = np.cos(angle), np.sin(angle)
+    for k in range(3):
+        x = row(frame, k)
+        y = mixed(x, cosine, cross(axis, x), sine)
+        y = mixed(y, 1.0, axis, dot(axis, x) * (1.0 - cosine))
+        for c in range(3):
+            frame[k, c] = y[c]
+
+
+@leaf
+def holds(vertices: FloatArray, contact: IntArray, frame: FloatArray) -> bool:
+    """Whether no vertex is outside the box."""
+    for axis in range(3):
+        x = row(frame, axis)
+        high = along(vertices, contact[1 + 2 * axis], x) + OUTSIDE
+        low = along(vertices, contact[2 + 2 * axis], x) - OUTSIDE
+        for v in range(len(vertices)):
+            here = along(vertices, v, x)
+            if here > high or here < low:
+                return False
+    return True
+
+
+@leaf
+def at_minimum(pose: Pose, contact: IntArray) -> bool:
+    """Whether no small turn makes the box smaller, as far as the contacts tell.
+
+    Where a pair ties, either vertex may end the axis, and some mixture of the slopes that this makes must
+    vanish. Of a side on a facet any three vertices may be named, so that a mixture with a negative share does
+    not tell anything.
+    """
+    slope = mixed(mixed(pose.slopes[0], 1.0, pose.slopes[1], 1.0), 1.0, pose.slopes[2], 1.0)
+    rows = pose.conditions
+    if contact[0] == 2:
+        if not dot(rows[2], pose.free) > 0.0:
+            return False
+        rows = (rows[0], rows[1], pose.free)
+    one, two, three = cross(rows[1], rows[2]), cross(rows[2], rows[0]), cross(rows[0], rows[1])
+    volume = dot(rows[0], one)
+    for t in range(contact[0]):
+        side, alone = contact[7 + 2 * t], True
+        for other in range(contact[0]):
+            alone = alone and (other == t or contact[7 + 2 * other] != side)
+        share = dot(slope, one if t == 0 else (two if t == 1 else three)) / volume
+        share *= pose.extents[side // 2] * (-1.0 if side % 2 == 0 else 1.0)
+        if alone and not -1e-6 < share < 1.0 + 1e-6:
+            return False
+    return True
