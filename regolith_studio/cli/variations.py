@@ -140,15 +140,11 @@ def _vary(
 ) -> None:
     from regolith_studio.cli.inputs import exit_code, read_inputs
     from regolith_studio.jobs.studying import study_coarsening
-    from regolith_studio.session.choices import Choices
-    from regolith_studio.session.variations import present_row
-    from regolith_studio.studies.variations import VARIATIONS, parsed_values
+    from regolith_studio.session.variations import varied_rows
 
     check_box(box)
     with as_bad_use():
-        rows = VARIATIONS[key].rows(present_row(wish), parsed_values(values))
-        for row in rows:
-            Choices(n_faces=row.n_faces)
+        rows = varied_rows(key, wish, values)
     loaded = read_inputs(meshes, unit)
     study = study_coarsening(loaded.particles, wish.order, jobs, rows=rows, box_metric=box)
     conclude(f"{key}_study", study, output, json)

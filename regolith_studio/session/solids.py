@@ -4,14 +4,13 @@ import dataclasses
 from collections.abc import Generator, Sequence
 from dataclasses import dataclass
 
-from regolith_studio.coarsening.weights import presets
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.jobs.coarsening import CoarsenedParticle, CoarseningOrder, coarsen_particle
 from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
 from regolith_studio.session.choices import L_MAX_LIMIT
-from regolith_studio.studies.loss_rows import PAPER_ROWS
+from regolith_studio.studies.loss_rows import StudyRow, paper_rows
 
 
 @dataclass(frozen=True)
@@ -21,7 +20,7 @@ class Solid:
     Parameters
     ----------
     row, column
-        Which preset and which particle, from 0.
+        Which loss and which particle, from 0.
     outcome
         The polyhedron, or why there is none.
     """
@@ -32,20 +31,31 @@ class Solid:
 
 
 def row_labels() -> tuple[str, ...]:
-    """What the rows are called: the presets of Fig. 8."""
-    return tuple(presets()[name].label for name in PAPER_ROWS)
+    """What the rows of Fig. 8 are called."""
+    return tuple(row.label for row in paper_rows())
 
 
-def draw_solids(particles: Sequence[Particle], order: CoarseningOrder) -> Steps:
-    """Coarsen each particle by each row of the paper; partial results and the result are ``list[Solid]``."""
-    total = len(particles) * len(PAPER_ROWS)
+def draw_solids(
+    particles: Sequence[Particle], order: CoarseningOrder, rows: Sequence[StudyRow] | None = None
+) -> Steps:
+    """Coarsen each particle by the loss of each row; partial results and the result are ``list[Solid]``.
+
+    Parameters
+    ----------
+    order
+        Method, faces, settings, seed and target of all.
+    rows
+        Whose weights are taken; those of Fig. 8 by default.
+    """
+    chosen = paper_rows() if rows is None else tuple(rows)
+    total = len(particles) * len(chosen)
     yield Started("Coarsening for the gallery", total)
     done: list[Solid] = []
     for column, particle in enumerate(particles):
         fit = order.expansion.fit(particle.mesh, L_MAX_LIMIT) if order.target == "fit" else None
-        for row, name in enumerate(PAPER_ROWS):
+        for row, each in enumerate(chosen):
             outcome = yield from _outcome(
-                particle, _by_row(order, name), column, fit, Progress(len(done), total)
+                particle, _by_row(order, each), column, fit, Progress(len(done), total)
             )
             done.append(Solid(row, column, outcome))
             yield Partial(list(done))
@@ -53,11 +63,10 @@ def draw_solids(particles: Sequence[Particle], order: CoarseningOrder) -> Steps:
     return done
 
 
-def _by_row(order: CoarseningOrder, preset: str) -> CoarseningOrder:
-    weights = presets()[preset].weights
-    if weights.all_zero:  # the quadric start itself
-        return dataclasses.replace(order, weights=weights, method="quadric", settings=())
-    return dataclasses.replace(order, weights=weights)
+def _by_row(order: CoarseningOrder, row: StudyRow) -> CoarseningOrder:
+    if row.weights.all_zero:  # the quadric start itself
+        return dataclasses.replace(order, weights=row.weights, method="quadric", settings=())
+    return dataclasses.replace(order, weights=row.weights)
 
 
 def _outcome(

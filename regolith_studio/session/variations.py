@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 from regolith_studio.session.choices import Choices
 from regolith_studio.studies.loss_rows import StudyRow, loss_rows, losses
+from regolith_studio.studies.variations import VARIATIONS, parsed_values
 
 CHOSEN = "chosen"
 """Name of the loss whose weights are the present ones."""
@@ -29,3 +30,17 @@ def chosen_rows(names: Sequence[str], choices: Choices) -> tuple[StudyRow, ...]:
     """
     like = present_row(choices)
     return tuple(like if name == CHOSEN else loss_rows((name,), like)[0] for name in names)
+
+
+def varied_rows(key: str, choices: Choices, values: str) -> tuple[StudyRow, ...]:
+    """The rows of a variation of the present choices, from values with commas between them.
+
+    Raises
+    ------
+    InputError
+        If a value is wrong, or the choices leave nothing to vary.
+    """
+    rows = VARIATIONS[key].rows(present_row(choices), parsed_values(values))
+    for row in rows:
+        Choices(n_faces=row.n_faces)
+    return rows

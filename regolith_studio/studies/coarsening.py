@@ -30,6 +30,8 @@ from regolith_studio.studies.tables import Column, Table
 COLUMNS = (*LOSS_KEYS, JACCARD)
 """Columns of the errors: the descriptors of Eq. 8 and the distance of Eq. 7."""
 N_RESAMPLES = 1000
+LEAST_DRAWN = 1e-3
+"""Errors below this percentage are drawn as this."""
 
 Mapper = Callable[[Callable[[Any], Any], Iterable[Any]], Iterable[Any]]
 """Anything that maps a picklable function in order: ``map``, or the ordered map of a process pool."""

@@ -7,12 +7,16 @@ from matplotlib.figure import Figure
 
 from regolith_studio.coarsening.weights import JACCARD, WEIGHT_KEYS
 from regolith_studio.descriptors.catalogue import CATALOGUE
-from regolith_studio.studies.coarsening import COLUMNS, CoarseningStudy, particle_table, rmsre_table
+from regolith_studio.studies.coarsening import (
+    COLUMNS,
+    LEAST_DRAWN,
+    CoarseningStudy,
+    particle_table,
+    rmsre_table,
+)
 from regolith_studio.studies.figure_files import write_figure
 from regolith_studio.studies.tables import write_table
 
-FLOOR = 1e-3
-"""Errors below this percentage are drawn as this."""
 PAPER_SYMBOLS = {JACCARD: "IoU"}
 
 
@@ -22,10 +26,12 @@ def coarsening_figure(study: CoarseningStudy) -> Figure:
     n_rows = len(study.rows)
     figure = Figure(figsize=(9.0, 1.6 + 0.55 * n_rows), layout="constrained")
     axis = figure.subplots()
-    image = axis.imshow(np.log10(np.maximum(values, FLOOR)), aspect="auto", cmap="viridis", vmin=-3, vmax=2)
+    image = axis.imshow(
+        np.log10(np.maximum(values, LEAST_DRAWN)), aspect="auto", cmap="viridis", vmin=-3, vmax=2
+    )
     for r in range(n_rows):
         for k in range(len(COLUMNS)):
-            dark = np.log10(max(values[r, k], FLOOR)) < 0.5
+            dark = np.log10(max(values[r, k], LEAST_DRAWN)) < 0.5
             axis.text(
                 k, r, _printed(values[r, k]), ha="center", va="center", color="white" if dark else "black"
             )
@@ -46,14 +52,22 @@ def face_count_figure(study: CoarseningStudy) -> Figure:
     axis = figure.subplots()
     for k, key in enumerate(COLUMNS):
         axis.fill_between(
-            counts, np.maximum(low[:, k], FLOOR), np.maximum(high[:, k], FLOOR), alpha=0.15, linewidth=0
+            counts,
+            np.maximum(low[:, k], LEAST_DRAWN),
+            np.maximum(high[:, k], LEAST_DRAWN),
+            alpha=0.15,
+            linewidth=0,
         )
         axis.plot(
-            counts, np.maximum(values[:, k], FLOOR), marker="o", markersize=3.5, label=column_symbol(key)
+            counts,
+            np.maximum(values[:, k], LEAST_DRAWN),
+            marker="o",
+            markersize=3.5,
+            label=column_symbol(key),
         )
     axis.set_yscale("log")
     axis.set_xlabel("faces")
-    axis.set_ylabel(f"RMSRE (%), at least {FLOOR:g}; IoU: mean (%)")
+    axis.set_ylabel(f"RMSRE (%), at least {LEAST_DRAWN:g}; IoU: mean (%)")
     axis.grid(True, which="major", alpha=0.3)
     figure.legend(loc="outside right upper", frameon=False)
     return figure

@@ -4,21 +4,18 @@ The floor is the distance between random halves of the measured sample. A model 
 that it has not seen is no larger cannot be told from the sample by that descriptor and sample size.
 """
 
-from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
+from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 import numpy as np
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
-from regolith_studio.descriptors.describe import describe
-from regolith_studio.errors import InputError, RegolithError
+from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.model.draws import Draws, virtual_mesh
+from regolith_studio.model.draws import Draws
 from regolith_studio.model.judging import novelty_in_frame
 from regolith_studio.model.models import MODELS
-from regolith_studio.model.principal_axes import canonical
 from regolith_studio.model.sample import Sample
 from regolith_studio.studies.population_distances import (
     Distances,
@@ -27,21 +24,14 @@ from regolith_studio.studies.population_distances import (
     intervals,
     paired_columns,
 )
+from regolith_studio.studies.population_work import LEVEL, Fitting, Mapper, Workshop
 from regolith_studio.studies.progress import StudyProgress
 
 KEYS = ("equivalent_radius", "surface_area", "aspect_ratio", "sphericity", "convexity")
 """Those of Fig. 4 and two more."""
 N_FLOOR_SPLITS = 30
-LEVEL = 3
-"""Icosphere level of the meshes that are measured: 642 vertices, and the exact volume of the series."""
 FEWEST = 20
-STEP = 25
-"""Particles that one process measures at a time."""
 MOST_DRAWS = 1000
-
-Mapper = Callable[[Callable[[Draws], FloatArray], Iterable[Draws]], Iterable[FloatArray | None]]
-"""Anything that maps a picklable function in order: ``map``, or ``imap`` of a process pool. It may yield
-``None`` while a result is waited for, so that the study can be stopped."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,14 +151,15 @@ def population_study(
     chosen = tuple(MODELS) if models is None else tuple(models)
     drawn = drawn_by_itself(len(sample)) if n_draws is None else n_draws
     _check(sample, chosen, keys, (drawn, n_splits, n_repeats))
-    measure = _Measure(tuple(keys), level, mapper, len(sample) + len(chosen) * n_splits * n_repeats * drawn)
+    work = Workshop(tuple(keys), level, mapper, len(sample) + len(chosen) * n_splits * n_repeats * drawn)
     known = Draws(sample.truncated(l_max).coefficients, "radius", "measured", seed, sample.unit)
-    table = yield from measure(known, "measured particles")
+    table = yield from work.measured(known, "measured particles")
     keep = np.flatnonzero(np.isfinite(table).all(axis=1))
     if len(keep) < FEWEST:
         raise InputError(f"Only {len(keep)} particles bound a solid at l_max = {l_max}; {FEWEST} are needed.")
-    half = _Halves(sample.chosen(keep), table[keep], canonical(known.coefficients[keep]), measure)
-    floor = _floor(half.sample, half.table, seed, measure.size_column)
+    frames = yield from work.framed(known.chosen(keep), l_max, "measured particles")
+    half = _Halves(sample.chosen(keep), table[keep], frames, work)
+    floor = yield from half.floor(seed)
     rounds: dict[str, list[_Round]] = {key: [] for key in chosen}
     for split in range(n_splits):
         for key in chosen:
@@ -179,7 +170,7 @@ def population_study(
         study = PopulationStudy(
             tuple(keys), l_max, sample.unit, half.table, floor, judged, drawn, n_repeats, seed, left_out
         )
-        yield StudyProgress(measure.done, measure.total, f"split {split + 1} of {n_splits}", study)
+        yield StudyProgress(work.done, work.total, f"split {split + 1} of {n_splits}", study)
     return study
 
 
@@ -205,26 +196,6 @@ def _check(
         )
 
 
-class _Measure:
-    """Measures particles and remembers how many, for the progress of a study."""
-
-    def __init__(self, keys: tuple[str, ...], level: int, mapper: Mapper, total: int) -> None:
-        self.keys, self.level, self.mapper, self.total = keys, level, mapper, total
-        self.done = 0
-        self.size_column = keys.index("equivalent_radius") if "equivalent_radius" in keys else None
-
-    def __call__(self, draws: Draws, message: str) -> Generator[StudyProgress, None, FloatArray]:
-        """Descriptors of every particle, shape (n, keys); NaN where its series bounds no solid."""
-        tables = [np.empty((0, len(self.keys)))]
-        parts = (draws.chosen(range(i, min(i + STEP, len(draws)))) for i in range(0, len(draws), STEP))
-        for table in self.mapper(partial(descriptors_of, keys=self.keys, level=self.level), parts):
-            if table is not None:
-                tables.append(table)
-                self.done += len(table)
-            yield StudyProgress(self.done, self.total, message)
-        return np.concatenate(tables)
-
-
 @dataclass(frozen=True, eq=False)
 class _Round:
     """What one drawing from one fit came to; the novelty is worked out for the first drawing of each fit."""
@@ -244,7 +215,17 @@ class _Halves:
     sample: Sample
     table: FloatArray
     frames: FloatArray
-    measure: _Measure
+    work: Workshop
+
+    def floor(self, seed: int) -> Generator[StudyProgress, None, Distances]:
+        """Distances between random halves of the sample."""
+        found = []
+        for split in range(N_FLOOR_SPLITS):
+            train, test = self.sample.halves(seed + split)
+            pair = (self.table[test], self.table[train])
+            found.append(distances([pair], seed, self.work.size_column, first=split))
+            yield self.work.progress(f"noise of sampling, split {split + 1}")
+        return Distances.joined(found)
 
     def rounds(
         self, key: str, options: Any, split: int, plan: tuple[int, int, int]
@@ -252,43 +233,26 @@ class _Halves:
         """Fit to one half, draw, and judge on the other; `plan` is (draws, repeats, seed)."""
         n_draws, n_repeats, seed = plan
         train, test = self.sample.halves(seed + split)
-        fitted = MODELS[key].fit(self.sample.chosen(train), options)
+        seeds = tuple(seed + split * n_repeats + repeat for repeat in range(n_repeats))
+        label = f"{MODELS[key].label}, split {split + 1}"
+        order = Fitting(key, options, self.sample.chosen(train), n_draws, seeds)
+        drawn, criterion = yield from self.work.drawn(order, f"{label}, fit")
         found = []
-        for repeat in range(n_repeats):
-            own = seed + split * n_repeats + repeat
-            draws = fitted.draw(n_draws, own)
-            message = f"{MODELS[key].label}, split {split + 1}, draw {repeat + 1}"
-            drawn = yield from self.measure(draws, message)
-            drawn = drawn[np.isfinite(drawn).all(axis=1)]
-            apart = distances([(self.table[test], drawn)], own, self.measure.size_column)
-            ends = intervals(self.table[test], drawn, apart, own, self.measure.size_column)
-            new = None if repeat else self._novelty(train, draws)
-            criterion = tuple(getattr(fitted, "bic", ()))
-            found.append(_Round(apart, ends, new, 1 - draws.acceptance, drawn, criterion))
+        for repeat, draws in enumerate(drawn):
+            message = f"{label}, draw {repeat + 1}"
+            table = yield from self.work.measured(draws, message)
+            table = table[np.isfinite(table).all(axis=1)]
+            new = None if repeat else (yield from self._novelty(train, draws, message))
+            apart = distances([(self.table[test], table)], seeds[repeat], self.work.size_column)
+            yield self.work.progress(message)
+            ends = intervals(self.table[test], table, apart, seeds[repeat], self.work.size_column)
+            found.append(_Round(apart, ends, new, 1 - draws.acceptance, table, criterion))
         return found
 
-    def _novelty(self, train: IntArray, draws: Draws) -> float:
+    def _novelty(self, train: IntArray, draws: Draws, message: str) -> Generator[StudyProgress, None, float]:
         l_max = round(self.frames.shape[1] ** 0.5) - 1
-        return float(np.median(novelty_in_frame(self.frames[train], canonical(_radius_rows(draws, l_max)))))
-
-
-def descriptors_of(draws: Draws, keys: tuple[str, ...], level: int = LEVEL) -> FloatArray:
-    """Descriptors of each particle, shape (n, keys); NaN where its series bounds no solid."""
-    rows = [_described(draws, index, keys, level) for index in range(len(draws))]
-    return np.array(rows, dtype=np.float64).reshape(len(draws), len(keys))
-
-
-def _described(draws: Draws, index: int, keys: tuple[str, ...], level: int) -> tuple[float, ...]:
-    try:
-        found = describe(virtual_mesh(draws, index, level), keys)
-    except RegolithError:
-        return (np.nan,) * len(keys)
-    return tuple(found[key] for key in keys)
-
-
-def _floor(sample: Sample, table: FloatArray, seed: int, size_column: int | None) -> Distances:
-    halves = (sample.halves(seed + split) for split in range(N_FLOOR_SPLITS))
-    return distances(((table[test], table[train]) for train, test in halves), seed, size_column)
+        drawn = yield from self.work.framed(draws, l_max, message)
+        return float(np.median(novelty_in_frame(self.frames[train], drawn)))
 
 
 def _judged(key: str, rounds: Sequence[_Round]) -> JudgedModel:
@@ -305,10 +269,3 @@ def _judged(key: str, rounds: Sequence[_Round]) -> JudgedModel:
         rounds[0].table,
         rounds[0].criterion,
     )
-
-
-def _radius_rows(draws: Draws, l_max: int) -> FloatArray:
-    """Coefficients of the radius of every draw, shape (n, (l_max + 1)^2)."""
-    if draws.scale == "radius" and draws.l_max == l_max:
-        return draws.coefficients
-    return np.stack([draws.particle(index, l_max).values for index in range(len(draws))])

@@ -60,11 +60,14 @@ class Intervals:
 
 
 def distances(
-    pairs: Iterable[tuple[FloatArray, FloatArray]], seed: int, size_column: int | None
+    pairs: Iterable[tuple[FloatArray, FloatArray]], seed: int, size_column: int | None, first: int = 0
 ) -> Distances:
-    """Between each pair of tables; by volume too if there is a column of equivalent radii."""
+    """Between each pair of tables; by volume too if there is a column of equivalent radii.
+
+    `first` is the number of the first pair, for the generators of the classifiers.
+    """
     near, gaps, energies, accuracies = [], [], [], []
-    for number, (one, two) in enumerate(pairs):
+    for number, (one, two) in enumerate(pairs, first):
         weights = [
             (class_weights(one, w, size_column), class_weights(two, w, size_column)) for w in WEIGHTINGS
         ]

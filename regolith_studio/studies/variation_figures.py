@@ -14,6 +14,7 @@ from regolith_studio.studies.tables import write_table
 from regolith_studio.studies.variations import (
     VARIATIONS,
     beyond_chance,
+    change_text,
     changes,
     descriptor_error,
     efficient,
@@ -83,11 +84,6 @@ def sensitivity_figure(study: CoarseningStudy) -> Figure:
         "change of RMSRE (percentage points); in brackets: may be chance"
     )
     return figure
-
-
-def change_text(points: float) -> str:
-    """A change in percentage points with its sign; 0 where it cannot be seen."""
-    return "0" if abs(points) < 0.005 else f"{points:+.2f}"
 
 
 FIGURES: Mapping[str, Callable[[CoarseningStudy], Figure]] = {

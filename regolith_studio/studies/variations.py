@@ -104,6 +104,11 @@ def beyond_chance(study: CoarseningStudy) -> NDArray[np.bool_]:
     return np.asarray((np.abs(values) > EXACT) & ((low > 0) | (high < 0)))
 
 
+def change_text(points: float) -> str:
+    """A change in percentage points with its sign; 0 where it cannot be seen."""
+    return "0" if abs(points) < 0.005 else f"{points:+.2f}"
+
+
 def tradeoff_table(study: CoarseningStudy) -> Table:
     """Overlap and descriptors of every row, with bands; and whether another row is better in both."""
     values, (low, high) = 100 * study.rmsre, 100 * study.bands

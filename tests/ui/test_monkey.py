@@ -36,7 +36,10 @@ FORBIDDEN = {
     "save_project_as",
 }
 """Commands that ask for files of the machine, or end the game."""
-LONG_WORK = {"toast_details", "batch_go", "lmax_study_start", "coarsening_study_start", "solids_start"}
+LONG_WORK = {
+    *("toast_details", "batch_go", "lmax_study_start", "coarsening_study_start", "solids_start"),
+    *("faces_start", "tradeoff_start", "sensitivity_start"),
+}
 KEYS = (
     *(Qt.Key.Key_Left, Qt.Key.Key_Right, Qt.Key.Key_Up, Qt.Key.Key_Down, Qt.Key.Key_Home, Qt.Key.Key_End),
     *(Qt.Key.Key_PageUp, Qt.Key.Key_PageDown, Qt.Key.Key_Tab, Qt.Key.Key_Space, Qt.Key.Key_Escape),

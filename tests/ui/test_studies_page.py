@@ -1,12 +1,23 @@
 """The page of the studies: figures 3, 7 and 8, live, and as files."""
 
+import json
+
 import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
 
 from regolith_studio.session.solids import row_labels
+from regolith_studio.studies.loss_rows import PAPER_ROWS, losses
 from regolith_studio.ui.app import open_window
+from regolith_studio.ui.pages.studies.rows_bar import RowsBar
 
 SECONDS = 170.0
 ASKED = "regolith_studio.ui.pages.studies.page.QFileDialog.getExistingDirectory"
+
+
+def paper_names():
+    """Those of Fig. 8, in the order of the menu."""
+    return tuple(name for name in losses() if name in PAPER_ROWS)
 
 
 @pytest.fixture
@@ -33,6 +44,120 @@ def test_that_the_gallery_fills_row_by_row_and_can_be_stopped(window, wait):
     page.gallery.frame.start.click()
     window.session.cancel(window.session.tasks[-1].id)
     wait(lambda: not window.session.tasks, SECONDS)
+
+
+def test_that_the_gallery_has_a_row_for_each_loss_that_is_chosen(window, wait, settled):
+    page = window.go("studies")
+    window.session.choose(method="annealing", settings=(("iterations", 2),))
+    settled(window)
+    menu = page.bar.menu
+    page.bar.rows.click()
+    wait(menu.isVisible)
+    wait(menu.isVisible)
+    for name in ("Quadric decimation (no loss)", "All descriptors", "Sphericity only"):
+        action = next(each for each in menu.actions() if each.text() == name)
+        QTest.mouseClick(menu, Qt.MouseButton.LeftButton, pos=menu.actionGeometry(action).center())
+        assert menu.isVisible()  # more can be chosen
+    menu.close()
+    page.gallery.frame.start.click()
+    labels = [losses()[name].label for name in page.bar.names()]
+    wait(lambda: len(page.gallery.value()) == 2 * len(labels), SECONDS)
+    settled(window)
+    shown_rows = [page.gallery.table.verticalHeaderItem(r).text() for r in range(len(labels))]
+    assert shown_rows == labels
+    assert "Sphericity only" in labels
+    assert "All descriptors" not in labels
+
+
+def test_that_one_loss_always_stays(shown):
+    bar = shown(RowsBar())
+    bar.set_names(["only_volume"])
+    assert bar.rows.text().startswith("Volume only")
+    bar._actions["only_volume"].trigger()
+    assert bar.names() == ("only_volume",)
+    bar.set_names(["no such loss"])
+    assert bar.names() == paper_names()
+
+
+def test_that_errors_against_faces_are_drawn_told_and_saved(window, wait, settled, tmp_path, monkeypatch):
+    page = window.go("studies")
+    page.tabs.setCurrentIndex(1)
+    panel = page.variations["faces"]
+    panel.values.setText("8, 12, 30")
+    QTest.keyClick(panel.values, Qt.Key.Key_Return)
+    wait(lambda: "faces" in page.desk.found and not window.session.tasks, SECONDS)
+    settled(window)
+    study = page.desk.found["faces"]
+    volume = panel.part.series[0]
+    assert volume.x == (8.0, 12.0, 30.0)
+    assert volume.y == pytest.approx(100 * study.rmsre[:, 0])
+    told = panel.part.value_at(panel.part.scene_place(12.0, volume.y[1]))
+    assert told.startswith("V\nFaces: 12\n")
+    assert f"({volume.low[1]:.4g} to {volume.high[1]:.4g})" in told
+    header, rows = panel.part.numbers()
+    assert len(header) == len(rows[0]) == 7
+    window.session.choose(seed=5)
+    settled(window)
+    assert panel.frame.remark.text().endswith("computed with other choices")
+    monkeypatch.setattr(ASKED, lambda *_: str(tmp_path))
+    page.save()
+    settled(window)
+    assert {path.name for path in tmp_path.iterdir()} >= {"faces.csv", "faces.json", "faces.png", "faces.svg"}
+
+
+def test_that_a_variation_can_be_stopped_and_another_is_refused_with_a_reason(window, settled):
+    page = window.go("studies")
+    page.variations["tradeoff"].frame.start.click()
+    assert "Quadric decimation has no loss" in window.toast.sentence.text()
+    page.variations["faces"].values.setText("12, many")
+    page.desk.start("faces")
+    assert "numbers with commas" in window.toast.sentence.text()
+    page.variations["faces"].values.setText("12, 20")
+    page.desk.start("faces")
+    task = window.session.tasks[-1]
+    page.variations["faces"].frame.cancelRequested.emit(task.id)
+    settled(window)
+    assert not page.variations["faces"].frame.stop.isVisibleTo(page)
+
+
+def test_that_trade_and_sensitivity_follow_the_method(window, wait, settled):
+    page = window.go("studies")
+    window.session.choose(method="annealing", settings=(("iterations", 2),))
+    settled(window)
+    trade, change = page.variations["tradeoff"], page.variations["sensitivity"]
+    assert trade.values.isVisibleTo(trade)
+    trade.values.setText("0, 2")
+    change.values.setText("3")
+    page.desk.start("tradeoff")
+    page.desk.start("sensitivity")
+    wait(lambda: set(page.desk.found) == {"tradeoff", "sensitivity"} and not window.session.tasks, SECONDS)
+    settled(window)
+    assert [series.label for series in trade.part.series] == ["Overlap × 0", "Overlap × 2", "Overlap only"]
+    table = change.part.table
+    assert (table.rowCount(), table.columnCount()) == (7, 7)
+    assert "percentage points" in table.item(0, 0).toolTip()
+    window.session.choose(method="exact")
+    settled(window)
+    assert not trade.values.isVisibleTo(trade)
+    window.session.adopt([window.session.particles[0].particle])
+    settled(window)
+    assert not page.desk.found
+    assert table.rowCount() == 0
+
+
+def test_that_the_page_is_kept_with_the_project(window):
+    page = window.go("studies")
+    page.bar.set_names(["only_volume", "overlap"])
+    page.bar.box.setCurrentIndex(1)
+    page.variations["sensitivity"].values.setText("0, 9")
+    kept = json.loads(json.dumps(page.state()))
+    page.restore({"rows": "all", "box": 3, "values": {"faces": 8, "beauty": "1"}})  # of another version
+    assert page.state() == kept
+    page.bar.set_names([])
+    page.bar.box.setCurrentIndex(0)
+    page.variations["sensitivity"].values.setText("")
+    page.restore(kept)
+    assert page.state() == kept
 
 
 @pytest.mark.slow

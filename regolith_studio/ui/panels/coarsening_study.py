@@ -24,6 +24,7 @@ class CoarseningStudyPanel(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setObjectName("coarsening_study")
+        self._study: Any = None
         self.table = HeatTable(WAITING)
         self.frame = StudyFrame("coarsening_study", self.table)
         layout = QVBoxLayout(self)
@@ -33,13 +34,34 @@ class CoarseningStudyPanel(QWidget):
     def show_study(self, study: Any, outdated: bool) -> None:
         """Show a ``CoarseningStudy``, or nothing."""
         if study is None or not study.names:
+            self._study = None
             self.table.set_values([], HEADERS, [])
             self.frame.set_remark("")
             return
+        self._study = study
         self.table.set_values([row.label for row in study.rows], HEADERS, study.rmsre)
+        self._tell_bands()
         count = f"RMSRE [%], {len(study.names)} particles"
+        if study.box_metric != "exact":
+            count += f", box of {study.box_metric}"
         self.frame.set_remark(f"{count}; computed with other choices" if outdated else count)
 
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
         self.table.set_theme(theme)
+        self._tell_bands()
+
+    def _tell_bands(self) -> None:
+        """Values with their bootstrap intervals, where a cell is pointed at."""
+        study = self._study
+        if study is None or len(self.table.values()) != len(study.rows):
+            return
+        low, high = 100 * study.bands
+        for r, row in enumerate(study.rows):
+            for k, header in enumerate(HEADERS):
+                item = self.table.table.item(r, k)
+                if item is not None:
+                    item.setToolTip(
+                        f"{row.label}, {header}: {100 * study.rmsre[r, k]:.3g} % "
+                        f"({low[r, k]:.3g} to {high[r, k]:.3g}; {study.confidence:.0%} bootstrap interval)"
+                    )

@@ -2,23 +2,28 @@
 
 from collections.abc import Sequence
 
-from PySide6.QtCore import QSize, Qt
+from PySide6.QtCore import QModelIndex, QPersistentModelIndex, QSize, Qt
 from PySide6.QtGui import QIcon
 from PySide6.QtWidgets import (
     QAbstractItemView,
     QHeaderView,
+    QStyledItemDelegate,
+    QStyleOptionViewItem,
     QTableWidget,
     QTableWidgetItem,
     QVBoxLayout,
     QWidget,
 )
 
-from regolith_studio.session.solids import Solid, row_labels
+from regolith_studio.session.solids import Solid
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.widgets.study_frame import StudyFrame
 from regolith_studio.ui.widgets.thumbnails import picture_of
 
-SIZE = 104
+SIZE = 96
+LETTERS = 22
+"""Pixels below a picture."""
+Index = QModelIndex | QPersistentModelIndex
 COLUMNS = 6
 """Particles that are shown at most."""
 
@@ -36,20 +41,23 @@ class SolidGallery(QWidget):
         self.table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
         self.table.setSelectionMode(QAbstractItemView.SelectionMode.NoSelection)
         self.table.setShowGrid(False)
+        self.table.setItemDelegate(_PictureAbove(self.table))
         self.table.setIconSize(self.table.iconSize().expandedTo(picture_size()))
         self.table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
-        self.table.verticalHeader().setDefaultSectionSize(SIZE + 24)
+        self.table.verticalHeader().setDefaultSectionSize(SIZE + LETTERS)
         self.table.verticalHeader().setMaximumWidth(190)
+        self.table.verticalHeader().setDefaultAlignment(
+            Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter | Qt.TextFlag.TextWordWrap
+        )
         self.frame = StudyFrame("solids", self.table)
         self.frame.set_remark("for the particle on screen and those after it, one row a loss function")
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(self.frame, 1)
 
-    def begin(self, names: Sequence[str]) -> None:
-        """Empty cells for these particles."""
+    def begin(self, names: Sequence[str], labels: Sequence[str]) -> None:
+        """Empty cells for these particles and losses."""
         self._solids = ()
-        labels = row_labels()
         self.table.clear()
         self.table.setRowCount(len(labels))
         self.table.setColumnCount(len(names))
@@ -88,6 +96,16 @@ class SolidGallery(QWidget):
             f"{found.loss:.3g}\n{worst}"
         )
         return item
+
+
+class _PictureAbove(QStyledItemDelegate):
+    """Puts the words of a cell below its picture."""
+
+    def initStyleOption(self, option: QStyleOptionViewItem, index: Index) -> None:
+        super().initStyleOption(option, index)
+        option.decorationPosition = QStyleOptionViewItem.Position.Top
+        option.decorationAlignment = Qt.AlignmentFlag.AlignCenter
+        option.displayAlignment = Qt.AlignmentFlag.AlignCenter
 
 
 def picture_size() -> QSize:

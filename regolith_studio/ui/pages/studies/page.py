@@ -1,41 +1,51 @@
-"""Fig. 3 and Fig. 8 above, Fig. 7 below, each with its own start, progress and stop."""
+"""Fig. 3 and Fig. 8 with its relatives above, Fig. 7 below, each with its own start, progress and stop."""
 
 from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QFileDialog, QHBoxLayout, QTabWidget, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFileDialog, QTabWidget, QVBoxLayout, QWidget
 
+from regolith_studio.errors import RegolithError
 from regolith_studio.jobs.events import Job, Progress, Started, Steps
 from regolith_studio.session.outputs.studies import STUDIES
 from regolith_studio.session.plan import STUDIES as KINDS
 from regolith_studio.session.plan import Kind
 from regolith_studio.session.solids import draw_solids
-from regolith_studio.ui.layout import side_by_side, stacked
+from regolith_studio.session.variations import chosen_rows
+from regolith_studio.studies.variations import VARIATIONS
+from regolith_studio.ui.layout import side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
+from regolith_studio.ui.pages.studies.desk import VariationDesk
 from regolith_studio.ui.pages.studies.gallery import COLUMNS, SolidGallery
+from regolith_studio.ui.pages.studies.rows_bar import RowsBar
+from regolith_studio.ui.pages.studies.variation_panel import VariationPanel
 from regolith_studio.ui.panels.coarsening_study import CoarseningStudyPanel
 from regolith_studio.ui.panels.lmax_study import LmaxStudyPanel
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.widgets.labels import heading
 
-TITLES = {
-    Kind.LMAX_STUDY: "Error against l_max (Fig. 3)",
-    Kind.COARSENING_STUDY: "Error for each loss function (Fig. 8)",
-}
+LMAX_TITLE = "Error against l_max (Fig. 3)"
+COARSENING_TITLE = "Error of coarsened particles"
+TABS = {"faces": "Faces", "tradeoff": "Overlap or descriptors", "sensitivity": "Weights"}
+"""Behind the losses of Fig. 8."""
 
 
 class StudiesPage(PageWidget):
-    """Two studies and a gallery."""
+    """Studies of l_max and of the coarsening, and a gallery."""
 
     def __init__(self, context: PageContext) -> None:
         super().__init__()
         self.setObjectName("studies")
         self._context, self._session = context, context.session
         self.lmax_study, self.coarsening_study = LmaxStudyPanel(), CoarseningStudyPanel()
-        self.gallery = SolidGallery()
+        self.gallery, self.bar = SolidGallery(), RowsBar()
+        self.variations = {key: VariationPanel(key) for key in VARIATIONS}
+        self.tabs = self._tabs()
         self._place()
+        self.desk = VariationDesk(context, self.variations, self.bar)
         self._wire(Kind.LMAX_STUDY, self.lmax_study)
         self._wire(Kind.COARSENING_STUDY, self.coarsening_study)
         self.gallery.frame.startRequested.connect(self.draw_gallery)
@@ -47,15 +57,50 @@ class StudiesPage(PageWidget):
     def set_theme(self, theme: Theme) -> None:
         for part in (self.lmax_study, self.coarsening_study, self.gallery):
             part.set_theme(theme)
+        for panel in self.variations.values():
+            panel.set_theme(theme)
 
     def commands(self) -> Mapping[str, Callable[..., object]]:
         return {"run_all": self.run_all, "save": self.save}
 
+    def state(self) -> dict[str, Any]:
+        return {
+            "rows": list(self.bar.names()),
+            "box": self.bar.box.value(),
+            "values": {key: panel.values.text() for key, panel in self.variations.items()},
+        }
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        rows, values = state.get("rows"), state.get("values")
+        if isinstance(rows, list):
+            self.bar.set_names(rows)
+        if self.bar.box.findData(state.get("box")) >= 0:
+            self.bar.box.setValue(str(state["box"]))
+        for key, text in values.items() if isinstance(values, dict) else ():
+            if key in self.variations and isinstance(text, str):
+                self.variations[key].values.setText(text)
+
     def run_all(self) -> None:
-        """Start both studies and the gallery."""
+        """Start all studies that the choices allow, and the gallery."""
+        if not self._session.particles:
+            self._context.toast.problem("No particle is open; open a mesh first.")
+            return
         for kind in KINDS:
-            self._context.commands.start_study(kind)
+            self.start(kind)
+        for key in VARIATIONS:
+            self.desk.start(key, quietly=True)
         self.draw_gallery()
+
+    def start(self, kind: Kind) -> None:
+        """Start a study; that of the losses with the rows and the box that are chosen."""
+        options: dict[str, Any] = {}
+        if kind is Kind.COARSENING_STUDY:
+            rows = chosen_rows(self.bar.names(), self._session.choices)
+            options = {"rows": rows, "box_metric": self.bar.box.value()}
+        try:
+            self._session.start_study(kind, **options)
+        except RegolithError as error:
+            self._context.toast.problem(str(error))
 
     def draw_gallery(self) -> None:
         """Coarsen the particle on screen and those after it once for each loss function."""
@@ -66,15 +111,17 @@ class StudiesPage(PageWidget):
         ids = [entry.id for entry in entries]
         first = ids.index(self._session.choices.selected) if self._session.choices.selected in ids else 0
         shown = [*entries[first:], *entries[:first]][:COLUMNS]
-        self.gallery.begin([entry.id for entry in shown])
-        job = Job(draw_solids, (tuple(entry.particle for entry in shown), self._session.choices.order))
+        rows = chosen_rows(self.bar.names(), self._session.choices)
+        self.gallery.begin([entry.id for entry in shown], [row.label for row in rows])
+        job = Job(draw_solids, (tuple(entry.particle for entry in shown), self._session.choices.order, rows))
         show = self.gallery.show_solids
         self._context.start("Coarsening for the gallery", job, show, partial=show, lane="gallery")
 
     def save(self) -> None:
         """Ask for a folder and write tables and figures of the studies that are there."""
-        done = {kind: getattr(self._session.results, kind.value) for kind in KINDS}
-        done = {kind: study for kind, study in done.items() if study is not None}
+        found = {kind.value: getattr(self._session.results, kind.value) for kind in KINDS}
+        found |= {f"{key}_study": study for key, study in self.desk.found.items() if study.names}
+        done = tuple((kind, study) for kind, study in found.items() if study is not None)
         if not done:
             self._context.toast.problem("Compute a study first.")
             return
@@ -83,7 +130,7 @@ class StudiesPage(PageWidget):
         if not name:
             return
         self._context.remember("folder", name)
-        job = Job(write_studies, (tuple((kind.value, study) for kind, study in done.items()), Path(name)))
+        job = Job(write_studies, (done, Path(name)))
         self._context.start("Writing figures", job, self._tell_written, lane="save")
 
     def _tell_written(self, paths: tuple[Path, ...]) -> None:
@@ -99,7 +146,7 @@ class StudiesPage(PageWidget):
         def tasks() -> None:
             panel.frame.show_task(next((task for task in session.tasks if task.lane == kind), None))
 
-        panel.frame.startRequested.connect(partial(self._context.commands.start_study, kind))
+        panel.frame.startRequested.connect(partial(self.start, kind))
         panel.frame.cancelRequested.connect(session.cancel)
         wiring.refresh(kind.value, show, slow=True)
         wiring.refresh("tasks", tasks, slow=True)
@@ -117,22 +164,25 @@ class StudiesPage(PageWidget):
         self.gallery.frame.set_count(count)
         self.gallery.frame.start.setText(f"Draw the polyhedra of {min(count, COLUMNS)} particles")
 
+    def _tabs(self) -> QTabWidget:
+        pages = [(self.variations[key], title) for key, title in TABS.items()]
+        return tabs("studies_coarsening", [(self.coarsening_study, "Losses (Fig. 8)"), *pages])
+
     def _place(self) -> None:
         above = side_by_side(
-            [
-                _titled(TITLES[Kind.LMAX_STUDY], self.lmax_study),
-                _titled(TITLES[Kind.COARSENING_STUDY], self.coarsening_study),
-            ],
-            [700, 700],
-            stretch=0,
+            [_titled(LMAX_TITLE, _framed(self.lmax_study)), _titled(COARSENING_TITLE, self.tabs)],
+            [480, 900],
+            stretch=1,
         )
         above.setObjectName("studies_figures")
-        below = _titled("What the polyhedra look like (Fig. 7)", self.gallery)
-        rows = stacked([above, below], [380, 480], stretch=1)
+        below = _titled("What the polyhedra look like (Fig. 7)", _framed(self.gallery))
+        rows = stacked([above, below], [370, 500], stretch=1)
         rows.setObjectName("studies_rows")
-        layout = QHBoxLayout(self)
+        layout = QVBoxLayout(self)
         layout.setContentsMargins(10, 10, 10, 8)
-        layout.addWidget(rows)
+        layout.setSpacing(0)
+        layout.addWidget(self.bar)
+        layout.addWidget(rows, 1)
 
 
 def write_studies(studies: tuple[tuple[str, object], ...], folder: Path) -> Steps:
@@ -150,10 +200,15 @@ def _titled(title: str, part: QWidget) -> QWidget:
     column = QVBoxLayout(frame)
     column.setContentsMargins(0, 0, 0, 0)
     column.addWidget(heading(title))
-    box = QTabWidget()  # for its border and ground
+    column.addWidget(part, 1)
+    return frame
+
+
+def _framed(part: QWidget) -> QTabWidget:
+    """The border and ground of tabs around a part that stands alone."""
+    box = QTabWidget()
     box.tabBar().hide()
     for bare in (box, box.tabBar()):
         bare.setFocusPolicy(Qt.FocusPolicy.NoFocus)  # a hidden bar would hold Tab back
     box.addTab(part, "")
-    column.addWidget(box, 1)
-    return frame
+    return box

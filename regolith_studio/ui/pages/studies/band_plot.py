@@ -1,0 +1,117 @@
+"""Curves and points with the bars of their bootstrap intervals."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pyqtgraph as pg
+from PySide6.QtCore import QPointF
+from PySide6.QtWidgets import QWidget
+
+from regolith_studio.ui.widgets.curve_plot import REACH, Curve, CurvePlot
+from regolith_studio.ui.widgets.plot import Numbers
+from regolith_studio.ui.widgets.plot_files import plain_text
+
+Values = tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Series:
+    """Points with intervals.
+
+    Parameters
+    ----------
+    label, colour
+        For the legend; rich text and hexadecimal RGB.
+    x, y
+        The points.
+    low, high
+        Ends of the interval of each y.
+    left, right
+        Of each x; empty where x is no measurement.
+    line
+        Whether the points are joined.
+    """
+
+    label: str
+    colour: str
+    x: Values
+    y: Values
+    low: Values
+    high: Values
+    left: Values = ()
+    right: Values = ()
+    line: bool = True
+
+
+class BandPlot(CurvePlot):
+    """A bar through each point; pointing at one tells values and intervals."""
+
+    def __init__(
+        self, x: str, y: str, placeholder: str, log_y: bool = False, parent: QWidget | None = None
+    ) -> None:
+        self._series: tuple[Series, ...] = ()
+        self._bars: list[pg.PlotDataItem] = []
+        super().__init__(x, y, placeholder, log_y, parent)
+
+    @property
+    def series(self) -> tuple[Series, ...]:
+        """What is drawn."""
+        return self._series
+
+    def set_series(self, series: Sequence[Series], behind: Sequence[Curve] = ()) -> None:
+        """Draw these instead, and other curves behind them."""
+        self._series = tuple(series)
+        points = [Curve(s.label, s.colour, s.x, s.y, markers=True, line=s.line) for s in self._series]
+        self.set_curves([*behind, *points])
+
+    def numbers(self) -> Numbers:
+        x, y = self._labels
+        rows: list[tuple[str | float, ...]] = [
+            (plain_text(s.label), px, left, right, py, low, high)
+            for s in self._series
+            for px, left, right, py, low, high in zip(
+                s.x, s.left or s.x, s.right or s.x, s.y, s.low, s.high, strict=True
+            )
+        ]
+        return ("curve", x, f"{x}, low", f"{x}, high", y, f"{y}, low", f"{y}, high"), rows
+
+    def redraw(self) -> None:
+        super().redraw()
+        while self._bars:
+            self.canvas.removeItem(self._bars.pop())
+        for s in self._series:
+            self._draw_bars(s.colour, np.repeat(s.x, 2), np.column_stack([s.low, s.high]).ravel())
+            if s.left:
+                self._draw_bars(s.colour, np.column_stack([s.left, s.right]).ravel(), np.repeat(s.y, 2))
+
+    def value_at(self, place: QPointF) -> str:
+        """The nearest point, its values and their intervals, in words; empty if it is far."""
+        best, words = REACH, ""
+        for s in self._series:
+            for number, (x, y) in enumerate(zip(s.x, s.y, strict=True)):
+                seen = self.scene_place(x, y)
+                away = float(np.hypot(seen.x() - place.x(), seen.y() - place.y()))
+                if away < best:
+                    best, words = away, self._words(s, number)
+        return words
+
+    def scene_place(self, x: float, y: float) -> QPointF:
+        """Where a point is drawn, in the coordinates of the scene."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            high = float(np.log10(y)) if self._log_y else y
+        place: QPointF = self.canvas.plotItem.vb.mapViewToScene(QPointF(x, high))
+        return place
+
+    def _words(self, s: Series, n: int) -> str:
+        x, y = (plain_text(label) for label in self._labels)
+        across = f" ({s.left[n]:.4g} to {s.right[n]:.4g})" if s.left else ""
+        return (
+            f"{plain_text(s.label)}\n{x}: {s.x[n]:.4g}{across}\n"
+            f"{y}: {s.y[n]:.4g} ({s.low[n]:.4g} to {s.high[n]:.4g})"
+        )
+
+    def _draw_bars(self, colour: str, x: "np.typing.NDArray[np.float64]", y: object) -> None:
+        bar = self.canvas.plot(np.asarray(x, dtype=float), np.asarray(y, dtype=float), connect="pairs")
+        bar.setPen(self.pen(colour))
+        self._bars.append(bar)

@@ -1,0 +1,98 @@
+"""What each changed weight changes: percentage points, red where an error grows, blue where it falls."""
+
+import numpy as np
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QColor, QResizeEvent
+from PySide6.QtWidgets import (
+    QAbstractItemView,
+    QHeaderView,
+    QLabel,
+    QStackedLayout,
+    QTableWidget,
+    QTableWidgetItem,
+    QWidget,
+)
+
+from regolith_studio.studies.coarsening import CoarseningStudy
+from regolith_studio.studies.variations import beyond_chance, change_text, changes
+from regolith_studio.ui.theme import Theme, current_theme
+
+ROWS_SHARE = 0.33
+"""Of the width, that the names of the rows take at most."""
+
+
+class ChangeTable(QWidget):
+    """A row a change, a column a descriptor; a sentence where there is nothing yet."""
+
+    def __init__(self, placeholder: str, headers: tuple[str, ...], parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._theme, self._headers = current_theme(), headers
+        self._study: CoarseningStudy | None = None
+        self.table = QTableWidget()
+        self.table.setAccessibleName("Changes of errors in percentage points")
+        self.table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
+        self.table.setSelectionMode(QAbstractItemView.SelectionMode.NoSelection)
+        self.table.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self.table.setShowGrid(False)
+        self.table.setTextElideMode(Qt.TextElideMode.ElideNone)
+        self.table.setWordWrap(False)
+        self.table.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.table.setFrameShape(self.table.Shape.NoFrame)
+        self.table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
+        self.table.horizontalHeader().setMinimumSectionSize(24)
+        self.table.verticalHeader().setTextElideMode(Qt.TextElideMode.ElideRight)
+        self.table.verticalHeader().setDefaultSectionSize(self.table.fontMetrics().height() + 5)
+        empty = QLabel(placeholder)
+        empty.setProperty("role", "remark")
+        empty.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        empty.setWordWrap(True)
+        self._stack = QStackedLayout(self)
+        self._stack.addWidget(empty)
+        self._stack.addWidget(self.table)
+
+    def show_study(self, study: CoarseningStudy | None) -> None:
+        """Show the changes of a study of the sensitivity, or the sentence."""
+        self._study = study if study is not None and len(study.rows) > 1 else None
+        self._stack.setCurrentIndex(1 if self._study else 0)
+        self._fill()
+
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        self._theme = theme
+        self._fill()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self.table.verticalHeader().setMaximumWidth(round(ROWS_SHARE * self.width()))
+
+    def _fill(self) -> None:
+        study = self._study
+        if study is None:
+            self.table.setRowCount(0)
+            return
+        labels = [row.label for row in study.rows[1:]]
+        values, (low, high) = (100 * each for each in changes(study))
+        sure, given = beyond_chance(study), 100 * study.rmsre
+        top = float(np.abs(values).max(initial=0.0)) or 1.0
+        self.table.setRowCount(len(labels))
+        self.table.setColumnCount(len(self._headers))
+        self.table.setVerticalHeaderLabels(labels)
+        self.table.setHorizontalHeaderLabels(list(self._headers))
+        for r, label in enumerate(labels):
+            for k, header in enumerate(self._headers):
+                value = float(values[r, k])
+                text = change_text(value)
+                item = QTableWidgetItem(text if sure[r, k] or text == "0" else f"({text})")
+                item.setTextAlignment(Qt.AlignmentFlag.AlignCenter)
+                item.setBackground(self._ground(value / top))
+                item.setToolTip(
+                    f"{label}, {header}: {given[0, k]:.3g} % becomes {given[r + 1, k]:.3g} %\n"
+                    f"{value:+.3g} percentage points ({low[r, k]:+.3g} to {high[r, k]:+.3g})"
+                    + ("" if sure[r, k] else "\nThis may be chance.")
+                )
+                self.table.setItem(r, k, item)
+
+    def _ground(self, share: float) -> QColor:
+        colour = QColor(self._theme.bad if share > 0 else self._theme.fit)
+        colour.setAlphaF(0.65 * min(1.0, abs(share)) ** 0.5 if abs(share) > 1e-3 else 0.0)
+        return colour

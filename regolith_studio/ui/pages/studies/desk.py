@@ -1,0 +1,106 @@
+"""Starts the variations of the coarsening, keeps what was found, and shows it."""
+
+from collections.abc import Mapping
+from functools import partial
+
+from regolith_studio.errors import RegolithError
+from regolith_studio.jobs.events import Job
+from regolith_studio.jobs.studying import study_coarsening
+from regolith_studio.session.choices import Choices
+from regolith_studio.session.plan import Kind, depends
+from regolith_studio.session.variations import varied_rows
+from regolith_studio.studies.coarsening import CoarseningStudy
+from regolith_studio.studies.variations import VARIATIONS
+from regolith_studio.ui.page import PageContext
+from regolith_studio.ui.pages.studies.rows_bar import RowsBar
+from regolith_studio.ui.pages.studies.variation_panel import VariationPanel
+
+
+class VariationDesk:
+    """A lane for each variation: they can run beside each other, each can be stopped.
+
+    Parameters
+    ----------
+    panels
+        By key of :data:`~regolith_studio.studies.variations.VARIATIONS`.
+    bar
+        Says by which box diameters are measured.
+    """
+
+    def __init__(self, context: PageContext, panels: Mapping[str, VariationPanel], bar: RowsBar) -> None:
+        self._context, self._session, self._panels, self._bar = context, context.session, panels, bar
+        self._found: dict[str, CoarseningStudy] = {}
+        self._made: dict[str, Choices] = {}
+        self._shown: dict[str, object] = {}
+        self._ids: tuple[str, ...] = ()
+        for key, panel in panels.items():
+            panel.startRequested.connect(partial(self.start, key))
+            panel.frame.cancelRequested.connect(self._session.cancel)
+        context.wiring.refresh("particles", self._follow_particles)
+        context.wiring.refresh("tasks choices", self._refresh, slow=True)
+
+    @property
+    def found(self) -> Mapping[str, CoarseningStudy]:
+        """Studies that are there, by key; one that runs or was stopped as far as it has come."""
+        return self._found
+
+    def start(self, key: str, quietly: bool = False) -> None:
+        """Start a variation with the present choices.
+
+        Parameters
+        ----------
+        quietly
+            Whether a variation that the choices do not allow is left out without a word.
+        """
+        choices, particles = self._session.choices, tuple(e.particle for e in self._session.particles)
+        try:
+            rows = varied_rows(key, choices, self._panels[key].values.text())
+        except RegolithError as error:
+            if not quietly:
+                self._context.toast.problem(str(error))
+            return
+        if not particles:
+            self._context.toast.problem("No particle is open; open a mesh first.")
+            return
+        options = {"rows": rows, "box_metric": self._bar.box.value()}
+        job = Job(study_coarsening, (particles, choices.order), options)
+        self._made[key] = choices
+        take = partial(self._take, key)
+        self._context.start(VARIATIONS[key].title, job, partial(self._end, key), partial=take, lane=key)
+
+    def _take(self, key: str, study: CoarseningStudy) -> None:
+        """Keep a study so far; it is drawn at the next beat."""
+        self._found[key] = study
+
+    def _end(self, key: str, study: CoarseningStudy) -> None:
+        self._take(key, study)
+        self._refresh()
+
+    def _follow_particles(self) -> None:
+        entries = self._session.particles
+        for panel in self._panels.values():
+            panel.frame.set_count(len(entries))
+        ids = tuple(entry.id for entry in entries)
+        if ids != self._ids:
+            self._ids = ids
+            for key in self._panels:
+                self._context.stop(key)
+            self._found.clear()
+            self._refresh()
+
+    def _refresh(self) -> None:
+        for key, panel in self._panels.items():
+            lane = f"{self._context.key}:{key}"
+            panel.frame.show_task(next((task for task in self._session.tasks if task.lane == lane), None))
+            panel.show_method(self._session.choices.method)
+            study = self._found.get(key)
+            state = (study, study is not None and self._is_outdated(key))
+            if state != self._shown.get(key):
+                self._shown[key] = state
+                panel.show_study(*state)
+
+    def _is_outdated(self, key: str) -> bool:
+        made, now = self._made[key], self._session.choices
+        if key == "faces":
+            made = made.replaced(n_faces=now.n_faces)
+        return made.weights != now.weights or depends(Kind.COARSENING_STUDY, made, now)

@@ -1,0 +1,114 @@
+"""Which losses are the rows of figures 7 and 8, and by which box the diameters are measured."""
+
+from collections.abc import Sequence
+from functools import partial
+
+from PySide6.QtCore import Signal
+from PySide6.QtGui import QAction, QMouseEvent
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QMenu, QToolButton, QWidget
+
+from regolith_studio.session.variations import loss_names
+from regolith_studio.studies.loss_rows import ALONE, PAPER_ROWS
+from regolith_studio.ui.widgets.choice_box import ChoiceBox
+
+ARROW = "  ▾"
+BOXES = {"exact": "exact minimum volume", "trimesh": "trimesh's heuristic (paper)"}
+BOX_TIP = (
+    "Diameters and aspect ratio come from this box. The heuristic of the paper's program is no minimum; "
+    "it is here to compare numbers."
+)
+
+
+class RowsBar(QWidget):
+    """One line above the studies; emits ``valueChanged``."""
+
+    valueChanged = Signal()  # noqa: N815
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("study_rows_bar")
+        self._actions: dict[str, QAction] = {}
+        self.rows = QToolButton()
+        self.rows.setObjectName("study_rows")
+        self.rows.setAccessibleName("Losses of figures 7 and 8")
+        self.rows.setToolTip("Losses that are the rows of figures 7 and 8")
+        self.menu = self._menu()
+        self.rows.clicked.connect(self._open)
+        self.box = ChoiceBox("study_box", "Bounding box of the diameters", BOXES)
+        self.box.setMinimumContentsLength(max(map(len, BOXES.values())))
+        self.box.setToolTip(BOX_TIP)
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 4)
+        row.setSpacing(8)
+        row.addWidget(QLabel("Losses"))
+        row.addWidget(self.rows)
+        row.addSpacing(16)
+        row.addWidget(QLabel("Bounding box"))
+        row.addWidget(self.box)
+        row.addStretch(1)
+        self.box.currentIndexChanged.connect(lambda _index: self.valueChanged.emit())
+        self.set_names(PAPER_ROWS)
+
+    def names(self) -> tuple[str, ...]:
+        """Keys of the losses that are chosen, in the order of the menu; never none."""
+        return tuple(name for name, action in self._actions.items() if action.isChecked())
+
+    def set_names(self, names: Sequence[str]) -> None:
+        """Choose others; those that are not known are left out, and none stands for those of Fig. 8."""
+        known = [name for name in names if name in self._actions] or PAPER_ROWS
+        for wanted in (True, False):  # never none in between
+            for name, action in self._actions.items():
+                if (name in known) is wanted:
+                    action.setChecked(wanted)
+        self._tell()
+
+    def _menu(self) -> QMenu:
+        menu = _StayingMenu(self)
+        menu.setObjectName("study_rows_menu")
+        for words, names in (
+            ("Those of Fig. 8", PAPER_ROWS),
+            ("Each term alone", ("overlap", *(name for name in loss_names() if name.startswith(ALONE)))),
+        ):
+            menu.addAction(words).triggered.connect(partial(self._choose, names))
+        menu.addSeparator()
+        for name, label in loss_names().items():
+            action = menu.addAction(label)
+            action.setCheckable(True)
+            action.toggled.connect(partial(self._toggled, name))
+            self._actions[name] = action
+        return menu
+
+    def _open(self) -> None:
+        """Without waiting for an answer, as a button's own menu would."""
+        self.menu.popup(self.rows.mapToGlobal(self.rows.rect().bottomLeft()))
+
+    def _choose(self, names: Sequence[str], _checked: bool = False) -> None:
+        self.set_names(names)
+        self.valueChanged.emit()
+
+    def _toggled(self, name: str, _on: bool) -> None:
+        if not self.names():  # the last one stays
+            self._actions[name].setChecked(True)
+            return
+        self._tell()
+        self.valueChanged.emit()
+
+    def _tell(self) -> None:
+        names = self.names()
+        words = f"{len(names)} losses"
+        if names == tuple(name for name in self._actions if name in PAPER_ROWS):
+            words = "Rows of Fig. 8"
+        elif len(names) == 1:
+            words = self._actions[names[0]].text()
+        self.rows.setText(words + ARROW)
+
+
+class _StayingMenu(QMenu):
+    """Stays open while its entries are checked, so that several can be chosen."""
+
+    def mouseReleaseEvent(self, event: QMouseEvent) -> None:
+        action = self.actionAt(event.position().toPoint())
+        if action is not None and action.isCheckable():
+            action.trigger()
+            return
+        super().mouseReleaseEvent(event)

@@ -1,0 +1,175 @@
+"""One variation of the coarsening: its values, its start and stop, and what it shows."""
+
+from collections.abc import Callable, Mapping
+from typing import Protocol
+
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QLineEdit, QVBoxLayout, QWidget
+
+from regolith_studio.coarsening.weights import JACCARD
+from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
+from regolith_studio.scene.palette import DESCRIPTOR_COLOURS
+from regolith_studio.studies.coarsening import COLUMNS, LEAST_DRAWN, CoarseningStudy
+from regolith_studio.studies.variations import VARIATIONS, descriptor_error, efficient
+from regolith_studio.ui.pages.studies.band_plot import BandPlot, Series
+from regolith_studio.ui.pages.studies.change_table import ChangeTable
+from regolith_studio.ui.theme import Theme
+from regolith_studio.ui.widgets.curve_plot import Curve
+from regolith_studio.ui.widgets.labels import plain_symbol, rich_symbol
+from regolith_studio.ui.widgets.study_frame import StudyFrame
+
+OVERLAP = "Jaccard"
+ON_AND_OFF = "The method keeps descriptors exactly: each is asked for or not, whatever its weight."
+
+
+class Shown(Protocol):
+    """What a panel places below its controls."""
+
+    def show_study(self, study: CoarseningStudy | None) -> None: ...
+    def set_theme(self, theme: Theme) -> None: ...
+
+
+class FacesPlot(BandPlot):
+    """A curve a descriptor against the number of faces."""
+
+    def __init__(self) -> None:
+        super().__init__(
+            "Faces",
+            f"RMSRE [%], at least {LEAST_DRAWN:g}",
+            "Root mean squared relative error of each descriptor against the number of faces.",
+            log_y=True,
+        )
+
+    def show_study(self, study: CoarseningStudy | None) -> None:
+        """Draw a study of the faces, or nothing."""
+        if study is None:
+            self.set_series([])
+            return
+        x = tuple(float(row.n_faces) for row in study.rows)
+        values, (low, high) = (each.clip(min=LEAST_DRAWN) for each in (100 * study.rmsre, 100 * study.bands))
+        self.set_series(
+            [
+                Series(
+                    f"{OVERLAP} (mean)" if key == JACCARD else rich_symbol(CATALOGUE[key].symbol),
+                    DESCRIPTOR_COLOURS[k % len(DESCRIPTOR_COLOURS)],
+                    x,
+                    tuple(values[:, k]),
+                    tuple(low[:, k]),
+                    tuple(high[:, k]),
+                )
+                for k, key in enumerate(COLUMNS)
+            ]
+        )
+
+
+class TradeoffPlot(BandPlot):
+    """A point a row, overlap to the right, descriptors up; a line joins what none is better than."""
+
+    def __init__(self) -> None:
+        super().__init__(
+            "Mean Jaccard distance [%]",
+            "Mean RMSRE of six descriptors [%]",
+            "What overlap costs in descriptors, and descriptors in overlap: lower left is better.",
+        )
+
+    def show_study(self, study: CoarseningStudy | None) -> None:
+        """Draw a study of the trade-off, or nothing."""
+        if study is None:
+            self.set_series([])
+            return
+        x, (left, right) = 100 * study.rmsre[:, -1], 100 * study.bands[..., -1]
+        y = 100 * descriptor_error(study.rmsre)
+        low, high = 100 * study.band_of(descriptor_error(study.resampled))
+        front = list(efficient(study))
+        line = Curve("none is better in both", self.theme.muted, tuple(x[front]), tuple(y[front]), dash=True)
+        series = [
+            Series(
+                row.label,
+                DESCRIPTOR_COLOURS[r % len(DESCRIPTOR_COLOURS)],
+                (float(x[r]),),
+                (float(y[r]),),
+                (float(low[r]),),
+                (float(high[r]),),
+                (float(left[r]),),
+                (float(right[r]),),
+                line=False,
+            )
+            for r, row in enumerate(study.rows)
+        ]
+        self.set_series(series, behind=[line])
+
+
+def sensitivity_part() -> ChangeTable:
+    """The table of a sensitivity."""
+    headers = (*(plain_symbol(CATALOGUE[key].symbol) for key in LOSS_KEYS), OVERLAP)
+    return ChangeTable(
+        "What each error becomes when one weight of the loss is changed: which weights matter.", headers
+    )
+
+
+PARTS: Mapping[str, Callable[[], QWidget]] = {
+    "faces": FacesPlot,
+    "tradeoff": TradeoffPlot,
+    "sensitivity": sensitivity_part,
+}
+"""What shows each variation, by its key."""
+
+
+class VariationPanel(QWidget):
+    """Emits ``startRequested`` and ``cancelRequested(task)`` of its frame."""
+
+    startRequested = Signal()  # noqa: N815
+
+    def __init__(self, key: str, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName(f"{key}_study")
+        self._variation = VARIATIONS[key]
+        self.values = QLineEdit(", ".join(f"{value:g}" for value in self._variation.values))
+        self.values.setObjectName(f"{key}_values")
+        self.values.setAccessibleName(self._variation.asks)
+        self.values.setToolTip("Numbers with commas between them; Return starts the study")
+        self.asked = QLabel(self._variation.asks)
+        self.part = PARTS[key]()
+        self.part.setAccessibleName(self._variation.title)
+        self.frame = StudyFrame(key, self.part)
+        asking = QHBoxLayout()
+        asking.setContentsMargins(8, 6, 8, 0)
+        asking.setSpacing(8)
+        asking.addWidget(self.asked)
+        asking.addWidget(self.values, 1)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.setSpacing(0)
+        layout.addLayout(asking)
+        layout.addWidget(self.frame, 1)
+        self.values.returnPressed.connect(self.startRequested)
+        self.frame.startRequested.connect(self.startRequested)
+
+    def show_method(self, method: str) -> None:
+        """Ask for values where the method makes something of them."""
+        takes = self._variation.takes_values(method)
+        self.values.setVisible(takes)
+        self.asked.setText(self._variation.asks if takes else ON_AND_OFF)
+
+    def show_study(self, study: CoarseningStudy | None, outdated: bool) -> None:
+        """Show what was found, or nothing."""
+        shown: Shown = self.part  # type: ignore[assignment]  # every part of PARTS is one
+        shown.show_study(study)
+        self.frame.set_remark("" if study is None else said_of(study, outdated))
+
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        shown: Shown = self.part  # type: ignore[assignment]  # every part of PARTS is one
+        shown.set_theme(theme)
+
+
+def said_of(study: CoarseningStudy, outdated: bool) -> str:
+    """Particles, box, requests that could not be met, and whether the choices have moved on."""
+    words = [f"{len(study.names)} particles" if len(study.names) != 1 else "1 particle"]
+    if study.box_metric != "exact":
+        words.append(f"box of {study.box_metric}")
+    if study.failures:
+        words.append(f"{len(study.failures)} left out")
+    if unmet := sum(study.n_unmet):
+        words.append(f"{unmet} of {len(study.names) * len(study.rows)} requests not met exactly")
+    return "; ".join([", ".join(words), *(["computed with other choices"] if outdated else [])])
