@@ -1,7 +1,8 @@
 """How long and how much memory it takes to get from volumes to particles, also where volumes are larger.
 
 Run as ``python -m benchmarks.imaging [--edge 512] [--grey] [--memory GIB]``. Writes a volume of many grains
-into a temporary folder (one grain a cell of 51 voxels: 1,000 grains at 512 voxels an edge, 8,000 at 1,024),
+into a temporary folder (one grain a cell of 51 voxels: 1,000 grains at 512 voxels an edge, 8,000 at 1,024;
+``--share 0.25`` fills every fourth cell only, ``--packed`` writes a compressed HDF5 file instead of NPY),
 then makes its particles, each forgotten once it is made, in a process of its own whose private memory
 (RLIMIT_DATA) is limited. Reported are seconds by the clock and by the processor, and the peak of resident
 memory; pages of files count in the latter.
@@ -19,6 +20,7 @@ from collections.abc import Generator
 from pathlib import Path
 from typing import Any
 
+import h5py
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
@@ -47,17 +49,31 @@ def grain_masks() -> list[NDArray[np.bool_]]:
     return masks
 
 
-def write_volume(path: Path, edge: int, grey: bool, seed: int = 0) -> int:
-    """Write an NPY volume, slices first, layer of cells by layer; returns the number of grains."""
-    generator, masks, count = np.random.default_rng(seed), grain_masks(), 0
-    dtype = np.uint8 if grey else np.uint16
-    volume = np.lib.format.open_memmap(path, "w+", dtype, (edge, edge, edge))
+def write_volume(path: Path, edge: int, grey: bool, share: float = 1.0, seed: int = 0) -> int:
+    """Write an NPY or HDF5 volume, slices first, layer of cells by layer; returns the number of grains."""
+    shape, dtype = (edge, edge, edge), np.dtype(np.uint8 if grey else np.uint16)
+    if path.suffix == ".npy":
+        volume = np.lib.format.open_memmap(path, "w+", dtype, shape)
+        count = _fill(volume, edge, grey, share, np.random.default_rng(seed))
+        volume.flush()
+        return count
+    with h5py.File(path, "w") as file:
+        data = file.create_dataset(
+            "exported_data", shape, dtype, chunks=(CELL, 256, 256), compression="gzip", compression_opts=1
+        )
+        return _fill(data, edge, grey, share, np.random.default_rng(seed))
+
+
+def _fill(volume: Any, edge: int, grey: bool, share: float, generator: np.random.Generator) -> int:
+    masks, count = grain_masks(), 0
     per_edge = edge // CELL
     for layer in range(-(-edge // CELL)):
         top = layer * CELL
         depth = min(CELL, edge - top)
         slab = np.zeros((CELL, edge, edge), dtype=np.uint16)
         for row, column in np.ndindex(per_edge, per_edge) if depth == CELL else ():
+            if share < 1.0 and generator.random() >= share:
+                continue
             mask = masks[generator.integers(len(masks))].transpose(generator.permutation(3))
             shift = [int(generator.integers(2, CELL - 1 - n)) for n in mask.shape]
             count += 1
@@ -65,7 +81,6 @@ def write_volume(path: Path, edge: int, grey: bool, seed: int = 0) -> int:
             target = slab[z : z + mask.shape[0], y : y + mask.shape[1], x : x + mask.shape[2]]
             target[mask] = count
         volume[top : top + depth] = _scanned(slab[:depth], generator) if grey else slab[:depth]
-    volume.flush()
     return count
 
 
@@ -118,9 +133,8 @@ def main() -> int:
     )
     options.add_argument("--edge", type=int, default=512)
     options.add_argument("--grey", action="store_true")
-    options.add_argument(
-        "--measure", action="store_true", help="descriptors and health too, by two processes"
-    )
+    options.add_argument("--share", type=float, default=1.0, help="of the cells that hold a grain")
+    options.add_argument("--packed", action="store_true", help="compressed HDF5 instead of NPY")
     options.add_argument("--memory", type=float, default=0.0, help="limit of private memory, in GiB")
     options.add_argument("--folder", type=Path, default=None)
     options.add_argument("--child", type=Path, help=argparse.SUPPRESS)
@@ -129,8 +143,8 @@ def main() -> int:
         print(json.dumps(extract(wish.child, wish.grey, wish.memory)))
         return 0
     with tempfile.TemporaryDirectory(dir=wish.folder) as folder:
-        path = Path(folder) / "volume.npy"
-        n_grains = write_volume(path, wish.edge, wish.grey)
+        path = Path(folder) / ("volume.h5" if wish.packed else "volume.npy")
+        n_grains = write_volume(path, wish.edge, wish.grey, wish.share)
         size = path.stat().st_size / 2**30
         print(f"{wish.edge}^3 voxels, {n_grains} grains, {size:.2f} GiB", flush=True)
         call = [sys.executable, "-m", "benchmarks.imaging", "--child", str(path)]

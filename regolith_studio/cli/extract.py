@@ -96,6 +96,14 @@ def extract(
             "--border", help="Grains that the border cuts: exclude (and weight) or keep.", metavar="HOW"
         ),
     ] = "exclude",
+    surface: Annotated[
+        str,
+        typer.Option(
+            "--surface",
+            help="Grey volumes: take surfaces from the grey values about each grain, or from its mask.",
+            metavar="FROM",
+        ),
+    ] = "grey",
     recipe: Annotated[
         Path | None,
         typer.Option("--recipe", help="Take all settings from an extraction.json instead.", metavar="FILE"),
@@ -129,7 +137,9 @@ def extract(
         settings = (
             read_grain_recipe(recipe)
             if recipe
-            else _recipe(denoise, threshold, dark, opening, closing, h_maxima, split, min_voxels, border)
+            else _recipe(
+                denoise, threshold, dark, opening, closing, h_maxima, split, min_voxels, border, surface
+            )
         )
         if unit:
             unit_factor(unit)
@@ -186,6 +196,7 @@ def _recipe(
     split: bool,
     min_voxels: int,
     border: str,
+    surface: str,
 ) -> "GrainRecipe":
     from regolith_studio.imaging.extraction import ExtractionSettings
     from regolith_studio.imaging.segmentation.cleaning import CleaningSettings
@@ -204,7 +215,11 @@ def _recipe(
             CleaningSettings(opening, closing, min_voxels=least),
             SplittingSettings(split, h_maxima),
         ),
-        ExtractionSettings(exclude_border=border == "exclude", min_voxels=min_voxels),
+        ExtractionSettings(
+            exclude_border=border == "exclude",
+            min_voxels=min_voxels,
+            surface=surface,  # type: ignore[arg-type]  # checked by the settings
+        ),
     )
 
 

@@ -3,12 +3,14 @@
 A binary mask contoured as it is overstates the surface area by up to 9 % at any resolution. Each
 contour is therefore smoothed (windowed sinc) and scaled back to the volume of its voxels; on
 spheres, ellipsoids and polyhedra of 24 voxels a diameter and more the area is then right within 2 %.
+Where the grey values are at hand, they can tell the surface and above all its volume better.
 
 The volume is seen slab by slab: once for the sizes and boxes of the labels, once to cut them out.
 """
 
-from collections.abc import Generator
+from collections.abc import Generator, Iterator, Mapping
 from dataclasses import dataclass
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,13 +20,17 @@ from regolith_studio.geometry.arrays import BoolArray, FloatArray
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle, Source
 from regolith_studio.imaging.bodies import largest_body, pores_filled
-from regolith_studio.imaging.boxes import Box, touches
+from regolith_studio.imaging.boxes import Box, box_between, grown, touches, within
 from regolith_studio.imaging.contour import contour
-from regolith_studio.imaging.label_table import label_masks, label_table
+from regolith_studio.imaging.grey_surface import MARGIN, grey_mesh
+from regolith_studio.imaging.label_table import GrainCrop, grain_crops, label_masks, label_table
 from regolith_studio.imaging.slabs import SlabSource
 from regolith_studio.imaging.smoothing import windowed_sinc, with_volume
 
-_COARSE = "Only"
+Surface = Literal["mask", "grey"]
+SURFACES: tuple[Surface, ...] = get_args(Surface)
+
+_COARSE, _OF_MASK = "Only", "The surface is that of the mask"
 
 
 @dataclass(frozen=True)
@@ -43,6 +49,9 @@ class ExtractionSettings:
         Close pores that have no way out.
     iterations, pass_band
         Of the smoothing (:func:`~regolith_studio.imaging.smoothing.windowed_sinc`).
+    surface
+        What surfaces are taken from: the ``grey`` values about each label where they are at hand
+        (:mod:`~regolith_studio.imaging.grey_surface`), or its ``mask`` always.
     """
 
     exclude_border: bool = True
@@ -51,6 +60,7 @@ class ExtractionSettings:
     fill_pores: bool = True
     iterations: int = 20
     pass_band: float = 0.13
+    surface: Surface = "grey"
 
     def __post_init__(self) -> None:
         if self.min_voxels < 0:
@@ -59,6 +69,10 @@ class ExtractionSettings:
             raise InputError(
                 f"Smoothing takes 0 or more iterations and a pass band up to 2, got {self.iterations} "
                 f"and {self.pass_band}."
+            )
+        if self.surface not in SURFACES:
+            raise InputError(
+                f"Surfaces are taken from the {' or the '.join(SURFACES)}, not {self.surface!r}."
             )
 
 
@@ -74,12 +88,15 @@ class Extracted:
         Its number in the volume, and its size there.
     weight
         Miles-Lantuejoul weight (:func:`border_weight`), 1 where border grains are kept.
+    surface
+        What its surface was taken from: of the mask, too, where the grey values do not tell it.
     """
 
     particle: Particle
     label: int
     n_voxels: int
     weight: float
+    surface: Surface = "mask"
 
 
 @dataclass(frozen=True)
@@ -139,9 +156,10 @@ def extract_particles(
     settings: ExtractionSettings | None = None,
     group: str = "",
     source: Source | None = None,
+    grey: SlabSource | None = None,
 ) -> Extraction:
     """Run :func:`extraction_steps` to its end."""
-    steps = extraction_steps(volume, settings, group, source)
+    steps = extraction_steps(volume, settings, group, source, grey=grey)
     while True:
         try:
             next(steps)
@@ -156,6 +174,7 @@ def extraction_steps(
     group: str = "",
     source: Source | None = None,
     collect: bool = True,
+    grey: SlabSource | None = None,
 ) -> Generator[ExtractionProgress, None, Extraction]:
     """Make a particle of each label, telling after each how far it is.
 
@@ -168,6 +187,8 @@ def extraction_steps(
     collect
         Keep the particles for the result; otherwise each is only in the step that made it, which
         samples need that are larger than the memory.
+    grey
+        The grey values that the labels were found in; surfaces are of the masks without them.
 
     Raises
     ------
@@ -183,11 +204,11 @@ def extraction_steps(
     small = [k for k in set(boxes).difference(border) if sizes[k] < settings.min_voxels]
     wanted = {k: box for k, box in boxes.items() if k not in {*border, *small}}
     found: list[Extracted] = []
-    for done, (label, mask) in enumerate(label_masks(volume, wanted), start=1):
-        mesh, notes = mask_surface(mask, boxes[label], np.asarray(volume.voxel_size, float), settings)
+    made = _surfaces(volume, grey if settings.surface == "grey" else None, wanted, settings)
+    for done, (label, mesh, notes, surface) in enumerate(made, start=1):
         weight = border_weight(boxes[label], volume.shape) if settings.exclude_border else 1.0
         particle = Particle(f"particle_{label:0{width}d}", mesh, group, source, notes, weight)
-        extracted = Extracted(particle, label, sizes[label], weight)
+        extracted = Extracted(particle, label, sizes[label], weight, surface)
         if collect:
             found.append(extracted)
         yield ExtractionProgress(done, len(wanted), extracted)
@@ -200,9 +221,9 @@ def voxel_diameter(n_voxels: int) -> float:
     return float((6.0 * n_voxels / np.pi) ** (1 / 3))
 
 
-def is_coarse_note(note: str) -> bool:
-    """Whether a particle's note says that it has few voxels, and not that anything was changed."""
-    return note.startswith(f"{_COARSE} ") and "voxels in diameter" in note
+def is_remark(note: str) -> bool:
+    """Whether a particle's note says what it was made of, few voxels or a mask, not what was changed."""
+    return note.startswith(_OF_MASK) or (note.startswith(f"{_COARSE} ") and "voxels in diameter" in note)
 
 
 def border_weight(box: Box, shape: tuple[int, int, int]) -> float:
@@ -218,6 +239,24 @@ def border_weight(box: Box, shape: tuple[int, int, int]) -> float:
     return float(1.0 / np.prod(np.maximum(1.0 - (lengths + 1.0) / size, 1.0 / size)))
 
 
+_Made = tuple[int, Mesh, tuple[str, ...], Surface]
+
+
+def _surfaces(
+    volume: SlabSource, grey: SlabSource | None, boxes: Mapping[int, Box], settings: ExtractionSettings
+) -> Iterator[_Made]:
+    """Label, mesh in micrometres, notes and origin of each surface."""
+    edges = np.asarray(volume.voxel_size, float)
+    if grey is None:
+        for label, mask in label_masks(volume, boxes):
+            yield label, *mask_surface(mask, boxes[label], edges, settings), "mask"
+        return
+    whole = box_between((0, 0, 0), volume.shape)
+    wider = {label: grown(box, MARGIN, whole) for label, box in boxes.items()}
+    for label, crop in grain_crops(volume, grey, wider):
+        yield label, *grey_surface(crop, boxes[label], wider[label], edges, settings)
+
+
 def mask_surface(
     mask: NDArray[np.bool_], box: Box, voxel_size: FloatArray, settings: ExtractionSettings
 ) -> tuple[Mesh, tuple[str, ...]]:
@@ -230,30 +269,57 @@ def mask_surface(
     voxel_size
         Edges of a voxel along x, y, z, in micrometres, shape (3,).
     """
-    body, notes = _one_body(mask, settings.fill_pores)
-    padded = np.pad(body, 1).astype(np.float32)
-    smooth = windowed_sinc(contour(padded, 0.5, (1.0, 1.0, 1.0)), settings.iterations, settings.pass_band)
-    n_voxels = int(np.count_nonzero(body))
-    restored = with_volume(smooth, float(n_voxels))
-    if (diameter := voxel_diameter(n_voxels)) < settings.warn_diameter:
-        notes.append(
-            f"{_COARSE} {diameter:.1f} voxels in diameter: volume and above all surface area are coarse "
-            f"below {settings.warn_diameter:g}."
-        )
-    corner = np.array([side.start for side in box]) - 1.0
-    return Mesh((restored.vertices + corner) * voxel_size, restored.faces), tuple(notes)
+    body, notes = _one_body(mask, settings)
+    return _placed(_mask_mesh(body, settings), box, voxel_size), tuple(notes)
 
 
-def _one_body(mask: BoolArray, fill_pores: bool) -> tuple[BoolArray, list[str]]:
-    """The largest face-connected body, its closed pores filled, and a note for each change."""
+def grey_surface(
+    crop: GrainCrop, box: Box, wider: Box, voxel_size: FloatArray, settings: ExtractionSettings
+) -> tuple[Mesh, tuple[str, ...], Surface]:
+    """As :func:`mask_surface`, of the grey values about the grain if they tell it, else of its mask.
+
+    Parameters
+    ----------
+    crop, box, wider
+        What lies about the grain, the box of the grain and that of the crop.
+    """
+    part = within(box, wider)
+    body, notes = _one_body(crop.own[part], settings)
+    padding = [(a.start, n - a.stop) for a, n in zip(part, crop.own.shape, strict=True)]
+    mesh = grey_mesh(crop, np.pad(body, padding), settings.iterations, settings.pass_band)
+    if isinstance(mesh, str):
+        notes.append(f"{_OF_MASK}: {mesh}.")
+        return _placed(_mask_mesh(body, settings), box, voxel_size), tuple(notes), "mask"
+    return _placed(mesh, wider, voxel_size), tuple(notes), "grey"
+
+
+def _mask_mesh(body: BoolArray, settings: ExtractionSettings) -> Mesh:
+    """Contour of a mask, smoothed, with the volume of its voxels; in voxels of its box."""
+    rough = contour(np.pad(body, 1).astype(np.float32), 0.5, (1.0, 1.0, 1.0))
+    smooth = windowed_sinc(rough, settings.iterations, settings.pass_band)
+    return with_volume(smooth, float(np.count_nonzero(body))).moved(shift=np.full(3, -1.0))
+
+
+def _placed(mesh: Mesh, box: Box, voxel_size: FloatArray) -> Mesh:
+    corner = np.array([side.start for side in box], dtype=np.float64)
+    return Mesh((mesh.vertices + corner) * voxel_size, mesh.faces)
+
+
+def _one_body(mask: BoolArray, settings: ExtractionSettings) -> tuple[BoolArray, list[str]]:
+    """The largest face-connected body, its closed pores filled, and notes on it."""
     notes = []
     body, count = largest_body(mask)
     if count > 1:
         dropped = int(np.count_nonzero(mask) - np.count_nonzero(body))
         notes.append(f"The label had {count} separate parts; the largest was kept, {dropped} voxels dropped.")
-    if fill_pores:
+    if settings.fill_pores:
         filled = pores_filled(body)
         if closed := int(np.count_nonzero(filled) - np.count_nonzero(body)):
             notes.append(f"Closed pores of {closed} voxels were filled.")
         body = filled
+    if (diameter := voxel_diameter(int(np.count_nonzero(body)))) < settings.warn_diameter:
+        notes.append(
+            f"{_COARSE} {diameter:.1f} voxels in diameter: volume and above all surface area are coarse "
+            f"below {settings.warn_diameter:g}."
+        )
     return body, notes

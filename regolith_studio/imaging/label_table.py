@@ -1,10 +1,10 @@
 """The labels of a volume, found in one pass over its slabs: how large each is, and where.
 
-A second pass, :func:`label_masks`, cuts each label out as soon as its last slab has been seen, so
-that only labels that lie across two slabs are kept in the meantime.
+A second pass, :func:`label_masks` or :func:`grain_crops`, cuts each label out as soon as its last
+slab has been seen, so that only labels that lie across two slabs are kept in the meantime.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -50,6 +50,25 @@ class LabelTable:
         return dict(zip(self.labels.tolist(), self.counts.tolist(), strict=True))
 
 
+@dataclass(frozen=True, eq=False)
+class GrainCrop:
+    """What lies in a box about one grain.
+
+    Parameters
+    ----------
+    own
+        The grain's voxels, shape (nx, ny, nz).
+    others
+        Voxels of other grains, same shape.
+    values
+        Grey values, same shape.
+    """
+
+    own: BoolArray
+    others: BoolArray
+    values: NDArray[Any]
+
+
 def label_table(source: SlabSource) -> LabelTable:
     """The labels of a volume; 0 and less is no particle.
 
@@ -81,24 +100,57 @@ def label_table(source: SlabSource) -> LabelTable:
 
 def label_masks(source: SlabSource, boxes: Mapping[int, Box]) -> Iterator[tuple[int, BoolArray]]:
     """Each label with its mask in its box, in the order in which the slabs complete them."""
+    for label, (mask,) in _cuts((source,), boxes, lambda label, parts: (parts[0] == label,)):
+        yield label, mask
+
+
+def grain_crops(
+    labels: SlabSource, grey: SlabSource, boxes: Mapping[int, Box]
+) -> Iterator[tuple[int, GrainCrop]]:
+    """Each label with what lies in its box, in the order in which the slabs complete them.
+
+    Raises
+    ------
+    ValueError
+        If the two volumes have not the same shape.
+    """
+    if labels.shape != grey.shape:
+        raise ValueError(f"labels of shape {labels.shape} do not fit grey values of shape {grey.shape}")
+    for label, (own, others, values) in _cuts(
+        (labels, grey),
+        boxes,
+        lambda label, parts: (parts[0] == label, (parts[0] > 0) & (parts[0] != label), parts[1]),
+    ):
+        yield label, GrainCrop(own, others, values)
+
+
+_Parts = tuple[NDArray[Any], ...]
+
+
+def _cuts(
+    sources: Sequence[SlabSource], boxes: Mapping[int, Box], taken: Callable[[int, _Parts], _Parts]
+) -> Iterator[tuple[int, _Parts]]:
+    """What `taken` makes of each box of all sources, put together slab by slab."""
     waiting = sorted(boxes.items(), key=lambda entry: entry[1][2].start)
-    begun: dict[int, BoolArray] = {}
-    for first, stop in slab_ranges(source.shape):
+    begun: dict[int, _Parts] = {}
+    for first, stop in slab_ranges(sources[0].shape):
         count = sum(1 for _, box in _until(waiting, stop))
         active, waiting = [*begun, *(label for label, _ in waiting[:count])], waiting[count:]
         if not active:
             continue
-        slab = source.read(first, stop)
+        slabs = [source.read(first, stop) for source in sources]
         for label in active:
             x, y, z = boxes[label]
             here = slice(max(z.start, first), min(z.stop, stop))
-            part = slab[x, y, here.start - first : here.stop - first] == label
+            parts = taken(label, tuple(s[x, y, here.start - first : here.stop - first] for s in slabs))
             if z.start >= first and z.stop <= stop:
-                yield label, np.ascontiguousarray(part)
+                yield label, tuple(np.ascontiguousarray(part) for part in parts)
                 continue
             if label not in begun:
-                begun[label] = np.zeros([side.stop - side.start for side in (x, y, z)], dtype=bool)
-            begun[label][:, :, here.start - z.start : here.stop - z.start] = part
+                shape = [side.stop - side.start for side in (x, y, z)]
+                begun[label] = tuple(np.zeros(shape, dtype=part.dtype) for part in parts)
+            for whole, part in zip(begun[label], parts, strict=True):
+                whole[:, :, here.start - z.start : here.stop - z.start] = part
             if z.stop <= stop:
                 yield label, begun.pop(label)
 

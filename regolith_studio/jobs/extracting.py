@@ -186,10 +186,12 @@ def segment_volume(
         yield Progress(step.done, step.total)
 
 
-def extract_labels(labels: SlabSource, settings: ExtractionSettings, group: str = "") -> Steps:
-    """Particles of a label volume, in memory or not; returns an ``Extraction``."""
+def extract_labels(
+    labels: SlabSource, settings: ExtractionSettings, group: str = "", grey: SlabSource | None = None
+) -> Steps:
+    """Particles of a label volume, in memory or not, of the values `grey`; returns an ``Extraction``."""
     yield Started("Extracting particles")
-    return (yield from _collected(extraction_steps(labels, settings, group)))
+    return (yield from _collected(extraction_steps(labels, settings, group, grey=grey)))
 
 
 def fingerprint(path: Path) -> str:
@@ -222,7 +224,8 @@ def _extracted(
             facts, labels = _facts(segmentation), segmentation.labels
             del segmentation
         yield Started("Extracting particles")
-        steps = extraction_steps(labels, recipe.extraction, given.path.stem, source, collect=collect)
+        grey = volume if volume.kind == "grey" else None
+        steps = extraction_steps(labels, recipe.extraction, given.path.stem, source, collect, grey)
         extraction = yield from consume(steps)
     if not extraction.n_found:
         raise InputError(_nothing_found(given.path, extraction))

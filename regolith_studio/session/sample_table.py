@@ -9,7 +9,7 @@ from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.descriptors.distributions import distribution
 from regolith_studio.descriptors.zingg import zingg_class
 from regolith_studio.errors import InputError
-from regolith_studio.imaging.extraction import is_coarse_note
+from regolith_studio.imaging.extraction import is_remark
 from regolith_studio.jobs.examining import Examined
 from regolith_studio.session.outputs.descriptors import descriptor_table
 from regolith_studio.session.results import ParticleEntry
@@ -44,7 +44,7 @@ def health_word(entry: ParticleEntry) -> str:
         return "unsound"
     if entry.health.problems:
         return "doubtful"
-    if all(is_coarse_note(note) for note in entry.particle.notes):
+    if all(is_remark(note) for note in entry.particle.notes):
         return "coarse" if entry.particle.notes else "sound"
     return "mended"
 

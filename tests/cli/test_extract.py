@@ -37,9 +37,11 @@ def rows_of(folder: Path) -> list[dict[str, str]]:
     return list(csv.DictReader((folder / "particles.csv").read_text(encoding="utf-8").splitlines()))
 
 
-def test_that_a_grey_scan_becomes_particles_with_a_recipe(command, tmp_path: Path) -> None:
+@pytest.mark.parametrize("surface", ["grey", "mask"])
+def test_that_a_grey_scan_becomes_particles_with_a_recipe(command, tmp_path: Path, surface: str) -> None:
     scan, x = part_of_scan(tmp_path, "grey"), tmp_path / "x"
-    said = command("extract", scan, "-o", x, "--denoise", "gaussian", "--voxel-size", 2.3, "--json")
+    asked = ["--denoise", "gaussian", "--voxel-size", 2.3, "--surface", surface, "--json"]
+    said = command("extract", scan, "-o", x, *asked)
     assert said.code == 0
     rows, recipe = rows_of(x), json.loads((x / "extraction.json").read_text())
     assert recipe["volume"]["sha256"] == hashlib.sha256(scan.read_bytes()).hexdigest()
@@ -51,8 +53,11 @@ def test_that_a_grey_scan_becomes_particles_with_a_recipe(command, tmp_path: Pat
         mesh = trimesh.load_mesh(x / f"{row['name']}.stl")
         assert mesh.is_volume
         assert mesh.volume == pytest.approx(float(row["volume [um^3]"]), rel=1e-4)
-        assert float(row["volume [um^3]"]) == pytest.approx(int(row["voxels"]) * 2.3**3, rel=0.02)
+        assert row["surface"] == surface
+        near = 0.02 if surface == "mask" else 0.5
+        assert float(row["volume [um^3]"]) == pytest.approx(int(row["voxels"]) * 2.3**3, rel=near)
         assert float(row["weight"]) > 1.0
+    assert recipe["extraction"]["surface"] == surface
 
 
 def test_that_the_recipe_of_one_scan_serves_the_next(command, tmp_path: Path) -> None:

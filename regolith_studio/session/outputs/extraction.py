@@ -44,6 +44,7 @@ class ExtractionFolder:
             Column("label"): found.label,
             Column("voxels"): found.n_voxels,
             Column("weight"): found.weight,
+            Column("surface"): found.surface,
             Column("notes"): " ".join(particle.notes),
         }
         self._rows[found.label] = dict(zip(table.columns, table.rows[0], strict=True)) | dict(extra)
@@ -51,6 +52,7 @@ class ExtractionFolder:
             "label": found.label,
             "voxels": found.n_voxels,
             "weight": found.weight,
+            "surface": found.surface,
         }
 
     def finish(self, given: VolumeInput, recipe: GrainRecipe, done: ExtractedFile) -> dict[str, Any]:

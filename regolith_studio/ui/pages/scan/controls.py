@@ -26,6 +26,7 @@ THRESHOLD = (
     ("manual", "By hand: drag the line"),
     ("probability", "Probability map"),
 )
+SURFACE = (("grey", "Grey values"), ("mask", "Mask"))
 H_MAXIMA = NumberSpec(
     "h", "Bump that is a grain of its own, in voxels", 0.0, 6.0, 0.1, limit=50.0,
     tip="How far a bump must stand out to be a grain of its own. Grains cut in two: larger. "
@@ -64,6 +65,10 @@ class SegmentationControls(QWidget):
         )
         self.opening, self.closing = _slider("opening", OPENING), _slider("closing", CLOSING)
         self.h_maxima, self.least = _slider("h_maxima", H_MAXIMA), _slider("min_voxels", MIN_VOXELS)
+        self.surface = choice("surface", "Surface", SURFACE)
+        self.surface.setToolTip(
+            "The grey values about a grain tell its volume better than its mask, however blurred the scan."
+        )
         self.diameter = remark()
         self._arrange()
         self._connect()
@@ -95,6 +100,7 @@ class SegmentationControls(QWidget):
             exclude_border=self.border.isChecked(),
             min_voxels=int(self.least.value()),
             fill_pores=self.pores.isChecked(),
+            surface=self.surface.currentData(),
         )
         return GrainRecipe(segmentation, extraction)
 
@@ -106,6 +112,7 @@ class SegmentationControls(QWidget):
             (self.denoise, how.denoise.method),
             (self.threshold, how.threshold.method),
             (self.boundary, how.threshold.boundary),
+            (self.surface, what.surface),
         ):
             with QSignalBlocker(box):
                 box.setCurrentIndex(max(0, box.findData(value)))
@@ -140,7 +147,7 @@ class SegmentationControls(QWidget):
     def set_kind(self, kind: str) -> None:
         """Labels need no segmentation."""
         for part in (self.denoise, self.threshold, self.level, self.boundary, self.dark, self.split,
-                     self.opening, self.closing, self.h_maxima):  # fmt: skip
+                     self.opening, self.closing, self.h_maxima, self.surface):  # fmt: skip
             part.setEnabled(kind == "grey")
         if kind == "grey":
             self._show_which()
@@ -170,7 +177,7 @@ class SegmentationControls(QWidget):
 
     def _connect(self) -> None:
         self.threshold.currentIndexChanged.connect(self._threshold_chosen)
-        for box in (self.denoise, self.boundary):
+        for box in (self.denoise, self.boundary, self.surface):
             box.currentIndexChanged.connect(self._changed)
         for check in (self.dark, self.split, self.pores, self.border):
             check.toggled.connect(self._changed)
@@ -208,6 +215,7 @@ class SegmentationControls(QWidget):
         layout.addWidget(self.border)
         layout.addWidget(self.least)
         layout.addWidget(self.diameter)
+        layout.addLayout(_form((("Surface", self.surface),)))
 
 
 def _check(name: str, words: str, tip: str) -> QCheckBox:

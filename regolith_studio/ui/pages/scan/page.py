@@ -223,9 +223,9 @@ class ScanPage(PageWidget):
         if labels is None or self.scan is None:
             self._context.toast.note("Find the grains first.")
             return
-        job = Job(
-            extract_labels, (labels, self.controls.value().extraction, Path(self.scan.volume.name).stem)
-        )
+        grey = self.scan.volume if self.scan.volume.kind == "grey" else None
+        group = Path(self.scan.volume.name).stem
+        job = Job(extract_labels, (labels, self.controls.value().extraction, group, grey))
         self._context.start("Making particles", job, self._adopt, lane="grains")
 
     def _found(self, found: FoundGrains, settings: SegmentationSettings) -> None:
