@@ -4,6 +4,7 @@ Only the program's own files come through here; volumes of users go through ``re
 """
 
 import io
+from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
@@ -42,6 +43,17 @@ def tiff_bytes(volume: Volume) -> bytes:
     return buffer.getvalue()
 
 
+def sample_file(kind: SampleVolume) -> Path:
+    """Where the shipped scan is.
+
+    Raises
+    ------
+    EnvironmentProblem
+        If the installation lacks its samples.
+    """
+    return resource("samples", "ct", f"synthetic-{kind}.tif")
+
+
 def sample_volume(kind: SampleVolume = "labels") -> Volume:
     """The shipped synthetic scan of about 60 grains: its label volume, or its grey values.
 
@@ -50,7 +62,7 @@ def sample_volume(kind: SampleVolume = "labels") -> Volume:
     EnvironmentProblem
         If the installation lacks its samples.
     """
-    with tifffile.TiffFile(resource("samples", "ct", f"synthetic-{kind}.tif")) as file:
+    with tifffile.TiffFile(sample_file(kind)) as file:
         slices: Any = file.asarray()
         metadata = file.imagej_metadata or {}
         pixels, length = file.pages.first.tags["XResolution"].value

@@ -186,12 +186,19 @@ def segment_volume(
         yield Progress(step.done, step.total)
 
 
-def extract_labels(
-    labels: SlabSource, settings: ExtractionSettings, group: str = "", grey: SlabSource | None = None
-) -> Steps:
-    """Particles of a label volume, in memory or not, of the values `grey`; returns an ``Extraction``."""
+def extract_labels(labels: SlabSource, settings: ExtractionSettings, path: Path) -> Steps:
+    """Particles of a label volume, in memory or not, that `path` has led to; returns an ``Extraction``.
+
+    They are what :func:`extract_file` makes of the file.
+    """
     yield Started("Extracting particles")
-    return (yield from _collected(extraction_steps(labels, settings, group, grey=grey)))
+    source = _source(path, labels)
+    return (yield from _collected(extraction_steps(labels, settings, path.stem, source)))
+
+
+def _source(path: Path, volume: SlabSource) -> Source:
+    edges = "x".join(f"{float(edge):g}" for edge in np.ravel(np.asarray(volume.voxel_size)))
+    return Source(str(path), fingerprint(path), f"voxel:{edges}")
 
 
 def fingerprint(path: Path) -> str:
@@ -215,7 +222,7 @@ def _extracted(
     yield Started(f"Reading {given.path.name}")
     volume = given.opened()
     sizes = tuple(float(edge) for edge in np.ravel(np.asarray(volume.voxel_size)))
-    source = Source(str(given.path), fingerprint(given.path), f"voxel:{'x'.join(f'{e:g}' for e in sizes)}")
+    source = _source(given.path, volume)
     with Scratch(folder if _working_bytes(volume) > IN_MEMORY else None) as scratch:
         facts: SegmentationFacts | None = None
         labels: SlabSource = volume
@@ -224,8 +231,7 @@ def _extracted(
             facts, labels = _facts(segmentation), segmentation.labels
             del segmentation
         yield Started("Extracting particles")
-        grey = volume if volume.kind == "grey" else None
-        steps = extraction_steps(labels, recipe.extraction, given.path.stem, source, collect, grey)
+        steps = extraction_steps(labels, recipe.extraction, given.path.stem, source, collect=collect)
         extraction = yield from consume(steps)
     if not extraction.n_found:
         raise InputError(_nothing_found(given.path, extraction))

@@ -157,6 +157,12 @@ def particle_names(n: int, first: int = 0) -> tuple[str, ...]:
     return tuple(f"virtual-{first + i + 1:06d}" for i in range(n))
 
 
+def drawn_names(title: str, n: int) -> tuple[str, ...]:
+    """title-0000, title-0001 and so on: what is drawn in one go, with digits for all of it."""
+    digits = max(4, len(str(n - 1)))
+    return tuple(f"{title}-{index:0{digits}d}" for index in range(n))
+
+
 def groups_of(draws: Draws, model: FittedModel) -> tuple[str, ...]:
     """Name of the mixture's part that each particle was drawn from; empty where a model has no parts."""
     names = getattr(model, "names", ())
@@ -186,14 +192,17 @@ def _origin(draws: Draws) -> str:
     return f"Drawn by {draws.model} with seed {draws.seed}."
 
 
-def make_particles(draws: Draws, groups: Sequence[str] = (), level: int = DEFAULT_LEVEL) -> Steps:
-    """As :func:`particles_of` with progress; returns a tuple of :class:`Particle`."""
+def make_particles(draws: Draws, model: FittedModel, title: str, level: int = DEFAULT_LEVEL) -> Steps:
+    """The drawn particles as a recipe with a population of the name `title` has them, with progress.
+
+    Returns a tuple of :class:`Particle`.
+    """
     yield Started("Making meshes", len(draws))
-    made: list[Particle] = []
-    for first in range(0, len(draws), BATCH):
-        part = draws.chosen(range(first, min(first + BATCH, len(draws))))
-        made += particles_of(part, groups[first : first + BATCH], level, first)
-        yield Progress(len(made), len(draws), made[-1].name)
+    names, groups = drawn_names(title, len(draws)), groups_of(draws, model)
+    notes, made = (_origin(draws),), []
+    for index, (name, group) in enumerate(zip(names, groups, strict=True)):
+        made.append(Particle(name, virtual_mesh(draws, index, level), group or title, notes=notes))
+        yield Progress(index + 1, len(draws), name)
     return tuple(made)
 
 

@@ -1,8 +1,9 @@
 """For the window: a model with examples of its sample, drawn particles, judged models as pictures."""
 
 import io
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Generator, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.surface import reconstruct
-from regolith_studio.jobs.events import Partial, Step, Steps
+from regolith_studio.jobs.events import Partial, Progress, Step, Steps
 from regolith_studio.jobs.generating import (
     GenerateOrder,
     draw,
@@ -38,8 +39,9 @@ DOTS_PER_INCH = 110
 COLUMNS = 5
 """Panels in a row: a window is wider than a page."""
 
-WORTH_A_POOL = 1500
-"""Particles to be measured beyond which the start of processes pays: some ten seconds of work."""
+WORTH_A_POOL = 400
+"""Particles to be measured beyond which processes are started: some seconds of work, and fits that this
+process could not be stopped at."""
 
 Origin = ShapeSource | tuple[Particle, ...]
 
@@ -68,10 +70,12 @@ class FittedShapes:
 
 @dataclass(frozen=True, eq=False)
 class DrawnShapes:
-    """Drawn particles, and meshes of the first of them."""
+    """Drawn particles, meshes of the first of them, and what they were drawn from."""
 
     draws: Draws
     examples: tuple[Mesh, ...]
+    model: FittedModel
+    order: GenerateOrder
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,7 +115,7 @@ def draw_shapes(model: FittedModel, order: GenerateOrder) -> Steps:
     """Draw the particles of an order; returns :class:`DrawnShapes`."""
     draws: Draws = yield from draw(model, order)
     meshes = [virtual_mesh(draws, i, LEVEL) for i in range(min(N_EXAMPLES, len(draws)))]
-    return DrawnShapes(draws, tuple(meshes))
+    return DrawnShapes(draws, tuple(meshes), model, order)
 
 
 def judge_shapes(sample: Sample, models: Sequence[str] | None, **options: Any) -> Steps:
@@ -123,23 +127,35 @@ def judge_shapes(sample: Sample, models: Sequence[str] | None, **options: Any) -
     rounds = options.get("n_splits", 5) * options.get("n_repeats", 5) * len(models or MODELS)
     n_measured = len(sample) + rounds * drawn_by_itself(len(sample))
     steps = study_population(sample, models, 0 if n_measured > WORTH_A_POOL else 1, **options)
+    shown = Progress(0, n_measured, "")
     while True:
         try:
             step: Step = next(steps)
         except StopIteration as end:
-            return judged(end.value)
-        yield Partial(judged(step.value)) if isinstance(step, Partial) else step
+            return (yield from judged(end.value, shown))
+        if isinstance(step, Progress):
+            shown = step
+        if isinstance(step, Partial):
+            step = Partial((yield from judged(step.value, shown)))
+        yield step
 
 
-def judged(study: PopulationStudy) -> JudgedShapes:
-    """The study with its figures drawn."""
-    drawn: dict[str, Figure | None] = {
-        weighting: figures.density_figure(study, weighting, COLUMNS) for weighting in WEIGHTINGS
+def judged(study: PopulationStudy, shown: Progress) -> Generator[Step, None, JudgedShapes]:
+    """The study with its figures, drawn one by one; how far the work is stays as `shown`."""
+    drawings: dict[str, Callable[[], Figure | None]] = {
+        **{name: partial(figures.density_figure, study, name, COLUMNS) for name in WEIGHTINGS},
+        "pairs": partial(figures.pair_figure, study),
+        "quantiles": partial(figures.quantile_figure, study, COLUMNS),
+        "components": partial(figures.components_figure, study),
     }
-    drawn["pairs"] = figures.pair_figure(study)
-    drawn["quantiles"] = figures.quantile_figure(study, COLUMNS)
-    drawn["components"] = figures.components_figure(study)
-    return JudgedShapes(study, {name: png_of(figure) for name, figure in drawn.items() if figure is not None})
+    pictures: dict[str, bytes] = {}
+    for name, draw_one in drawings.items():
+        figure = draw_one()
+        yield replace(shown, message="figures")
+        if figure is not None:
+            pictures[name] = png_of(figure)
+            yield replace(shown, message="figures")
+    return JudgedShapes(study, pictures)
 
 
 def png_of(figure: Figure) -> bytes:

@@ -8,7 +8,9 @@ from typing import Any, Literal, Self
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from regolith_studio.errors import FileError
+from regolith_studio.model.protocol import FittedModel
 from regolith_studio.session.outputs.staging import write_bytes
+from regolith_studio.session.portrait import Portrait
 from regolith_studio.session.recipe import SAMPLE, Recipe
 from regolith_studio.session.session import Session
 
@@ -44,18 +46,25 @@ class Project(BaseModel):
     @classmethod
     def of(cls, session: Session, page: str = "", pages: dict[str, dict[str, Any]] | None = None) -> Self:
         """The present state of a session."""
-        recipe = Recipe.from_choices(session.choices, inputs_of(session))
+        recipe = Portrait.of(session.particles, session.choices).recipe
         return cls(recipe=recipe, selected=session.choices.selected, page=page, pages=pages or {})
 
-    def save(self, path: Path) -> None:
+    def save(self, path: Path, model: FittedModel | None = None) -> None:
         """Write it in one step.
+
+        Parameters
+        ----------
+        model
+            What the virtual particles were drawn from; it is written beside.
 
         Raises
         ------
         FileError
             If the file cannot be written.
         """
-        write_bytes(path, self.model_dump_json(indent=2).encode("utf-8") + b"\n")
+        recipe = Portrait(self.recipe, model).beside(path)
+        whole = self.model_copy(update={"recipe": recipe})
+        write_bytes(path, whole.model_dump_json(indent=2).encode("utf-8") + b"\n")
 
     def open_in(self, session: Session, beside: Path) -> int:
         """Choose what was chosen and read what was open; returns the task's id.
@@ -68,8 +77,7 @@ class Project(BaseModel):
         chosen = self.recipe.choices()
         names = {each.name for each in dataclasses.fields(chosen)} - {"selected"}
         session.choose(**{name: getattr(chosen, name) for name in names})
-        paths = [beside / name for name in self.recipe.inputs if name != SAMPLE]
-        return session.open(paths, self.recipe.unit) if paths else session.open_sample()
+        return session.open_recipe(self.recipe, beside)
 
 
 def read_project(path: Path) -> Project:
@@ -103,5 +111,5 @@ def input_shown(session: Session) -> str:
 
 
 def without_file(session: Session) -> Sequence[str]:
-    """Ids of open particles that came from no file: a project cannot bring them back."""
-    return [entry.id for entry in session.particles if entry.particle.source is None]
+    """Ids of open particles that neither a recipe nor a project can bring back."""
+    return list(Portrait.of(session.particles, session.choices).lost)

@@ -1,15 +1,17 @@
 """A recipe: everything that turns files into results, as JSON; the window saves it, ``run`` takes it."""
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any, Literal, Self
+from typing import Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import Field, ValidationError, model_validator
 
 from regolith_studio.coarsening.coarsen import DEFAULT_METHOD, DEFAULT_PRESET
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.errors import FileError, InputError
 from regolith_studio.harmonics.expansion import USUAL
-from regolith_studio.session.choices import L_MAX_LIMIT, Choices, Scalar
+from regolith_studio.session.choices import Choices, Scalar
+from regolith_studio.session.recipe_inputs import Chosen, FilesEntry, Population, Strict, VolumeEntry
 
 FORMAT: Literal["regolith-studio recipe"] = "regolith-studio recipe"
 VERSION: Literal[2] = 2
@@ -18,15 +20,13 @@ SAMPLE = "sample:all"
 """Stands among the inputs for the particles that ship with the program."""
 
 
-Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
-Edges = Annotated[list[float], Field(min_length=3, max_length=3)]
+_CHOICES = (
+    *("unit", "star_point", "rule", "reference", "l_max", "level", "target"),
+    *("method", "preset", "n_faces", "seed", "box_metric"),
+)
 
 
-class _Strict(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
-
-
-class Outputs(_Strict):
+class Outputs(Strict):
     """What is written below the output folder."""
 
     descriptors: bool = True
@@ -38,108 +38,30 @@ class Outputs(_Strict):
     summary: bool = True
 
 
-class Population(_Strict):
-    """Virtual particles among the inputs.
-
-    Parameters
-    ----------
-    sources
-        What they are drawn like: the name of a shipped material card; the file of a card, a fit or a fitted
-        model; or meshes and tables of coefficients, files and folders, that are measured for it. Relative
-        files are looked up beside the recipe.
-    model, settings
-        Key of the model of shapes that is fitted to a fit or to meshes, and its settings; the default
-        model where left out.
-    n
-        Particles to draw, with the seed of the recipe.
-    l_max
-        Degree of their surfaces; that of the source and at most 10 where left out.
-    size_range
-        Smallest and largest equivalent radius in micrometres.
-    """
-
-    sources: list[str] = Field(min_length=1)
-    model: str = ""
-    settings: dict[str, Scalar] = Field(default_factory=dict)
-    n: int = Field(ge=1, le=1_000_000)
-    l_max: int | None = Field(default=None, ge=1, le=L_MAX_LIMIT)
-    size_range: Pair | None = None
-
-    @property
-    def bounds(self) -> tuple[float, float] | None:
-        """The size range as a pair."""
-        return None if self.size_range is None else (self.size_range[0], self.size_range[1])
-
-    @model_validator(mode="before")
-    @classmethod
-    def _from_card(cls, entry: Any) -> Any:
-        """Version 1 knew cards only."""
-        if not isinstance(entry, dict) or "card" not in entry or "sources" in entry:
-            return entry
-        return {**{key: value for key, value in entry.items() if key != "card"}, "sources": [entry["card"]]}
-
-
-class RawVolume(_Strict):
-    """What a raw file does not say about itself: voxels along x, y, z, their type, where they begin."""
-
-    shape: Annotated[list[int], Field(min_length=3, max_length=3)]
-    dtype: str = "uint8"
-    byte_order: str = "little"
-    offset: int = 0
-
-
-class VolumeEntry(_Strict):
-    """A CT volume whose grains are among the inputs.
-
-    Parameters
-    ----------
-    file
-        File, or folder of slices; relative to the recipe.
-    voxel_size, unit, kind, dataset, axes, raw
-        As ``regolith-studio extract`` takes them; by default what the file says.
-    recipe
-        An ``extraction.json`` with all settings, as ``extract`` and the window write it.
-    segmentation, extraction
-        The settings themselves, in place of such a file.
-    """
-
-    file: str
-    voxel_size: float | Edges | None = None
-    unit: str | None = None
-    kind: Literal["labels", "grey"] | None = None
-    dataset: str | None = None
-    axes: str | None = None
-    raw: RawVolume | None = None
-    recipe: str | None = None
-    segmentation: dict[str, Any] = Field(default_factory=dict)
-    extraction: dict[str, Any] = Field(default_factory=dict)
-
-    @model_validator(mode="after")
-    def _one_way(self) -> Self:
-        if self.recipe is not None and (self.segmentation or self.extraction):
-            raise ValueError("give settings or the recipe that holds them, not both")
-        return self
-
-
-class Recipe(_Strict):
+class Recipe(Strict):
     """Inputs, choices and outputs; relative inputs are looked up beside the recipe file.
 
     Parameters
     ----------
     inputs
         Files and folders of meshes and tables of coefficients, or ``sample:all``; by default the sample,
-        or nothing where there are volumes or a population.
+        or nothing where there are volumes or a population. Those in another unit stand in entries of
+        their own, and are read after the others.
     volumes
         CT volumes whose grains are particles too.
     population
         Virtual particles, besides those.
+    particles
+        Names of those of all these particles that are worked on, in this order; all of them, in the order
+        of the fields above, where left out.
     """
 
     format: Literal["regolith-studio recipe"] = FORMAT
     version: Literal[2] = VERSION
-    inputs: list[str] = Field(default_factory=lambda: [SAMPLE])
+    inputs: list[str | FilesEntry] = Field(default_factory=lambda: list[str | FilesEntry]([SAMPLE]))
     volumes: list[VolumeEntry] = Field(default_factory=list)
     population: Population | None = None
+    particles: list[str | Chosen] | None = Field(default=None, min_length=1)
     unit: str = "um"
     star_point: str = USUAL.star_point
     rule: str = USUAL.rule
@@ -173,27 +95,38 @@ class Recipe(_Strict):
             raise ValueError("inputs must name a file or folder, or there must be volumes or a population")
         return self
 
-    @classmethod
-    def from_choices(cls, choices: Choices, inputs: list[str], outputs: Outputs | None = None) -> Self:
-        """The recipe that repeats what has been chosen."""
-        return cls(
-            inputs=inputs,
-            unit=choices.unit,
-            star_point=choices.star_point,
-            rule=choices.rule,
-            reference=choices.reference,
-            l_max=choices.l_max,
-            level=choices.level,
-            target=choices.target,
-            method=choices.method,
-            settings=dict(choices.settings),
-            preset=choices.preset,
-            weights=dict(choices.weights) if choices.preset_modified else None,
-            n_faces=choices.n_faces,
-            seed=choices.seed,
-            box_metric=choices.box_metric,
-            outputs=outputs or Outputs(),
+    @property
+    def openings(self) -> tuple[tuple[tuple[str, ...], str], ...]:
+        """Files and folders that are read together, with their unit; without the sample."""
+        plain = tuple(entry for entry in self.inputs if isinstance(entry, str) and entry != SAMPLE)
+        others = (entry for entry in self.inputs if isinstance(entry, FilesEntry))
+        return (((plain, self.unit),) if plain else ()) + tuple((tuple(e.files), e.unit) for e in others)
+
+    @property
+    def only_files(self) -> bool:
+        """Whether all particles of files and of the sample are taken, and no others."""
+        return not self.volumes and self.population is None and self.particles is None
+
+    @property
+    def named_inputs(self) -> tuple[str, ...]:
+        """The sample, files and folders as they are written."""
+        return tuple(
+            name for entry in self.inputs for name in ([entry] if isinstance(entry, str) else entry.files)
         )
+
+    @classmethod
+    def from_choices(
+        cls,
+        choices: Choices,
+        inputs: Sequence[str | FilesEntry],
+        outputs: Outputs | None = None,
+        **others: Any,
+    ) -> Self:
+        """The recipe that repeats what has been chosen; `others` are fields of the recipe."""
+        chosen: dict[str, Any] = {name: getattr(choices, name) for name in _CHOICES}
+        chosen["settings"] = dict(choices.settings)
+        chosen["weights"] = dict(choices.weights) if choices.preset_modified else None
+        return cls(inputs=list(inputs), outputs=outputs or Outputs(), **(chosen | others))
 
     def choices(self) -> Choices:
         """The choices that it holds.
@@ -203,11 +136,7 @@ class Recipe(_Strict):
         InputError
             If a value is out of its range.
         """
-        names = (
-            *("unit", "star_point", "rule", "reference", "l_max", "level", "target"),
-            *("method", "preset", "n_faces", "seed", "box_metric"),
-        )
-        changes: dict[str, Any] = {name: getattr(self, name) for name in names}
+        changes: dict[str, Any] = {name: getattr(self, name) for name in _CHOICES}
         changes["settings"] = tuple(self.settings.items())
         if self.weights is not None:
             changes["weights"] = LossWeights.of(**self.weights)

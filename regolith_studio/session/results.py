@@ -14,18 +14,26 @@ if TYPE_CHECKING:
     from regolith_studio.descriptors.describe import Descriptors
     from regolith_studio.geometry.health import MeshHealth
     from regolith_studio.harmonics.fit import HarmonicFit
+    from regolith_studio.session.origins import Place
     from regolith_studio.studies.coarsening import CoarseningStudy
     from regolith_studio.studies.lmax import LmaxStudy
 
 
 @dataclass(frozen=True)
 class ParticleEntry:
-    """One row of the particle list; `health` and `descriptors` follow a moment after opening."""
+    """One row of the particle list; `health` and `descriptors` follow a moment after opening.
+
+    Parameters
+    ----------
+    place
+        Where a recipe finds it again; ``None`` if nowhere.
+    """
 
     id: str
     particle: Particle
     health: "MeshHealth | None" = None
     descriptors: "Descriptors | None" = None
+    place: "Place | None" = None
 
 
 @dataclass(frozen=True)

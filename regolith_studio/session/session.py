@@ -1,7 +1,7 @@
 """The session: particles, choices and results, and the cycle that keeps the last two in step."""
 
 import dataclasses
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,9 +12,12 @@ from regolith_studio.jobs.events import Failed, Job
 from regolith_studio.jobs.examining import Examined, examine_particles
 from regolith_studio.jobs.loading import Loaded, Problem, load_particles, load_sample, uniquely_named
 from regolith_studio.jobs.runners.protocol import Runner
+from regolith_studio.session.bringing import Brought, bring_back
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.live import LiveResults
+from regolith_studio.session.origins import Files, Origin, Place, Shipped, place_by_source, places_of
 from regolith_studio.session.plan import STUDIES, Kind, depends
+from regolith_studio.session.recipe import SAMPLE, Recipe
 from regolith_studio.session.results import ParticleEntry, Results
 from regolith_studio.session.shelf import Shelf
 from regolith_studio.session.studies import study_job
@@ -85,18 +88,56 @@ class Session:
             Keep the particles that are open already.
         """
         unit = unit or self.choices.unit
-        job = Job(load_particles, (tuple(Path(path) for path in paths), unit))
-        return self._load("Reading particles", job, add)
+        named = tuple(Path(path).absolute() for path in paths)
+        origin = Files(tuple(map(str, named)), unit)
+        return self._load("Reading particles", Job(load_particles, (named, unit)), origin, add)
 
     def open_sample(self) -> int:
         """Load the particles that ship with the program; returns the task's id."""
-        return self._load("Reading the sample", Job(load_sample), add=False)
+        return self._load("Reading the sample", Job(load_sample), Shipped())
 
-    def adopt(self, particles: Sequence[Particle], add: bool = False) -> None:
+    def open_recipe(self, recipe: Recipe, beside: Path) -> int:
+        """Bring the particles of a recipe into the session, read, extracted or drawn; returns the task's id.
+
+        Parameters
+        ----------
+        beside
+            Folder that relative files are looked up in.
+        """
+        if recipe.only_files and recipe.inputs == [SAMPLE]:
+            return self.open_sample()
+        if recipe.only_files and len(recipe.openings) == 1 and SAMPLE not in recipe.inputs:
+            ((files, unit),) = recipe.openings
+            return self.open([beside / file for file in files], unit)
+
+        def take(brought: Brought) -> None:
+            self._replace_particles(brought.loaded, brought.places)
+
+        title = "Bringing particles back"
+        job = Job(bring_back, (recipe, beside))
+        return self._board.start("load", title, job, Reactions(take, failed=self.tell_failure(title)))
+
+    def keep(self, ids: Collection[str]) -> None:
+        """Close all particles but these.
+
+        Raises
+        ------
+        InputError
+            If none would be left.
+        """
+        kept = [entry for entry in self.particles if entry.id in ids]
+        if not kept:
+            raise InputError("There are no particles to keep.")
+        loaded = Loaded(tuple(entry.particle for entry in kept))
+        self._replace_particles(loaded, tuple(entry.place for entry in kept))
+
+    def adopt(self, particles: Sequence[Particle], add: bool = False, origin: Origin | None = None) -> None:
         """Take particles that have been made elsewhere, as if they had been read.
 
         Parameters
         ----------
+        origin
+            How a recipe makes these again.
         add
             Keep the particles that are open already.
 
@@ -107,7 +148,8 @@ class Session:
         """
         if not particles:
             raise InputError("There are no particles to open.")
-        self._replace_particles(Loaded(tuple(particles)), add)
+        places = places_of(particles, origin) if origin else ()
+        self._replace_particles(Loaded(tuple(particles)), places, add)
 
     def select(self, id: str) -> None:
         """Put another particle on screen."""
@@ -272,18 +314,24 @@ class Session:
             changed = names ^ self.results.outdated
             self.update(*sorted(changed), outdated=names)
 
-    def _load(self, title: str, job: Job, add: bool) -> int:
+    def _load(self, title: str, job: Job, origin: Origin, add: bool = False) -> int:
         def take(loaded: Loaded) -> None:
-            self._replace_particles(loaded, add)
+            self._replace_particles(loaded, places_of(loaded.particles, origin), add)
 
         return self._board.start("load", title, job, Reactions(take, failed=self.tell_failure(title)))
 
-    def _replace_particles(self, loaded: Loaded, add: bool) -> None:
+    def _replace_particles(
+        self, loaded: Loaded, places: Sequence[Place | None] = (), add: bool = False
+    ) -> None:
         if loaded.problems:
             self.topics.problems.emit(loaded.problems)
         kept = self.particles if add else ()
         fresh = uniquely_named(loaded.particles, [entry.id for entry in kept])
-        self.particles = kept + tuple(ParticleEntry(particle.name, particle) for particle in fresh)
+        known = places or [place_by_source(particle) for particle in loaded.particles]
+        self.particles = kept + tuple(
+            ParticleEntry(particle.name, particle, place=place)
+            for particle, place in zip(fresh, known, strict=True)
+        )
         first = self.particles[len(kept)].id
         self._live.forget()
         self._studied.clear()

@@ -9,8 +9,9 @@ from PySide6.QtWidgets import QWidget
 from regolith_studio.errors import RegolithError
 from regolith_studio.jobs.events import Failed, Job
 from regolith_studio.session.hired import Hired, perform_hired
+from regolith_studio.session.portrait import Portrait
 from regolith_studio.session.preferences import Preferences
-from regolith_studio.session.project import inputs_of, without_file
+from regolith_studio.session.project import without_file
 from regolith_studio.session.recipe import Recipe, read_recipe
 from regolith_studio.session.session import Session
 from regolith_studio.ui.dialogs.batch import BatchDialog, BatchOrder
@@ -87,7 +88,8 @@ class Batches(QObject):
     def _recipe(self, order: BatchOrder) -> Recipe:
         if order.recipe:
             return read_recipe(order.recipe)
-        return Recipe.from_choices(self._session.choices, inputs_of(self._session), order.outputs)
+        portrait = Portrait.of(self._session.particles, self._session.choices, order.outputs)
+        return portrait.beside((order.folder / "drawn.json").absolute(), whole_path=True)
 
     def _hired(self, value: object) -> None:
         if isinstance(value, Hired) and self._dialog is not None:

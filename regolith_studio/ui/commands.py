@@ -10,12 +10,15 @@ from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import QDialog, QFileDialog, QWidget
 
 from regolith_studio.errors import RegolithError
+from regolith_studio.session.bringing import MOST
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.opening import FileKind, kind_of_all
+from regolith_studio.session.outputs.staging import write_bytes
 from regolith_studio.session.plan import Kind
+from regolith_studio.session.portrait import Portrait
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.session.project import input_shown, inputs_of
-from regolith_studio.session.recipe import SAMPLE, Recipe, read_recipe
+from regolith_studio.session.recipe import read_recipe
 from regolith_studio.session.scripting import as_command, as_python
 from regolith_studio.session.session import Session
 from regolith_studio.ui.dialogs.export import ExportDialog, ExportOrder
@@ -31,6 +34,20 @@ MESH_FILTERS = (
     mark("All files (*)"),
 )
 T = TypeVar("T")
+
+
+def without(portrait: Portrait) -> tuple[str, ...]:
+    """What a recipe or project lacks, as one sentence; none where it is nothing."""
+    if not portrait.lost:
+        return ()
+    names = ", ".join(portrait.lost[:3]) + (" …" if len(portrait.lost) > 3 else "")
+    return (
+        tr(
+            "{count} particles came from no file and are not in it ({names}); export them.",
+            count=len(portrait.lost),
+            names=names,
+        ),
+    )
 
 
 class Commands(QObject):
@@ -95,14 +112,15 @@ class Commands(QObject):
         name, _ = QFileDialog.getSaveFileName(self._window, tr("Save recipe"), start, kinds)
         if not name:
             return
-        text = Recipe.from_choices(self._session.choices, inputs_of(self._session)).to_json()
+        portrait = Portrait.of(self._session.particles, self._session.choices)
         try:
-            Path(name).write_text(text, encoding="utf-8")
-        except OSError as error:
-            self._toast.problem(f"The recipe {name} cannot be written ({error.strerror}).")
+            write_bytes(Path(name), portrait.beside(Path(name)).to_json().encode("utf-8"))
+        except RegolithError as error:
+            self._toast.problem(str(error))
             return
         command = f"regolith-studio run {Path(name).name}"
-        self._toast.note(tr("Saved {name}; run it with: {command}", name=name, command=command))
+        note = tr("Saved {name}; run it with: {command}", name=name, command=command)
+        self._toast.note(" ".join((note, *without(portrait))))
 
     def copy_command(self) -> None:
         """Put the command line that does the same onto the clipboard."""
@@ -162,14 +180,10 @@ class Commands(QObject):
         recipe = read_recipe(path)
         names = {each.name for each in dataclasses.fields(Choices)} - {"selected"}
         self._session.choose(**{name: getattr(recipe.choices(), name) for name in names})
-        if recipe.volumes or recipe.population:
-            self._toast.note(
-                tr("Its choices are taken; Run as a batch makes its grains and virtual particles.")
-            )
-        if not recipe.inputs:
+        if recipe.population is not None and recipe.population.n > MOST:
+            self._toast.note(tr("Its choices are taken; it is too large to be opened: use Run as a batch."))
             return None
-        inputs = [path.parent / name for name in recipe.inputs if name != SAMPLE]
-        return self._session.open(inputs, recipe.unit) if inputs else self._session.open_sample()
+        return self._session.open_recipe(recipe, path.parent)
 
     def _start_export(self, order: ExportOrder) -> None:
         task = self._try(lambda: self._session.export_dataset(order.folder, order.options))

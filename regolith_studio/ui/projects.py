@@ -8,9 +8,11 @@ from PySide6.QtCore import QLockFile, QObject, QTimer, Signal
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
 from regolith_studio.errors import RegolithError
+from regolith_studio.session.portrait import Portrait
 from regolith_studio.session.preferences import preferences_path
-from regolith_studio.session.project import SUFFIX, Project, read_project, without_file
+from regolith_studio.session.project import SUFFIX, Project, read_project
 from regolith_studio.session.session import Session
+from regolith_studio.ui.commands import without
 from regolith_studio.ui.page_stack import PageStack
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.toast import Toast
@@ -96,7 +98,7 @@ class Projects(QObject):
             if answer == QMessageBox.StandardButton.Yes.value:
                 self._bring_back(left[0])
             for path in left:
-                path.unlink(missing_ok=True)
+                _remove(path)
                 _lock_of(path).removeStaleLockFile()
             box.deleteLater()
 
@@ -108,24 +110,25 @@ class Projects(QObject):
         self._timer.stop()
         for cut in self._cuts:
             cut()
-        autosave_path().unlink(missing_ok=True)
+        _remove(autosave_path())
         self._lock.unlock()
 
     def _state(self) -> Project:
         pages = {key: state for key, widget in self._pages.widgets.items() if (state := widget.state())}
         return Project.of(self._session, self._pages.current, pages)
 
+    def _portrait(self) -> Portrait:
+        return Portrait.of(self._session.particles, self._session.choices)
+
     def _write(self, path: Path) -> bool:
-        state = self._state()
+        state, portrait = self._state(), self._portrait()
         try:
-            state.save(path)
+            state.save(path, portrait.model)
         except RegolithError as error:
             self._toast.problem(str(error))
             return False
         self.path, self._saved = path, state
-        lost = without_file(self._session)
-        note = tr("{count} particles came from no file and are not in it; export them.", count=len(lost))
-        self._toast.note(" ".join((tr("Saved {path}.", path=path), *((note,) if lost else ()))))
+        self._toast.note(" ".join((tr("Saved {path}.", path=path), *without(portrait))))
         self.changed.emit()
         return True
 
@@ -164,7 +167,7 @@ class Projects(QObject):
 
     def _autosave(self) -> None:
         try:
-            self._state().save(autosave_path())
+            self._state().save(autosave_path(), self._portrait().model)
             self._lock.tryLock(0)
         except RegolithError as error:
             self._toast.problem(str(error))
@@ -180,6 +183,12 @@ def stale_autosaves() -> list[Path]:
     found = preferences_path().parent.glob(f"autosave-*{SUFFIX}")
     left = [path for path in found if path != autosave_path() and _is_abandoned(path)]
     return sorted(left, key=lambda path: path.stat().st_mtime, reverse=True)
+
+
+def _remove(autosave: Path) -> None:
+    """With the model that may lie beside it."""
+    for path in (autosave, *autosave.parent.glob(f"{autosave.stem}-model.*")):
+        path.unlink(missing_ok=True)
 
 
 def _lock_of(path: Path) -> QLockFile:

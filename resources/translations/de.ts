@@ -334,6 +334,11 @@
    <translation>Ein Skript, das dasselbe tut</translation>
   </message>
   <message>
+   <location filename="ui/actions.py" />
+   <source>A walk through the window</source>
+   <translation>Ein Gang durch das Fenster</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/help.py" />
    <source>About Regolith Studio</source>
    <translation>Über Regolith Studio</translation>
@@ -1167,8 +1172,8 @@
   </message>
   <message>
    <location filename="ui/commands.py" />
-   <source>Its choices are taken; Run as a batch makes its grains and virtual particles.</source>
-   <translation>Seine Einstellungen sind übernommen; seine Körner und virtuellen Partikel macht „Als Stapel ausführen“.</translation>
+   <source>Its choices are taken; it is too large to be opened: use Run as a batch.</source>
+   <translation type="unfinished" />
   </message>
   <message>
    <location filename="ui/panels/loss.py" />
@@ -2058,6 +2063,10 @@
    <translation>Schnitt</translation>
   </message>
   <message>
+   <source>See why it works</source>
+   <translation>Sehen, warum es geht</translation>
+  </message>
+  <message>
    <location filename="ui/panels/coarsening.py" />
    <source>Seed</source>
    <translation>Startwert</translation>
@@ -2297,11 +2306,6 @@
    <translation>Aufgaben</translation>
   </message>
   <message>
-   <location filename="ui/actions.py" />
-   <source>Ten steps through the window</source>
-   <translation>In zehn Schritten durch das Fenster</translation>
-  </message>
-  <message>
    <location filename="ui/pages/explore/pictures.py" />
    <source>The animation is in {path}.</source>
    <translation>Die Animation ist in {path}.</translation>
@@ -2374,6 +2378,10 @@
    <location filename="ui/main_window.py" />
    <source>The next window stands as a new one.</source>
    <translation>Das nächste Fenster steht wie ein neues.</translation>
+  </message>
+  <message>
+   <source>The page Lecture shows the ideas one step at a time, each formula with its numbers: the annealing, the degrees of the fit, a random field. Ctrl+Space plays, the page keys step, Ctrl++ enlarges the letters, F11 fills the screen.</source>
+   <translation>Die Seite Vorlesung zeigt die Gedanken Schritt für Schritt, jede Formel mit ihren Zahlen: das simulierte Abkühlen, die Grade des Fits, ein Zufallsfeld. Strg+Leertaste spielt ab, die Bildtasten gehen einen Schritt, Strg++ vergrößert die Schrift, F11 füllt den Bildschirm.</translation>
   </message>
   <message>
    <source>The pages follow the work: find grains in a scan, model their shape and draw new ones, build a dataset for Rocky, YADE or LAMMPS, and measure the angle of repose.</source>
@@ -2934,9 +2942,9 @@
    <translation>{count} der geöffneten Partikel stammen aus keiner Datei und können nicht Teil eines Stapels sein.</translation>
   </message>
   <message>
-   <location filename="ui/projects.py" />
-   <source>{count} particles came from no file and are not in it; export them.</source>
-   <translation>{count} Partikel stammen aus keiner Datei und sind nicht darin; exportieren Sie sie.</translation>
+   <location filename="ui/commands.py" />
+   <source>{count} particles came from no file and are not in it ({names}); export them.</source>
+   <translation type="unfinished" />
   </message>
   <message>
    <location filename="ui/batches.py" />

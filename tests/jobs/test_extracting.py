@@ -9,7 +9,7 @@ import pytest
 
 from regolith_studio.errors import InputError
 from regolith_studio.imaging.extraction import ExtractionSettings
-from regolith_studio.imaging.sample_volumes import sample_volume
+from regolith_studio.imaging.sample_volumes import sample_file, sample_volume
 from regolith_studio.imaging.segmentation.denoising import DenoiseSettings
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings
 from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
@@ -109,9 +109,9 @@ def test_that_measured_particles_are_handed_over_and_not_kept(part: VolumeInput)
 
 def test_that_segmentation_and_extraction_can_be_run_one_after_the_other() -> None:
     _, segmentation = played(segment_volume(sample_volume("grey"), QUICK.segmentation))
-    _, extraction = played(extract_labels(segmentation.labels, ExtractionSettings(), "scan"))
+    _, extraction = played(extract_labels(segmentation.labels, ExtractionSettings(), sample_file("grey")))
     assert segmentation.n_grains == 60
-    assert {particle.group for particle in extraction.particles} == {"scan"}
+    assert {particle.group for particle in extraction.particles} == {"synthetic-grey"}
 
 
 def test_that_a_volume_without_whole_grains_says_what_to_do(tmp_path: Path) -> None:

@@ -35,7 +35,7 @@ def page(shown, preferences, wait, monkeypatch):
     poster = Poster()
     session = Session(ThreadRunner(poster.post))
     adopted = []
-    monkeypatch.setattr(session, "adopt", adopted.extend)
+    monkeypatch.setattr(session, "adopt", lambda particles, **_origin: adopted.extend(particles))
     frame = shown(QWidget())
     toast = Toast(frame)
     wiring = Wiring(session, toast.problem, frame)

@@ -202,7 +202,7 @@ def test_that_the_recipe_is_what_is_chosen(window, tmp_path, monkeypatch):
     window.session.choose(n_faces=30)
     window.commands.open_paths([target])
     assert (window.session.choices.n_faces, window.session.choices.seed) == (12, 5)
-    drawn = {"population": {"sources": ["ma165"], "n": 9}, "n_faces": 14}
+    drawn = {"population": {"sources": ["ma165"], "n": 9000}, "n_faces": 14}
     target.write_text(json.dumps(drawn))
     reading = [task.id for task in window.session.tasks if task.lane == "load"]
     window.commands.open_paths([target])

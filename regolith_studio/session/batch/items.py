@@ -1,13 +1,15 @@
 """The particles of a recipe before anybody has read them: small, picklable, in a fixed order."""
 
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, Protocol, Self
 
+from regolith_studio.errors import InputError
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.jobs.generating import PAPER_DEGREE, groups_of
+from regolith_studio.jobs.generating import PAPER_DEGREE, drawn_names, groups_of
 from regolith_studio.jobs.loading import Problem, files_in, free_name
 from regolith_studio.model.draws import Draws, virtual_mesh
 from regolith_studio.model.materials import materials
@@ -16,7 +18,8 @@ from regolith_studio.readers.registry import MeshFile, read_file
 from regolith_studio.readers.sample import sample_particles
 from regolith_studio.readers.shape_files import read_shape_source
 from regolith_studio.session.batch.prepared import MODEL, Prepared, read_grain, read_index
-from regolith_studio.session.recipe import SAMPLE, Population, Recipe
+from regolith_studio.session.recipe import SAMPLE, Recipe
+from regolith_studio.session.recipe_inputs import Chosen, Population
 
 NOTHING = Prepared()
 
@@ -41,12 +44,31 @@ class Item(Protocol):
             If that is impossible.
         """
 
+    def called(self, name: str) -> "Item":
+        """The same particle under another name."""
+
 
 @dataclass(frozen=True)
-class FileItem:
-    """A mesh file."""
+class _Named:
+    """What all of them have.
+
+    Parameters
+    ----------
+    name
+        Unique within the batch.
+    """
 
     name: str
+
+    def called(self, name: str) -> Self:
+        """The same particle under another name."""
+        return replace(self, name=name)
+
+
+@dataclass(frozen=True)
+class FileItem(_Named):
+    """A mesh file."""
+
     file: MeshFile
     unit: str
 
@@ -65,10 +87,9 @@ class FileItem:
 
 
 @dataclass(frozen=True)
-class SampleItem:
+class SampleItem(_Named):
     """A particle that ships with the program."""
 
-    name: str
     original: str
 
     @property
@@ -83,10 +104,9 @@ class SampleItem:
 
 
 @dataclass(frozen=True)
-class GrainItem:
+class GrainItem(_Named):
     """A grain of a CT volume that has been extracted."""
 
-    name: str
     folder: Path
     entry: Mapping[str, Any]
 
@@ -101,7 +121,7 @@ class GrainItem:
 
 
 @dataclass(frozen=True)
-class DrawnItem:
+class DrawnItem(_Named):
     """A virtual particle.
 
     Parameters
@@ -110,7 +130,6 @@ class DrawnItem:
         Folder of the fitted model; ``None`` where a shipped card is one.
     """
 
-    name: str
     population: Population
     seed: int
     index: int
@@ -150,7 +169,8 @@ class Items:
         Raises
         ------
         InputError
-            If the material card does not reach the degree asked for.
+            If the material card does not reach the degree asked for, or a particle that is chosen is not
+            there.
         """
         problems: list[Problem] = list(prepared.problems)
         members: list[Item] = []
@@ -158,14 +178,16 @@ class Items:
         if SAMPLE in recipe.inputs:
             for particle in sample_particles():
                 members.append(SampleItem(free_name(particle.name, particle.group, taken), particle.name))
-        files = [base / name for name in recipe.inputs if name != SAMPLE]
-        for file in files_in(files, problems):
-            members.append(FileItem(free_name(file.path.stem, file.group, taken), file, recipe.unit))
+        for files, unit in recipe.openings:
+            for file in files_in([base / name for name in files], problems):
+                members.append(FileItem(free_name(file.path.stem, file.group, taken), file, unit))
         for folder in prepared.volumes:
             for entry in read_index(folder):
                 members.append(GrainItem(free_name(entry["name"], entry["group"], taken), folder, entry))
         if recipe.population is not None:
             members += _drawn(recipe, recipe.population, prepared.model, taken)
+        if recipe.particles is not None:
+            members = _chosen(members, recipe.particles)
         return cls(tuple(members), tuple(problems))
 
     def marks(self) -> Iterable[str]:
@@ -174,23 +196,36 @@ class Items:
 
 
 def title_of(population: Population) -> str:
-    """What its particles are called: the card, or the first source."""
+    """What its particles are called: by its name, or the card's or the first source's."""
+    if population.name:
+        return population.name
     (first, *_) = population.sources
     return first if first in materials() else Path(first).stem or "virtual"
 
 
-def _drawn(recipe: Recipe, population: Population, model: Path | None, taken: set[str]) -> Sequence[Item]:
+def _drawn(recipe: Recipe, population: Population, model: Path | None, taken: set[str]) -> list[Item]:
     if model is None:
-        _model(population, None)
-    digits = max(4, len(str(population.n - 1)))
-    names = (f"{title_of(population)}-{index:0{digits}d}" for index in range(population.n))
+        model_of(population, None)
+    seed = recipe.seed if population.seed is None else population.seed
+    level = recipe.level if population.level is None else population.level
     return [
-        DrawnItem(free_name(name, "", taken), population, recipe.seed, index, recipe.level, model)
-        for index, name in enumerate(names)
+        DrawnItem(free_name(name, "", taken), population, seed, index, level, model)
+        for index, name in enumerate(drawn_names(title_of(population), population.n))
     ]
 
 
-def _model(population: Population, folder: Path | None) -> FittedModel:
+def _chosen(members: Sequence[Item], wish: Sequence[str | Chosen]) -> list[Item]:
+    known = {member.name: member for member in members}
+    pairs = [(each, each) if isinstance(each, str) else (each.name, each.called) for each in wish]
+    if missing := next((name for name, _ in pairs if name not in known), None):
+        raise InputError(f"The recipe asks for a particle {missing!r}, which its inputs do not hold.")
+    ((name, count),) = Counter(name for _, name in pairs).most_common(1)
+    if count > 1:
+        raise InputError(f"The recipe asks for {count} particles of the name {name!r}.")
+    return [known[name].called(new) for name, new in pairs]
+
+
+def model_of(population: Population, folder: Path | None) -> FittedModel:
     """The model that particles are drawn from."""
     if folder is None:
         card = materials()[population.sources[0]]
@@ -207,6 +242,6 @@ def _draws(population: Population, folder: Path | None, seed: int) -> tuple[Draw
 @lru_cache(maxsize=1)
 def _remembered_draws(population: str, folder: Path | None, seed: int) -> tuple[Draws, tuple[str, ...]]:
     wish = Population.model_validate_json(population)
-    model = _model(wish, folder)
+    model = model_of(wish, folder)
     draws = model.draw(wish.n, seed, wish.bounds)
     return draws, groups_of(draws, model)

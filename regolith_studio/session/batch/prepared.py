@@ -7,9 +7,9 @@ there at all, so that a run that goes on finds it.
 import hashlib
 import json
 import shutil
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +19,7 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle, Source
 from regolith_studio.imaging.extraction import Extracted
+from regolith_studio.imaging.sample_volumes import SampleVolume, sample_file
 from regolith_studio.jobs.crew import Crew
 from regolith_studio.jobs.events import Steps
 from regolith_studio.jobs.extracting import VolumeInput, extract_each, fingerprint
@@ -32,10 +33,13 @@ from regolith_studio.readers.shape_files import is_shape_source, read_shape_sour
 from regolith_studio.readers.volume_header import RawLayout
 from regolith_studio.session.outputs.extraction import RECIPE, recipe_document
 from regolith_studio.session.outputs.staging import json_bytes, staged_folder
-from regolith_studio.session.recipe import Population, Recipe, VolumeEntry
+from regolith_studio.session.recipe import Recipe
+from regolith_studio.session.recipe_inputs import Population, RawVolume, VolumeEntry
 
 INDEX = "grains.json"
 MODEL = "model"
+SAMPLE_VOLUMES: dict[str, SampleVolume] = {"sample:labels": "labels", "sample:grey": "grey"}
+"""The scan that ships with the program, by the names that recipes know it by."""
 
 
 @dataclass(frozen=True)
@@ -90,6 +94,29 @@ def is_card(population: Population, base: Path) -> bool:
     (first, *more) = population.sources
     plain = not (more or population.model or population.settings)
     return plain and first in materials() and not (base / first).exists()
+
+
+def resolved(entry: VolumeEntry, base: Path) -> VolumeEntry:
+    """The same volume whatever folder a recipe lies in."""
+    settings = None if entry.recipe is None else str(base / entry.recipe)
+    file = entry.file if entry.file in SAMPLE_VOLUMES else str(base / entry.file)
+    return entry.model_copy(update={"file": file, "recipe": settings})
+
+
+def entry_of(given: VolumeInput, settings: GrainRecipe) -> VolumeEntry:
+    """What a recipe says of a volume and of the way from its voxels to particles."""
+    sizes, raw = given.voxel_size, given.raw
+    shipped = (name for name, kind in SAMPLE_VOLUMES.items() if given.path == sample_file(kind))
+    return VolumeEntry(
+        file=next(shipped, str(given.path.absolute())),
+        voxel_size=[float(e) for e in sizes] if isinstance(sizes, Sequence) else sizes,
+        unit=given.unit,
+        kind=given.kind,
+        dataset=given.dataset,
+        axes=given.axes,
+        raw=None if raw is None else RawVolume(**{**asdict(raw), "shape": list(raw.shape)}),
+        **settings.as_document(),
+    )
 
 
 def read_index(folder: Path) -> list[dict[str, Any]]:
@@ -213,7 +240,7 @@ def _volume_input(entry: VolumeEntry, base: Path) -> VolumeInput:
         else RawLayout(**{**entry.raw.model_dump(), "shape": tuple(entry.raw.shape)})
     )
     return VolumeInput(
-        base / entry.file,
+        sample_file(SAMPLE_VOLUMES[entry.file]) if entry.file in SAMPLE_VOLUMES else base / entry.file,
         entry.voxel_size,
         entry.unit,
         entry.kind,

@@ -191,7 +191,7 @@ def _problems(problems: Sequence[str]) -> str:
 
 def _provenance(recipe: Recipe) -> str:
     versions = ", ".join(f"{name} {version}" for name, version in software_versions().items())
-    told = [*recipe.inputs, *(f"the grains of {volume.file}" for volume in recipe.volumes)]
+    told = [*recipe.named_inputs, *(f"the grains of {volume.file}" for volume in recipe.volumes)]
     if (population := recipe.population) is not None:
         told.append(f"{population.n:,} particles drawn like {', '.join(population.sources)}")
     inputs = ", ".join(told)

@@ -1,6 +1,7 @@
 """Controls on the left; spectrum and drawn particle above, gallery and judgement below."""
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,7 @@ from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.comparing import compare_distributions
 from regolith_studio.jobs.events import Job
-from regolith_studio.jobs.generating import GenerateOrder, groups_of, make_particles
+from regolith_studio.jobs.generating import GenerateOrder, make_particles
 from regolith_studio.jobs.judging import (
     DrawnShapes,
     FittedShapes,
@@ -24,6 +25,7 @@ from regolith_studio.model.protocol import FittedModel
 from regolith_studio.model.sample import Sample
 from regolith_studio.model.spectra import can_be_edited, relative_amplitudes, with_amplitudes
 from regolith_studio.readers.shape_files import ShapeSource, read_shape_source
+from regolith_studio.session.origins import Drawn
 from regolith_studio.ui.layout import padded, scrolled_column, side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.model.controls import DrawControls, SourceControls, order_from
@@ -135,7 +137,7 @@ class ModelPage(PageWidget):
 
     def adopt(self) -> None:
         """Open the drawn particles: they replace those that are open, and are coarsened and exported."""
-        if self._drawn is None or self._model is None:
+        if self._drawn is None or self._fitted is None:
             self._context.toast.problem("There are no drawn particles yet: draw some first.")
             return
         draws = self._drawn.draws
@@ -145,8 +147,11 @@ class ModelPage(PageWidget):
                 "regolith-studio generate."
             )
             return
-        job = Job(make_particles, (draws, groups_of(draws, self._model), POPULATION_LEVEL))
-        self._context.start("Making virtual particles", job, self._take_over, lane="adopt")
+        origin = Drawn.of(self._drawn, self._fitted, POPULATION_LEVEL)
+        job = Job(make_particles, (draws, self._drawn.model, origin.population.name, POPULATION_LEVEL))
+        self._context.start(
+            "Making virtual particles", job, lambda made: self._take_over(made, origin), lane="adopt"
+        )
 
     def save_model(self) -> None:
         """Ask for a file and write the model."""
@@ -251,12 +256,14 @@ class ModelPage(PageWidget):
             return
         try:
             self._model = model.renamed(names)
+            if self._drawn is not None and isinstance(self._drawn.model, type(model)):
+                self._drawn = replace(self._drawn, model=self._drawn.model.renamed(names))
         finally:
             self.drawing.show_names(getattr(self._model, "names", ()))
 
-    def _take_over(self, particles: tuple[Particle, ...]) -> None:
+    def _take_over(self, particles: tuple[Particle, ...], origin: Drawn) -> None:
         self._context.session.shelf.put("population", particles)
-        self._context.session.adopt(particles)
+        self._context.session.adopt(particles, origin=origin)
         self._context.toast.note(f"{len(particles):,} virtual particles are open now.")
 
     # --- the state of the controls -------------------------------------------------------------

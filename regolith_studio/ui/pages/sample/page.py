@@ -97,11 +97,10 @@ class SamplePage(PageWidget):
     def keep_chosen(self) -> None:
         """Close every particle but the chosen rows."""
         chosen = set(self.table.chosen())
-        kept = [entry.particle for entry in self._session.particles if entry.id in chosen]
-        if not kept:
+        if not any(entry.id in chosen for entry in self._session.particles):
             self._context.toast.problem("Choose the rows to keep first.")
             return
-        self._session.adopt(kept)
+        self._session.keep(chosen)
 
     def _place(self) -> None:
         left = QWidget()

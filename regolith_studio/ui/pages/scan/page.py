@@ -12,6 +12,7 @@ from PySide6.QtWidgets import QFileDialog, QHBoxLayout
 
 from regolith_studio.errors import RegolithError
 from regolith_studio.imaging.extraction import Extraction
+from regolith_studio.imaging.sample_volumes import sample_file
 from regolith_studio.imaging.segmentation.segment import Segmentation, SegmentationSettings
 from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.extracting import VolumeInput, extract_labels
@@ -27,7 +28,10 @@ from regolith_studio.jobs.scanning import (
 )
 from regolith_studio.readers.raw_names import layout_from_name
 from regolith_studio.readers.volume_header import VolumeHeader
+from regolith_studio.session.batch.prepared import entry_of
+from regolith_studio.session.origins import Grains
 from regolith_studio.session.outputs.staging import json_bytes, write_bytes
+from regolith_studio.session.recipe_inputs import VolumeEntry
 from regolith_studio.ui.layout import CONTROLS_WIDTH, padded, scrolled_column, side_by_side
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.scan.controls import SegmentationControls
@@ -53,6 +57,7 @@ class ScanPage(PageWidget):
         self.setAcceptDrops(True)
         self._context = context
         self.scan: Scan | None = None
+        self._given = VolumeInput(Path())
         self._whole: FoundGrains | None = None
         self.preview: Segmentation | None = None
         self._found_with: SegmentationSettings | None = None
@@ -124,11 +129,18 @@ class ScanPage(PageWidget):
 
     def open_sample(self) -> None:
         """Open the shipped scan."""
-        self._context.start("Reading the sample scan", Job(read_sample_scan), self._take, lane="read")
+        given = VolumeInput(sample_file("grey"))
+        self._context.start(
+            "Reading the sample scan",
+            Job(read_sample_scan),
+            lambda scan: self._take(scan, given),
+            lane="read",
+        )
 
     def read(self, given: VolumeInput) -> None:
         """Read a volume of which everything is known."""
-        self._context.start("Reading the volume", Job(read_scan, (given,)), self._take, lane="read")
+        job = Job(read_scan, (given,))
+        self._context.start("Reading the volume", job, lambda scan: self._take(scan, given), lane="read")
 
     def _looked(self, path: Path, header: VolumeHeader) -> None:
         if needs_asking(header):
@@ -162,12 +174,12 @@ class ScanPage(PageWidget):
         size, unit = self._context.recall("voxel_size", [1.0, "um"])
         return float(size), str(unit)
 
-    def _take(self, scan: Scan) -> None:
+    def _take(self, scan: Scan, given: VolumeInput) -> None:
         self._stop_work()
         self._forget_grains()
         if self.scan is not None:
             self.scan.scratch.close()
-        self.scan, self.preview = scan, None
+        self.scan, self.preview, self._given = scan, None, given
         self.overview.set_scan(scan)
         self.controls.set_kind(scan.volume.kind)
         self._show_level()
@@ -223,10 +235,10 @@ class ScanPage(PageWidget):
         if labels is None or self.scan is None:
             self._context.toast.note("Find the grains first.")
             return
-        grey = self.scan.volume if self.scan.volume.kind == "grey" else None
-        group = Path(self.scan.volume.name).stem
-        job = Job(extract_labels, (labels, self.controls.value().extraction, group, grey))
-        self._context.start("Making particles", job, self._adopt, lane="grains")
+        settings = GrainRecipe(self._found_with or SegmentationSettings(), self.controls.value().extraction)
+        entry = entry_of(self._given, settings)
+        job = Job(extract_labels, (labels, settings.extraction, self._given.path))
+        self._context.start("Making particles", job, lambda made: self._adopt(made, entry), lane="grains")
 
     def _found(self, found: FoundGrains, settings: SegmentationSettings) -> None:
         self._forget_grains()
@@ -240,14 +252,15 @@ class ScanPage(PageWidget):
             self._whole.scratch.close()
         self._whole = None
 
-    def _adopt(self, extraction: Extraction) -> None:
+    def _adopt(self, extraction: Extraction, entry: VolumeEntry) -> None:
         if not extraction.found:
             self._context.toast.problem(
                 f"No grain became a particle: {len(extraction.border)} touch the border of the volume, "
                 f"{len(extraction.small)} are too small."
             )
             return
-        self._context.session.adopt(extraction.particles)
+        origin = Grains.of(entry, extraction.particles)
+        self._context.session.adopt(extraction.particles, origin=origin)
         self._context.toast.note(extraction.summary)
         self.steps.set_particles(extraction.summary)
 

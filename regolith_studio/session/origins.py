@@ -1,0 +1,157 @@
+"""Where open particles came from, in the words of a recipe: what was read, extracted or drawn."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.jobs.generating import drawn_names
+from regolith_studio.jobs.judging import DrawnShapes, FittedShapes
+from regolith_studio.jobs.loading import files_in
+from regolith_studio.model.materials import materials
+from regolith_studio.model.protocol import FittedModel
+from regolith_studio.readers.formats import mesh_suffixes
+from regolith_studio.readers.sample import sample_particles
+from regolith_studio.readers.table_particles import TABLE_SUFFIXES, TEXT_SUFFIXES
+from regolith_studio.session.recipe_inputs import Population, VolumeEntry
+
+Known = tuple[str, str, str]
+"""A particle that an origin gives: what tells it from the others there, its name and its group."""
+
+
+@dataclass(frozen=True)
+class Shipped:
+    """The particles that ship with the program."""
+
+    def members(self) -> tuple[Known, ...]:
+        """All that it gives, in order."""
+        return tuple((each.name, each.name, each.group) for each in sample_particles())
+
+
+@dataclass(frozen=True)
+class Files:
+    """Files and folders that were read together.
+
+    Parameters
+    ----------
+    paths
+        As they were named, absolute.
+    unit
+        Of those without one.
+    """
+
+    paths: tuple[str, ...]
+    unit: str
+
+    def members(self) -> tuple[Known, ...]:
+        """All files that are there now, in order; also those that cannot be read."""
+        found = files_in([Path(path) for path in self.paths], [])
+        return tuple((str(file.path), file.path.stem, file.group) for file in found)
+
+
+@dataclass(frozen=True, eq=False)
+class Grains:
+    """Particles of a CT volume.
+
+    Parameters
+    ----------
+    volume
+        The file, and all settings.
+    known
+        Every grain that became a particle, in order.
+    """
+
+    volume: VolumeEntry
+    known: tuple[Known, ...] = field(repr=False)
+
+    @classmethod
+    def of(cls, volume: VolumeEntry, particles: Sequence[Particle]) -> "Grains":
+        """The origin of all particles of an extraction."""
+        return cls(volume, tuple((each.name, each.name, each.group) for each in particles))
+
+    def members(self) -> tuple[Known, ...]:
+        """All that it gives, in order."""
+        return self.known
+
+
+@dataclass(frozen=True, eq=False)
+class Drawn:
+    """Virtual particles.
+
+    Parameters
+    ----------
+    population
+        With a name and a seed; its source is a shipped card, or is to be the file of `model`.
+    model
+        What they were drawn from, where no card says it.
+    """
+
+    population: Population
+    model: FittedModel | None = field(default=None, repr=False)
+
+    @classmethod
+    def of(cls, drawn: DrawnShapes, fitted: FittedShapes, level: int) -> "Drawn":
+        """The origin of particles that were drawn from `fitted`, or from what was edited in it.
+
+        Parameters
+        ----------
+        level
+            Subdivisions of the icosahedron that their surfaces are drawn on.
+        """
+        name, wish = fitted.source.name, drawn.order
+        shipped = drawn.model is fitted.model and fitted.source.content == materials().get(name)
+        population = Population(
+            sources=[name],
+            n=len(drawn.draws),
+            l_max=drawn.model.l_max if shipped else None,
+            size_range=None if wish.size_range is None else list(wish.size_range),
+            seed=wish.seed,
+            level=level,
+            name=name if shipped else _title(name),
+        )
+        return cls(population, None if shipped else drawn.model)
+
+    def members(self) -> tuple[Known, ...]:
+        """All that it gives, in order."""
+        names = drawn_names(self.population.name, self.population.n)
+        return tuple((name, name, "") for name in names)
+
+
+def _title(name: str) -> str:
+    """A name for drawn particles that can stand in the names of files."""
+    return re.sub(r"[^\w.+-]+", "_", name).strip("_.")[:40] or "virtual"
+
+
+Origin = Shipped | Files | Grains | Drawn
+
+
+@dataclass(frozen=True)
+class Place:
+    """Which particle of an origin one is."""
+
+    origin: Origin
+    key: str
+
+
+def places_of(particles: Sequence[Particle], origin: Origin) -> tuple[Place, ...]:
+    """Where each of the particles stands that an origin has just given.
+
+    Files are told apart by their paths, all others by their names before these were made unique.
+    """
+    if isinstance(origin, Files):
+        return tuple(Place(origin, each.source.path if each.source else "") for each in particles)
+    return tuple(Place(origin, each.name) for each in particles)
+
+
+def place_by_source(particle: Particle) -> Place | None:
+    """Where a particle stands of which only its file is known."""
+    source = particle.source
+    if source is None:
+        return None
+    kind, _, name = source.path.partition(":")
+    if kind == "sample":
+        return Place(Shipped(), name)
+    if Path(source.path).suffix.lower() not in {*mesh_suffixes(), *TABLE_SUFFIXES, *TEXT_SUFFIXES}:
+        return None
+    return Place(Files((source.path,), source.unit), source.path)

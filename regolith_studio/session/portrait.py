@@ -1,0 +1,116 @@
+"""A session as a recipe: all that is open and chosen, so that ``run`` makes the same bytes of it."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from regolith_studio.errors import FileError
+from regolith_studio.jobs.loading import free_name
+from regolith_studio.model.files import write_model
+from regolith_studio.model.protocol import FittedModel
+from regolith_studio.session.choices import Choices
+from regolith_studio.session.origins import Drawn, Files, Grains, Origin, Place, Shipped
+from regolith_studio.session.recipe import SAMPLE, Outputs, Recipe
+from regolith_studio.session.recipe_inputs import Chosen, FilesEntry
+from regolith_studio.session.results import ParticleEntry
+
+
+@dataclass(frozen=True)
+class Portrait:
+    """A recipe, and what it cannot hold by itself.
+
+    Parameters
+    ----------
+    recipe
+        Of all particles that have an origin; with models beside it, it must be written by :meth:`beside`.
+    model
+        What its population is drawn from, if no shipped card is.
+    lost
+        Ids of the particles that it cannot bring back.
+    """
+
+    recipe: Recipe
+    model: FittedModel | None = field(default=None, repr=False)
+    lost: tuple[str, ...] = ()
+
+    @classmethod
+    def of(
+        cls, entries: Sequence[ParticleEntry], choices: Choices, outputs: Outputs | None = None
+    ) -> "Portrait":
+        """Of particles and choices; without any particle, of the sample."""
+        placed = [(entry.id, entry.place) for entry in entries]
+        origins = _in_order([place.origin for _, place in placed if place is not None])
+        named = dict(_names(origins))
+        pairs = [(named.get(place), name) for name, place in placed]
+        files = [each for each in origins if isinstance(each, Files)]
+        drawn = next((each for each in origins if isinstance(each, Drawn)), None)
+        first = files[0] if files else None
+        recipe = Recipe.from_choices(
+            choices,
+            _inputs(origins),
+            outputs,
+            unit=first.unit if first else choices.unit,
+            volumes=[each.volume for each in origins if isinstance(each, Grains)],
+            population=drawn.population if drawn else None,
+            particles=_selection(pairs, list(named.values())),
+        )
+        lost = tuple(name for known, name in pairs if known is None)
+        return cls(recipe, drawn.model if drawn else None, lost)
+
+    def beside(self, path: Path, whole_path: bool = False) -> Recipe:
+        """The recipe as it can be written to `path`; a model is written beside it.
+
+        Parameters
+        ----------
+        whole_path
+            Name the model by its whole path: the recipe will lie elsewhere.
+
+        Raises
+        ------
+        FileError
+            If the model cannot be written.
+        """
+        population = self.recipe.population
+        if self.model is None or population is None:
+            return self.recipe
+        stem = path.with_name(f"{path.stem}-model")
+        try:
+            write_model(stem, self.model, {"source": population.name, "notes": []})
+        except OSError as error:
+            raise FileError(f"The model {stem} cannot be written ({error.strerror}).") from error
+        told = population.model_copy(update={"sources": [str(stem) if whole_path else stem.name]})
+        return self.recipe.model_copy(update={"population": told})
+
+
+def _in_order(origins: Sequence[Origin]) -> list[Origin]:
+    """As a recipe takes them: the sample, files, volumes, one population."""
+    kinds = (Shipped, Files, Grains, Drawn)
+    found = [each for kind in kinds for each in dict.fromkeys(o for o in origins if isinstance(o, kind))]
+    populations = [each for each in found if isinstance(each, Drawn)]
+    return [each for each in found if each not in populations[1:]]
+
+
+def _inputs(origins: Sequence[Origin]) -> list[str | FilesEntry]:
+    files = [each for each in origins if isinstance(each, Files)]
+    named: list[str | FilesEntry] = [SAMPLE] if not origins or Shipped() in origins else []
+    for number, each in enumerate(files):
+        named += [FilesEntry(files=list(each.paths), unit=each.unit)] if number else each.paths
+    return named
+
+
+def _selection(
+    pairs: Sequence[tuple[str | None, str]], all_names: Sequence[str]
+) -> list[str | Chosen] | None:
+    """Names of the particles among all that a run finds; ``None`` where it is all of them in their order."""
+    found = [(known, name) for known, name in pairs if known is not None]
+    if not found or found == [(name, name) for name in all_names]:
+        return None
+    return [known if known == name else Chosen(name=known, called=name) for known, name in found]
+
+
+def _names(origins: Sequence[Origin]) -> Iterator[tuple[Place | None, str]]:
+    """The name that each particle of the origins gets in a run."""
+    taken: set[str] = set()
+    for origin in origins:
+        for key, name, group in origin.members():
+            yield Place(origin, key), free_name(name, group, taken)

@@ -1,0 +1,264 @@
+"""What is open in a session, saved as a recipe and run, gives the dataset of the session byte by byte."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from regolith_studio.errors import InputError
+from regolith_studio.geometry.directions import icosphere
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.imaging.segmentation.segment import SegmentationSettings
+from regolith_studio.imaging.segmentation.splitting import SplittingSettings
+from regolith_studio.imaging.stl import stl_bytes
+from regolith_studio.jobs.extracting import ExtractionSettings, VolumeInput, extract_file, extract_labels
+from regolith_studio.jobs.generating import GenerateOrder, make_particles
+from regolith_studio.jobs.grain_recipe import GrainRecipe
+from regolith_studio.jobs.judging import draw_shapes, fit_shapes
+from regolith_studio.jobs.runners.inline import InlineRunner
+from regolith_studio.jobs.scanning import find_grains, read_scan
+from regolith_studio.model.materials import materials
+from regolith_studio.model.spectra import relative_amplitudes, with_amplitudes
+from regolith_studio.readers.shape_files import ShapeSource
+from regolith_studio.session.batch.prepared import entry_of
+from regolith_studio.session.choices import Choices
+from regolith_studio.session.origins import Drawn, Grains
+from regolith_studio.session.performing import perform
+from regolith_studio.session.portrait import Portrait
+from regolith_studio.session.project import Project, read_project
+from regolith_studio.session.recipe import Outputs, read_recipe
+from regolith_studio.session.session import Session
+
+CHOICES = Choices(method="annealing", settings=(("iterations", 12),), level=2, l_max=4, n_faces=12, seed=3)
+ONLY_DATASET = Outputs(descriptors=False, meshes=False, summary=False)
+LEVEL = 2
+
+
+def ended(steps: Any) -> Any:
+    while True:
+        try:
+            next(steps)
+        except StopIteration as end:
+            return end.value
+
+
+def files(folder: Path) -> dict[str, bytes]:
+    found = {path.relative_to(folder).as_posix(): path for path in folder.rglob("*") if path.is_file()}
+    return {name: path.read_bytes() for name, path in found.items()}
+
+
+def assert_that_a_run_gives_the_dataset_of(session: Session, place: Path) -> Portrait:
+    """By way of the recipe on disk; the dataset of the session has the name of the run's folder."""
+    exported: list[Path] = []
+    session.topics.exported.connect(exported.append)
+    session.export_dataset(place / "window" / "grains")
+    assert exported
+    portrait = Portrait.of(session.particles, session.choices, ONLY_DATASET)
+    saved = place / "recipe.json"
+    saved.write_text(portrait.beside(saved).to_json())
+    done = ended(perform(read_recipe(saved), saved.parent, place / "run" / "grains"))
+    assert not done.problems
+    assert files(place / "run" / "grains" / "dataset") == files(place / "window" / "grains")
+    return portrait
+
+
+def write_grains(folder: Path, *names: str, size: float = 12.0) -> Path:
+    folder.mkdir(parents=True, exist_ok=True)
+    sphere = icosphere(3)
+    for index, name in enumerate(names):
+        axes = np.random.default_rng(len(folder.name) + index).uniform(size, 2 * size, 3)
+        (folder / name).write_bytes(stl_bytes(Mesh(sphere.vertices * axes, sphere.faces), "test"))
+    return folder
+
+
+@pytest.fixture
+def session() -> Session:
+    return Session(InlineRunner(), CHOICES)
+
+
+def test_that_meshes_of_folders_in_two_units_with_broken_files_are_the_same_in_a_run(
+    session: Session, tmp_path: Path
+) -> None:
+    inner = write_grains(tmp_path / "scans" / "coarse", "a.stl", "b.stl")
+    write_grains(tmp_path / "scans" / "fine", "a.stl", "c.stl")
+    (inner / "aa.stl").write_bytes(b"solid nothing")
+    session.open([tmp_path / "scans"], "um")
+    session.open([write_grains(tmp_path / "more", "a.stl", size=0.01)], "mm", add=True)
+    assert [entry.id for entry in session.particles] == ["a", "b", "fine_a", "c", "more_a"]
+    portrait = assert_that_a_run_gives_the_dataset_of(session, tmp_path)
+    assert portrait.lost == ()
+    assert portrait.recipe.unit == "um"
+    assert portrait.recipe.openings[1][1] == "mm"
+
+
+def test_that_the_sample_and_a_file_beside_it_are_the_same_in_a_run(session: Session, tmp_path: Path) -> None:
+    session.open_sample()
+    session.keep({"angular-2", "flat-1"})
+    session.open([write_grains(tmp_path / "more", "flat-1.stl") / "flat-1.stl"], add=True)
+    assert_that_a_run_gives_the_dataset_of(session, tmp_path)
+
+
+def test_that_a_closed_particle_gives_its_name_free_and_the_run_knows(
+    session: Session, tmp_path: Path
+) -> None:
+    session.open([write_grains(tmp_path / "one", "a.stl", "b.stl")])
+    session.keep({"b"})
+    session.open([write_grains(tmp_path / "two", "a.stl")], add=True)
+    assert [entry.id for entry in session.particles] == ["b", "a"]
+    portrait = assert_that_a_run_gives_the_dataset_of(session, tmp_path)
+    told = portrait.recipe.particles
+    assert told is not None
+    assert told[0] == "b"
+
+
+def test_that_a_table_of_coefficients_is_the_same_in_a_run(session: Session, tmp_path: Path) -> None:
+    (tmp_path / "grain.sh").write_text("0, 0, 9.0, 0.0\n1, 0, 0.2, 0\n1, 1, 0.1, 0\n2, 0, 0.8, 0\n")
+    session.open([tmp_path / "grain.sh"], "um")
+    assert_that_a_run_gives_the_dataset_of(session, tmp_path)
+
+
+@pytest.fixture
+def labels(tmp_path: Path) -> Path:
+    """Three labelled ellipsoids."""
+    z, y, x = np.indices((30, 44, 44), dtype=float)
+    volume = np.zeros(x.shape, dtype=np.uint16)
+    for number, ((a, b, c), radius) in enumerate(
+        [((12, 12, 14), 9), ((32, 12, 15), 8), ((12, 32, 15), 7)], 1
+    ):
+        volume[((x - a) / radius) ** 2 + ((y - b) / (radius - 1)) ** 2 + ((z - c) / radius) ** 2 < 1] = number
+    np.save(tmp_path / "labels.npy", volume)
+    return tmp_path / "labels.npy"
+
+
+def extracted(session: Session, given: VolumeInput, settings: GrainRecipe) -> None:
+    """What the page of scans does."""
+    scan = ended(read_scan(given))
+    found = scan.volume
+    if found.kind == "grey":
+        found = ended(find_grains(scan, settings.segmentation)).segmentation.labels
+    made = ended(extract_labels(found, settings.extraction, given.path))
+    session.adopt(made.particles, origin=Grains.of(entry_of(given, settings), made.particles))
+
+
+def test_that_grains_of_a_label_volume_are_the_same_in_a_run(
+    session: Session, tmp_path: Path, labels: Path
+) -> None:
+    settings = GrainRecipe(extraction=ExtractionSettings(min_voxels=200, iterations=5))
+    extracted(session, VolumeInput(labels, 0.002, "mm"), settings)
+    assert len(session.particles) == 3
+    assert_that_a_run_gives_the_dataset_of(session, tmp_path)
+
+
+def test_that_chosen_grains_and_a_mesh_beside_them_are_the_same_in_a_run(
+    session: Session, tmp_path: Path, labels: Path
+) -> None:
+    extracted(session, VolumeInput(labels, (2.0, 2.0, 2.5), "um"), GrainRecipe())
+    session.keep({entry.id for entry in session.particles[1:]})
+    session.open([write_grains(tmp_path / "more", "a.stl")], add=True)
+    portrait = assert_that_a_run_gives_the_dataset_of(session, tmp_path)
+    assert len(portrait.recipe.particles or ()) == 3
+
+
+@pytest.mark.slow
+def test_that_grains_of_the_shipped_scan_are_the_same_in_a_run(session: Session, tmp_path: Path) -> None:
+    from regolith_studio.imaging.sample_volumes import sample_file
+
+    settings = GrainRecipe(SegmentationSettings(splitting=SplittingSettings(h_maxima=1.0)))
+    extracted(session, VolumeInput(sample_file("grey")), settings)
+    session.keep({entry.id for entry in session.particles[:6]})
+    portrait = assert_that_a_run_gives_the_dataset_of(session, tmp_path)
+    assert portrait.recipe.volumes[0].file == "sample:grey"
+    found = ended(extract_file(VolumeInput(sample_file("grey")), settings)).extraction.particles
+    assert [entry.id for entry in session.particles] == [each.name for each in found[:6]]
+
+
+def drawn(
+    session: Session,
+    source: ShapeSource | tuple[Particle, ...],
+    order: GenerateOrder,
+    edit: Callable[[Any], Any] = lambda model: model,
+) -> None:
+    """What the page of models does."""
+    fitted = ended(fit_shapes(source, order))
+    made = ended(draw_shapes(edit(fitted.model), order))
+    origin = Drawn.of(made, fitted, LEVEL)
+    particles = ended(make_particles(made.draws, made.model, origin.population.name, LEVEL))
+    session.adopt(particles, origin=origin)
+
+
+def rougher(model: Any) -> Any:
+    return with_amplitudes(model, relative_amplitudes(model) * 1.3)
+
+
+def of_card() -> ShapeSource:
+    return ShapeSource(materials()["ma165"], "ma165")
+
+
+def test_that_particles_of_a_card_are_the_same_in_a_run(session: Session, tmp_path: Path) -> None:
+    drawn(session, of_card(), GenerateOrder(l_max=6, n=4, seed=8, size_range=(20.0, 60.0)))
+    portrait = assert_that_a_run_gives_the_dataset_of(session, tmp_path)
+    assert portrait.model is None
+    assert not list(tmp_path.glob("recipe-model*"))
+
+
+def test_that_particles_of_an_edited_card_are_the_same_in_a_run(session: Session, tmp_path: Path) -> None:
+    drawn(session, of_card(), GenerateOrder(l_max=5, n=3, seed=8), rougher)
+    assert_that_a_run_gives_the_dataset_of(session, tmp_path)
+    assert (tmp_path / "recipe-model.npz").is_file()
+
+
+@pytest.mark.parametrize("model", ["sample_matched", "gaussian_field", "mixture_field"])
+def test_that_particles_of_a_fitted_model_are_the_same_in_a_run(
+    session: Session, tmp_path: Path, model: str
+) -> None:
+    session.open([write_grains(tmp_path / "measured", *(f"{i}.stl" for i in range(8)))])
+    measured = tuple(entry.particle for entry in session.particles)
+    drawn(session, measured, GenerateOrder(model, l_max=4, n=4, seed=2))
+    session.open([tmp_path / "measured" / "3.stl"], add=True)
+    assert_that_a_run_gives_the_dataset_of(session, tmp_path)
+
+
+def test_that_a_project_brings_grains_and_drawn_particles_back(
+    session: Session, tmp_path: Path, labels: Path
+) -> None:
+    def virtual() -> None:
+        drawn(
+            session,
+            of_card(),
+            GenerateOrder(l_max=6, n=3, seed=8),
+            rougher,
+        )
+
+    def grains() -> None:
+        extracted(session, VolumeInput(labels, 2.0, "um"), GrainRecipe())
+
+    begin: Callable[[], None]
+    for number, begin in enumerate((virtual, grains)):
+        begin()
+        session.open([write_grains(tmp_path / "more", "a.stl")], add=True)
+        session.keep({entry.id for entry in session.particles[1:]})
+        portrait = Portrait.of(session.particles, session.choices)
+        Project.of(session).save(tmp_path / f"{number}.regolith", portrait.model)
+        again = Session(InlineRunner())
+        read_project(tmp_path / f"{number}.regolith").open_in(again, tmp_path)
+        assert [entry.id for entry in again.particles] == [entry.id for entry in session.particles]
+        for old, new in zip(session.particles, again.particles, strict=True):
+            assert np.array_equal(old.particle.mesh.vertices, new.particle.mesh.vertices)
+            assert old.particle.group == new.particle.group
+        third = Portrait.of(again.particles, again.choices).recipe
+        assert third.particles == portrait.recipe.particles
+        assert third.volumes == portrait.recipe.volumes
+
+
+def test_that_what_was_made_by_hand_is_named(session: Session, tmp_path: Path) -> None:
+    session.open([write_grains(tmp_path / "one", "a.stl", "b.stl")])
+    session.adopt([Particle("mine", icosphere(2))], add=True)
+    portrait = Portrait.of(session.particles, session.choices)
+    assert portrait.lost == ("mine",)
+    (tmp_path / "one" / "a.stl").unlink()
+    assert Portrait.of(session.particles, session.choices).lost == ("a", "mine")
+    with pytest.raises(InputError, match="no particles to keep"):
+        session.keep(set())
