@@ -186,14 +186,16 @@ def segment_volume(
         yield Progress(step.done, step.total)
 
 
-def extract_labels(labels: SlabSource, settings: ExtractionSettings, path: Path) -> Steps:
+def extract_labels(
+    labels: SlabSource, settings: ExtractionSettings, path: Path, grey: SlabSource | None = None
+) -> Steps:
     """Particles of a label volume, in memory or not, that `path` has led to; returns an ``Extraction``.
 
-    They are what :func:`extract_file` makes of the file.
+    They are what :func:`extract_file` makes of the file, if it held the values `grey`.
     """
     yield Started("Extracting particles")
     source = _source(path, labels)
-    return (yield from _collected(extraction_steps(labels, settings, path.stem, source)))
+    return (yield from _collected(extraction_steps(labels, settings, path.stem, source, grey=grey)))
 
 
 def _source(path: Path, volume: SlabSource) -> Source:
@@ -231,7 +233,8 @@ def _extracted(
             facts, labels = _facts(segmentation), segmentation.labels
             del segmentation
         yield Started("Extracting particles")
-        steps = extraction_steps(labels, recipe.extraction, given.path.stem, source, collect=collect)
+        grey = volume if volume.kind == "grey" else None
+        steps = extraction_steps(labels, recipe.extraction, given.path.stem, source, collect, grey)
         extraction = yield from consume(steps)
     if not extraction.n_found:
         raise InputError(_nothing_found(given.path, extraction))

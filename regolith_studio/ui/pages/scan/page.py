@@ -237,7 +237,8 @@ class ScanPage(PageWidget):
             return
         settings = GrainRecipe(self._found_with or SegmentationSettings(), self.controls.value().extraction)
         entry = entry_of(self._given, settings)
-        job = Job(extract_labels, (labels, settings.extraction, self._given.path))
+        grey = self.scan.volume if self.scan.volume.kind == "grey" else None
+        job = Job(extract_labels, (labels, settings.extraction, self._given.path, grey))
         self._context.start("Making particles", job, lambda made: self._adopt(made, entry), lane="grains")
 
     def _found(self, found: FoundGrains, settings: SegmentationSettings) -> None:
