@@ -136,10 +136,10 @@ def labels(tmp_path: Path) -> Path:
 def extracted(session: Session, given: VolumeInput, settings: GrainRecipe) -> None:
     """What the page of scans does."""
     scan = ended(read_scan(given))
-    found = scan.volume
+    found, grey = scan.volume, None
     if found.kind == "grey":
-        found = ended(find_grains(scan, settings.segmentation)).segmentation.labels
-    made = ended(extract_labels(found, settings.extraction, given.path))
+        found, grey = ended(find_grains(scan, settings.segmentation)).segmentation.labels, found
+    made = ended(extract_labels(found, settings.extraction, given.path, grey))
     session.adopt(made.particles, origin=Grains.of(entry_of(given, settings), made.particles))
 
 
