@@ -10,7 +10,8 @@ from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.jobs.events import Progress, Started, Steps
 from regolith_studio.model.draws import Draws
 from regolith_studio.model.sample import Sample
-from regolith_studio.studies.population import KEYS, STEP, descriptors_of
+from regolith_studio.studies.population import KEYS
+from regolith_studio.studies.population_work import STEP, descriptors_of
 
 MOST = 1000
 """Particles of either kind that are measured at most."""

@@ -10,7 +10,8 @@ from regolith_studio.errors import InputError
 from regolith_studio.harmonics.coefficient_tables import from_complex_rows
 from regolith_studio.harmonics.coefficients import degrees, orders
 from regolith_studio.model.sample import Sample
-from regolith_studio.studies.population import KEYS, PopulationStudy, population_study
+from regolith_studio.studies.population import KEYS, N_FLOOR_SPLITS, PopulationStudy, population_study
+from regolith_studio.studies.population_distances import Distances, distances
 from regolith_studio.studies.population_figures import components_figure, write_population_study
 from regolith_studio.studies.population_tables import (
     distance_table,
@@ -187,3 +188,28 @@ def test_that_waiting_for_results_changes_nothing_and_lets_the_study_be_stopped(
         waited.models[0].table, run(rough_sample(24), ["log_field"], **options)[1].models[0].table
     )
     assert steps[0].done == 0
+
+
+def test_that_whatever_takes_long_is_shared_out_and_the_floor_told_split_by_split() -> None:
+    asked: list[str] = []
+
+    def noting(function, items):  # type: ignore[no-untyped-def]
+        asked.append(getattr(function, "func", function).__name__)
+        return map(function, items)
+
+    options = {"l_max": 2, "n_draws": 20, "n_splits": 1, "n_repeats": 2, "level": 1}
+    steps, _ = run(rough_sample(24), ["log_field"], mapper=noting, **options)
+    assert asked == [
+        *("descriptors_of", "frames_of", "drawings"),
+        *("descriptors_of", "frames_of", "descriptors_of"),
+    ]
+    assert sum("noise of sampling" in step.message for step in steps) == N_FLOOR_SPLITS
+
+
+def test_that_distances_do_not_depend_on_how_pairs_are_shared_out() -> None:
+    rng = np.random.default_rng(0)
+    pairs = [(rng.normal(size=(40, 3)) + 5, rng.normal(size=(40, 3)) + 5) for _ in range(3)]
+    whole = distances(pairs, 7, None)
+    parts = Distances.joined([distances([pair], 7, None, first=i) for i, pair in enumerate(pairs)])
+    for name in Distances.__annotations__:
+        np.testing.assert_array_equal(getattr(whole, name), getattr(parts, name))

@@ -1,0 +1,42 @@
+"""Judging models for the window: pictures, told one by one."""
+
+import numpy as np
+import pytest
+
+from regolith_studio.jobs.events import Partial, Progress, Step
+from regolith_studio.jobs.judging import JudgedShapes, judge_shapes
+from regolith_studio.model.materials import materials
+from regolith_studio.model.sample import Sample
+
+PNG = b"\x89PNG"
+
+
+@pytest.fixture(scope="module")
+def story() -> tuple[list[Step], JudgedShapes]:
+    draws = materials()["ma165"].model(3).draw(24, 0)
+    sample = Sample(np.stack([draws.particle(i).values for i in range(24)]))
+    steps, told = [], judge_shapes(sample, ("log_field",), l_max=3, n_splits=1, n_repeats=1, level=1)
+    while True:
+        try:
+            steps.append(next(told))
+        except StopIteration as end:
+            return steps, end.value
+
+
+def test_that_a_judgement_has_its_figures(story: tuple[list[Step], JudgedShapes]) -> None:
+    _, judged = story
+    assert set(judged.pictures) == {"number", "volume", "pairs", "quantiles"}
+    assert all(picture.startswith(PNG) for picture in judged.pictures.values())
+    assert judged.study.models[0].key == "log_field"
+
+
+def test_that_it_can_be_stopped_between_figures_and_never_goes_back(
+    story: tuple[list[Step], JudgedShapes],
+) -> None:
+    steps, _ = story
+    progress = [step for step in steps if isinstance(step, Progress)]
+    assert [step.done for step in progress] == sorted(step.done for step in progress)
+    figures = [step for step in progress if step.message == "figures"]
+    partials = [step for step in steps if isinstance(step, Partial)]
+    assert len(figures) == (5 + 4) * (len(partials) + 1)
+    assert {step.done for step in figures} == {figures[0].total}
