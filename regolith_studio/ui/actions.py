@@ -54,7 +54,7 @@ ROWS: tuple[ActionSpec, ...] = (
     ActionSpec("&View", "log", "L&og", "", "Ctrl+Shift+L", "What was said"),
     ActionSpec("&View", "standard_layout", "Standard la&yout", "", "", "Forget sizes and borders"),
     ActionSpec("&View", BREAK, ""),
-    ActionSpec("&Help", "tour", "&Tour", "tour", "", "Ten steps through the window"),
+    ActionSpec("&Help", "tour", "&Tour", "tour", "", "A walk through the window"),
     ActionSpec("&Help", "shortcuts", "&Keyboard and mouse", "help", "F1"),
     ActionSpec("&Help", "about", "&About Regolith Studio"),
 )

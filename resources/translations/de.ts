@@ -1173,7 +1173,7 @@
   <message>
    <location filename="ui/commands.py" />
    <source>Its choices are taken; it is too large to be opened: use Run as a batch.</source>
-   <translation type="unfinished" />
+   <translation>Seine Einstellungen sind übernommen; zum Öffnen ist es zu groß: nehmen Sie „Als Stapel ausführen“.</translation>
   </message>
   <message>
    <location filename="ui/panels/loss.py" />
@@ -2944,7 +2944,7 @@
   <message>
    <location filename="ui/commands.py" />
    <source>{count} particles came from no file and are not in it ({names}); export them.</source>
-   <translation type="unfinished" />
+   <translation>{count} Partikel stammen aus keiner Datei und sind nicht darin ({names}); exportieren Sie sie.</translation>
   </message>
   <message>
    <location filename="ui/batches.py" />
