@@ -11,11 +11,12 @@ import trimesh
 from scipy.spatial import ConvexHull
 
 from benchmarks import plain
-from benchmarks.coarsening import PlainLoss, plain_annealing
+from benchmarks.coarsening import annealed, plain_loss
 from benchmarks.contests import Contest, Growth, Work, grown
 from benchmarks.descriptors import KEYS, by_trimesh, fresh, polyhedron, stone
 from benchmarks.harmonics import can_cast, plain_fit, plain_surface, rough_particle
 from benchmarks.independent import least_box
+from benchmarks.plain_loss import HAS_BOOLEANS
 from regolith_studio.coarsening.coarsen import coarsen
 from regolith_studio.coarsening.evaluation import LossFunction
 from regolith_studio.coarsening.target import Target
@@ -26,6 +27,7 @@ from regolith_studio.dem.repose import measure_repose
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.directions import icosphere
+from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.oriented_box import minimum_volume_box
 from regolith_studio.geometry.particle import Particle
@@ -187,33 +189,40 @@ def _model() -> Iterator[Contest]:
 def _loss() -> Iterator[Contest]:
     target = Target.of(stone(4))
     planes = target.in_unit_frame(coarsen(target, 20).half_spaces)
-    points, normals, offsets = planes.points, planes.normals, planes.offsets
-    for preset, overlap in (("descriptors", False), ("all", True)):
-        ours = LossFunction(target, LossWeights.from_preset(preset))
-        theirs = PlainLoss(target, overlap)
+    points, normals, offsets = np.array(planes.points), planes.normals, planes.offsets
+    for preset, on_facets, how, by in (
+        ("descriptors", True, {}, "scipy's half-spaces, trimesh"),
+        ("all", True, {"overlap": "boolean"}, "the same, manifold3d's boolean"),
+        ("descriptors", False, {}, "the first, whose box is no minimum"),
+        ("descriptors", False, {"lean": True, "exact": True}, "scipy, O'Rourke in steps of 1 degree"),
+    ):
+        if how.get("overlap") == "boolean" and not HAS_BOOLEANS:
+            continue
+        ours = LossFunction(target, LossWeights.from_preset(preset), on_facets=on_facets)
+        theirs = plain_loss(target, **how)
+        box = "box on a facet" if on_facets else "least box"
         yield Contest(
             "loss evaluation",
-            "20 faces, exact box" + (", Jaccard distance" if overlap else ""),
+            f"20 faces, {box}{', Jaccard distance' if preset == 'all' else ''}",
             lambda f=ours: f.value(normals, offsets),
             lambda f=theirs: f(points),
-            "scipy's half-spaces, trimesh" + (", 4,000 points" if overlap else ""),
+            by,
         )
 
 
 def _coarsening() -> Iterator[Contest]:
     mesh = stone(4)
     target = Target.of(mesh)
-    bare, full = PlainLoss(target, False), PlainLoss(target, True)
+    full = plain_loss(target, overlap="points")
+
+    def paper() -> HalfSpaces:
+        return annealed(target, 20, full, 0)
+
     rows = (
-        (
-            "annealing",
-            {},
-            lambda: plain_annealing(target, 20, full, 0),
-            "the paper's 100 steps, scipy, trimesh",
-        ),
-        ("exact", {"level": "fast"}, lambda: plain_annealing(target, 20, full, 0), "annealing as above"),
-        ("exact", {"level": "best"}, lambda: plain_annealing(target, 20, full, 0), "annealing as above"),
-        ("quadric", {}, lambda: _decimated(mesh, bare), "fast-simplification, trimesh's descriptors"),
+        ("annealing", {}, paper, "the paper's 100 steps, scipy, trimesh, 4,000 points"),
+        ("exact", {"level": "fast"}, paper, "annealing as above"),
+        ("exact", {"level": "best"}, paper, "annealing as above"),
+        ("quadric", {}, lambda: _decimated(mesh), "fast-simplification, trimesh's descriptors"),
     )
     for method, settings, theirs, by in rows:
         level = f", {settings['level']}" if settings else ""
@@ -226,10 +235,10 @@ def _coarsening() -> Iterator[Contest]:
         )
 
 
-def _decimated(mesh: Mesh, loss: PlainLoss) -> object:
+def _decimated(mesh: Mesh) -> object:
     vertices, _ = fast_simplification.simplify(np.array(mesh.vertices), np.array(mesh.faces), target_count=36)
     hull = ConvexHull(vertices)
-    return loss._descriptors(trimesh.Trimesh(vertices, hull.simplices).convex_hull, hull.volume)
+    return by_trimesh(hull.points, hull.simplices)
 
 
 def _shapes(count: int) -> list[tuple[Particle, SimpleNamespace]]:
