@@ -59,7 +59,7 @@ def write_volume(path: Path, edge: int, grey: bool, share: float = 1.0, seed: in
         return count
     with h5py.File(path, "w") as file:
         data = file.create_dataset(
-            "exported_data", shape, dtype, chunks=(CELL, 256, 256), compression="gzip", compression_opts=1
+            "exported_data", shape, dtype, chunks=(8, 512, 512), compression="gzip", compression_opts=1
         )
         return _fill(data, edge, grey, share, np.random.default_rng(seed))
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from regolith_studio.errors import FileError
 from regolith_studio.readers.sentences import printable
+from regolith_studio.readers.units import UNITS, unit_named
 from regolith_studio.readers.volume_format import LONGEST_EDGE, VOXEL_TYPES, Sizes, sizes_or_none
 
 MOST_OBJECTS = 10_000
@@ -81,7 +82,12 @@ def check_storage(dataset: Any) -> None:
 
 
 def element_size(dataset: Any, candidate: Candidate) -> Sizes | None:
-    """Voxel edges along x, y and z in micrometres: the attribute ``element_size_um``, slices first."""
+    """Voxel edges along x, y and z in micrometres, by Fiji's ``element_size_um`` or by ilastik's tags."""
+    return _listed_size(dataset, candidate) or _tagged_size(dataset)
+
+
+def _listed_size(dataset: Any, candidate: Candidate) -> Sizes | None:
+    """The attribute ``element_size_um``, slices first."""
     values = _attribute(dataset, "element_size_um")
     if values is None:
         return None
@@ -94,6 +100,21 @@ def element_size(dataset: Any, candidate: Candidate) -> Sizes | None:
         order = order if len(order) == 3 else ["z", "y", "x"]
         return sizes_or_none([float(edges[order.index(axis)]) for axis in "xyz"])
     return None
+
+
+def _tagged_size(dataset: Any) -> Sizes | None:
+    """Resolutions of vigra's axis tags in the units of ilastik's ``axis_units``; 0 there says unknown."""
+    tags, units = _parsed(dataset, "axistags"), _parsed(dataset, "axis_units")
+    if not isinstance(tags, dict) or not isinstance(units, dict):
+        return None
+    try:
+        edges = {axis["key"]: float(axis["resolution"]) for axis in tags["axes"]}
+        keys = [unit_named(str(units[axis])) for axis in "xyz"]
+        return sizes_or_none(
+            [edges[axis] * UNITS[key] for axis, key in zip("xyz", keys, strict=True) if key is not None]
+        )
+    except (KeyError, TypeError, ValueError):
+        return None
 
 
 def _datasets(file: Any) -> list[tuple[str, Any]]:
@@ -170,15 +191,23 @@ def _axes(dataset: Any, dimensions: int) -> str | None:
 
 
 def _tags(dataset: Any) -> str:
-    text = _attribute(dataset, "axistags")
+    try:
+        return "".join(str(axis["key"]) for axis in _parsed(dataset, "axistags")["axes"])
+    except (KeyError, TypeError):
+        return ""
+
+
+def _parsed(dataset: Any, name: str) -> Any:
+    """The JSON in an attribute, or None."""
+    text = _attribute(dataset, name)
     if isinstance(text, bytes):
         text = text.decode("utf-8", "replace")
     if not isinstance(text, str):
-        return ""
+        return None
     try:
-        return "".join(str(axis["key"]) for axis in json.loads(text)["axes"])
-    except (ValueError, KeyError, TypeError, RecursionError):
-        return ""
+        return json.loads(text)
+    except (ValueError, RecursionError):
+        return None
 
 
 def _letters(value: Any) -> str:

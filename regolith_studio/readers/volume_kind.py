@@ -11,13 +11,16 @@ LEAST_EQUAL_NEIGHBOURS = 0.7
 """Share of neighbours with the same value, outside the background; noisy greys reach 0.2."""
 MOST_PIECES = 3.0
 """Pieces that a label has in a slice, on average; a phase or a mask has one for each grain."""
+MOST_CLASSES = 8
+"""Classes of a segmentation that numbers all of them, as ilastik's simple one does."""
 
 
 def kind_of(slices: NDArray[Any]) -> Kind:
     """``labels`` if each particle seems to have its own number, else ``grey``.
 
     Labels are whole numbers, not negative, constant over wide areas, and each of them is in few
-    pieces: a mask or a map of phases has many pieces of one value and is grey (to be split).
+    pieces: a mask or a map of phases has many pieces of one value and is grey (to be split). So is
+    a map of few values with no 0, which has a number for what is between the grains, too.
 
     Parameters
     ----------
@@ -27,6 +30,8 @@ def kind_of(slices: NDArray[Any]) -> Kind:
     if slices.dtype.kind == "b" or (slices.dtype.kind == "f" and not _whole(slices)):
         return "grey"
     if (slices.dtype.kind in "if" and slices.min() < 0) or not slices.any():
+        return "grey"
+    if slices.all() and len(np.unique(slices)) <= MOST_CLASSES:
         return "grey"
     left, right = slices[:, :, :-1], slices[:, :, 1:]
     inside = (left != 0) & (right != 0)
