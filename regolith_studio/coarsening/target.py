@@ -10,8 +10,10 @@ from regolith_studio.coarsening.core.rays import cast, fibonacci_bundle
 from regolith_studio.descriptors.describe import Descriptors, describe
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
+from regolith_studio.geometry.compiled import kernel
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.vectors import along, cross, length, mixed, row
 
 SMALLEST_SPAN = 1e-150
 """Below this size the volume of a mesh cannot be told from 0."""
@@ -130,11 +132,23 @@ class Target:
 def principal_axes(mesh: Mesh) -> FloatArray:
     """Right-handed principal axes of inertia as rows, each towards the longer tail of the particle."""
     _, vectors = np.linalg.eigh(mesh.inertia)
-    axes = vectors.T
-    along = mesh.triangles.mean(axis=1) @ axes.T
-    axes = axes * np.where(mesh.face_areas @ along**3 < 0.0, -1.0, 1.0)[:, None]
+    axes = np.ascontiguousarray(vectors.T)
+    axes *= np.where(tails(mesh.vertices, mesh.faces, axes) < 0.0, -1.0, 1.0)[:, None]
     axes[2] = np.cross(axes[0], axes[1])
     return np.asarray(axes, dtype=np.float64)
+
+
+@kernel
+def tails(points: FloatArray, faces: IntArray, axes: FloatArray) -> FloatArray:
+    """Third moment of the surface along each axis, by the middles of its triangles: shape (3,)."""
+    total = np.zeros(3)
+    for f in range(len(faces)):
+        a, b, c = row(points, faces[f, 0]), row(points, faces[f, 1]), row(points, faces[f, 2])
+        area = length(cross(mixed(b, 1.0, a, -1.0), mixed(c, 1.0, a, -1.0)))
+        middle = mixed(mixed(a, 1.0, b, 1.0), 1.0, c, 1.0)
+        for k in range(3):
+            total[k] += area * along(axes, k, middle) ** 3
+    return total
 
 
 def _normalised(mesh: Mesh) -> tuple[Mesh, FloatArray, float]:
@@ -173,15 +187,26 @@ def _check_simple(rays: RayTable) -> None:
 
 def _check_closed(mesh: Mesh) -> None:
     """Every directed edge must be met by its opposite, once the vertices at one place are one."""
+    if _closes(mesh.faces, len(mesh.vertices)):
+        return
     _, label = np.unique(mesh.vertices, axis=0, return_inverse=True)
     faces = label.reshape(-1)[mesh.faces]
     faces = faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]
-    start, end = faces.reshape(-1), np.roll(faces, -1, axis=1).reshape(-1)
-    n = int(label.max()) + 1
-    forward, backward = np.sort(start * n + end), np.sort(end * n + start)
+    forward, backward = _edges(faces, int(label.max()) + 1)
     if not np.array_equal(forward, backward):
         open_edges = len(np.setxor1d(forward, backward)) // 2
         raise GeometryError(
             f"The mesh is not closed: {max(open_edges, 1)} edges have a triangle on one side only;"
             " repair it first."
         )
+
+
+def _closes(faces: IntArray, n_vertices: int) -> bool:
+    """Whether every directed edge is met by its opposite."""
+    return np.array_equal(*_edges(faces, n_vertices))
+
+
+def _edges(faces: IntArray, n_vertices: int) -> tuple[IntArray, IntArray]:
+    """One number for each directed edge, and for its opposite, both sorted."""
+    start, end = faces.reshape(-1), np.roll(faces, -1, axis=1).reshape(-1)
+    return np.sort(start * n_vertices + end), np.sort(end * n_vertices + start)

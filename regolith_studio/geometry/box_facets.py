@@ -9,9 +9,11 @@ from regolith_studio.geometry.box_curve import unit
 from regolith_studio.geometry.box_widths import SpanTable, between, lowest, span_near
 from regolith_studio.geometry.compiled import kernel, leaf
 from regolith_studio.geometry.hull_graph import HullGraph, after
-from regolith_studio.geometry.vectors import Vector, cross, dot, mixed, row
+from regolith_studio.geometry.vectors import Vector, cross, dot, length, mixed, row
 
 QUARTER_TURNS = 24
+MOST_TILT = 0.1
+"""Square of the sine of the angle beyond which a bound on the third side is not worth its time."""
 
 
 class Facets(NamedTuple):
@@ -57,18 +59,41 @@ def facets_of(graph: HullGraph) -> Facets:
 def arcs_of(facets: Facets) -> FloatArray:
     """For each edge its unit direction, a span across the solid, and a bound on the width along its arc.
 
-    The span runs from the vertex opposite to the edge to the edge; shape (e, 7).
+    The span runs from the vertex opposite to the edge to the edge. Last the middle of the arc, and how far
+    its ends are from there; shape (e, 11).
     """
     points, normals, edges = facets
-    arcs = np.empty((len(edges), 7))
+    arcs = np.empty((len(edges), 11))
     for e in range(len(edges)):
         one, two = row(normals, edges[e, 2]), row(normals, edges[e, 3])
         direction = unit(between(points, edges[e, 1], edges[e, 0]))
         span = between(points, edges[e, 0], lowest(points, mixed(one, 1.0, two, 1.0)))
+        middle = unit(mixed(one, 1.0, two, 1.0))
         for c in range(3):
-            arcs[e, c], arcs[e, 3 + c] = direction[c], span[c]
-        arcs[e, 6] = min(dot(span, one), dot(span, two))
+            arcs[e, c], arcs[e, 3 + c], arcs[e, 7 + c] = direction[c], span[c], middle[c]
+        arcs[e, 6], arcs[e, 10] = min(dot(span, one), dot(span, two)), length(mixed(one, 1.0, middle, -1.0))
     return arcs
+
+
+@leaf
+def least_third(arcs: FloatArray, table: SpanTable, i: int, k: int) -> float:
+    """A bound on the width across two sides that are flush with edges i and k; 0 where there is no use in it.
+
+    The third axis is normal to one axis on either arc, so its products with the middles m of the arcs are at
+    most their half widths h, and the part of it that lies in the plane of the middles is at most
+    sqrt((h_i^2 + h_k^2 + 2 |m_i m_k| h_i h_k) / (1 - (m_i m_k)^2)).
+    """
+    one, two = (arcs[i, 7], arcs[i, 8], arcs[i, 9]), (arcs[k, 7], arcs[k, 8], arcs[k, 9])
+    h, g, cosine = arcs[i, 10], arcs[k, 10], abs(dot(one, two))
+    apart = 1.0 - cosine * cosine
+    tilt = h * h + g * g + 2.0 * cosine * h * g
+    if not tilt < MOST_TILT * apart:
+        return 0.0
+    third = cross(one, two)
+    span = span_near(table, third)
+    tilt, squared = tilt / apart, dot(span, third) ** 2 / apart
+    across = max(0.0, dot(span, span) - squared)
+    return float(np.sqrt(squared * (1.0 - tilt)) - np.sqrt(across * tilt))
 
 
 @kernel

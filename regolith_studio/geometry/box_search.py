@@ -25,7 +25,14 @@ from regolith_studio.geometry.box_curve import (
     numerator,
     unit,
 )
-from regolith_studio.geometry.box_facets import Facets, arcs_of, facets_of, with_all_edges, worth_asking
+from regolith_studio.geometry.box_facets import (
+    Facets,
+    arcs_of,
+    facets_of,
+    least_third,
+    with_all_edges,
+    worth_asking,
+)
 from regolith_studio.geometry.box_record import TIE, Found, drop_far, keep, note, nothing_below
 from regolith_studio.geometry.box_widths import (
     SpanTable,
@@ -136,7 +143,8 @@ def _on_curves(
             if side[edges[k, 2]] == side[edges[k, 3]] != 1 or (k == i and dots[0, edges[i, 3]] >= 0.0):
                 continue
             limit = found.record[0] * (1.0 + margin)
-            if arcs[i, 6] * arcs[k, 6] * least_width >= limit:
+            sides = arcs[i, 6] * arcs[k, 6]
+            if sides * least_width >= limit or sides * least_third(arcs, table, i, k) >= limit:
                 continue
             for branch in range(_branches(dots, edges[k, 2], edges[k, 3], ends)):
                 _search_curve(facets, arcs, table, i, k, ends[branch], margin, found)

@@ -11,6 +11,7 @@ from scipy.spatial import ConvexHull, QhullError
 
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats, locked_integers
+from regolith_studio.geometry.moments import volume_moments
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,54 +76,31 @@ class Mesh:
         return np.stack([self.vertices.min(axis=0), self.vertices.max(axis=0)])
 
     @cached_property
-    def _first_moments(self) -> tuple[float, FloatArray]:
-        """Volume and centroid (3,): signed tetrahedra about the middle."""
+    def _moments(self) -> tuple[float, FloatArray, FloatArray]:
+        """Volume, centroid (3,) and central second moments (3, 3) of the enclosed volume."""
+        if not len(self.vertices):
+            return 0.0, np.zeros(3), np.zeros((3, 3))
         middle = self.bounds.mean(axis=0)
-        corners, six_volumes = self._tetrahedra(middle)
-        volume = float(six_volumes.sum() / 6)
+        volume, first, second = volume_moments(self.vertices, self.faces, middle)
         if volume == 0.0:
-            return 0.0, middle
-        return volume, middle + six_volumes @ _summed(corners) / 24 / volume
-
-    @cached_property
-    def _second_moments(self) -> FloatArray:
-        """Central second moments of the enclosed volume, shape (3, 3)."""
-        volume, centroid = self._first_moments
-        if volume == 0.0:
-            return np.zeros((3, 3))
-        corners, six_volumes = self._tetrahedra(self.bounds.mean(axis=0))
-        sums = _summed(corners)
-        second = (six_volumes[:, None] * sums).T @ sums
-        flat = corners.reshape(-1, 3)
-        second += (six_volumes[:, None, None] * corners).reshape(-1, 3).T @ flat
-        first = centroid - self.bounds.mean(axis=0)
-        return np.asarray(second / 120 - volume * np.outer(first, first))
-
-    def _tetrahedra(self, middle: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Corners (m, 3, 3) seen from the middle, and six times the signed volumes of the tetrahedra (m,)."""
-        corners = self.triangles - middle
-        a, b, c = (np.ascontiguousarray(corners[:, k].T) for k in range(3))
-        six_volumes = (
-            a[0] * (b[1] * c[2] - b[2] * c[1])
-            + a[1] * (b[2] * c[0] - b[0] * c[2])
-            + a[2] * (b[0] * c[1] - b[1] * c[0])
-        )
-        return corners, six_volumes
+            return 0.0, middle, np.zeros((3, 3))
+        offset = first / volume
+        return volume, middle + offset, second - volume * np.outer(offset, offset)
 
     @property
     def volume(self) -> float:
         """Signed volume by the divergence theorem; negative where the mesh is inside out."""
-        return self._first_moments[0]
+        return self._moments[0]
 
     @property
     def centroid(self) -> FloatArray:
         """Centre of mass of the enclosed volume, shape (3,)."""
-        return self._first_moments[1]
+        return self._moments[1]
 
     @cached_property
     def inertia(self) -> FloatArray:
         """Inertia tensor about the centroid at density 1, shape (3, 3)."""
-        second = self._second_moments
+        second = self._moments[2]
         return np.asarray(np.trace(second) * np.eye(3) - second)
 
     @cached_property
@@ -177,8 +155,3 @@ class Mesh:
         if not self.volume > 0.0:
             raise GeometryError(f"The mesh encloses no volume (its signed volume is {self.volume:.3g}).")
         return self.moved(shift=-self.centroid, scale=self.volume ** (-1 / 3))
-
-
-def _summed(corners: FloatArray) -> FloatArray:
-    """Sum of the three corners of each triangle, (m, 3): much faster than numpy's sum along a short axis."""
-    return np.asarray(corners[:, 0] + corners[:, 1] + corners[:, 2])

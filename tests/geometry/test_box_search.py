@@ -19,7 +19,7 @@ from regolith_studio.geometry.box_curve import (
     numerator,
     value,
 )
-from regolith_studio.geometry.box_facets import facets_of, with_all_edges
+from regolith_studio.geometry.box_facets import arcs_of, facets_of, least_third, with_all_edges
 from regolith_studio.geometry.box_record import note, nothing_below
 from regolith_studio.geometry.box_search import boxes_near_least, minimum_box
 from regolith_studio.geometry.box_widths import ends_along, span_near, span_table
@@ -159,3 +159,29 @@ def test_that_a_fine_ball_has_a_box_within_a_thousandth_whichever_way_it_is_turn
     volumes = [minimum_volume_box(Mesh(points, icosphere(5).faces)).volume for points in (ball, ball @ spin)]
     assert volumes == pytest.approx([volumes[0]] * 2, rel=1e-3)
     assert 7.98 < min(volumes) <= max(volumes) < 8.0
+
+
+def test_that_no_box_is_narrower_than_the_bound_on_its_third_side() -> None:
+    ball = icosphere(2)
+    solid = Mesh(
+        ball.vertices * (1.0, 0.8, 0.6) + 0.05 * np.sin(7.0 * ball.vertices[:, ::-1]), ball.faces
+    ).hull
+    facets = facets_of(hull_graph(np.array(solid.vertices), solid.faces))
+    arcs, table, rng = arcs_of(facets), span_table(facets.points), np.random.default_rng(8)
+    useful = 0
+    for i, k in rng.integers(len(arcs), size=(4000, 2)):
+        bound = least_third(arcs, table, i, k)
+        if bound <= 0.0:
+            continue
+        for share in rng.random((4, 1)):
+            ends = facets.normals[facets.edges[i, 2:]]
+            a = share * ends[0] + (1.0 - share) * ends[1]
+            # where the plane normal to a meets the other arc
+            three, four = facets.normals[facets.edges[k, 2:]] @ a
+            if three * four > 0.0:
+                continue
+            b = facets.normals[facets.edges[k, 2]] * four - facets.normals[facets.edges[k, 3]] * three
+            c = np.cross(a, b) / np.linalg.norm(a) / np.linalg.norm(b)
+            assert np.ptp(c @ facets.points) >= bound * (1.0 - 1e-12)
+            useful += 1
+    assert useful > 100

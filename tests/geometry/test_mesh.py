@@ -9,6 +9,7 @@ from scipy.spatial import ConvexHull
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry import Mesh
 from regolith_studio.geometry.directions import icosphere
+from regolith_studio.geometry.moments import volume_moments
 from tests.geometry.solids import cloud, cuboid, folded_stone, rotation, rough_stone, tetrahedron
 
 
@@ -118,3 +119,20 @@ def test_that_arrays_that_make_no_mesh_are_refused(
 def test_that_flat_clouds_have_no_hull() -> None:
     with pytest.raises(GeometryError, match="one plane"):
         cloud(np.random.default_rng(0).normal(size=(9, 3)) * [1.0, 1.0, 0.0]).hull  # noqa: B018
+
+
+@pytest.mark.parametrize("shift", [0.0, 50.0])
+def test_that_compiled_moments_are_those_of_numpy_and_of_the_python_reference(shift: float) -> None:
+    mesh = rough_stone(3).moved(shift=(shift, 0.0, -shift))
+    middle = mesh.bounds.mean(axis=0)
+    volume, first, second = volume_moments(mesh.vertices, mesh.faces, middle)
+    reference = volume_moments.py_func(mesh.vertices, mesh.faces, middle)
+    for ours, theirs in zip((volume, first, second), reference, strict=True):
+        assert np.asarray(ours) == pytest.approx(np.asarray(theirs), rel=1e-12, abs=1e-15)
+    corners = mesh.triangles - middle
+    six = np.linalg.det(corners)
+    assert volume == pytest.approx(six.sum() / 6, rel=1e-12)
+    # the second moments of a tetrahedron from the origin: 1/120 for two corners, 2/120 for one with itself
+    shares = (np.ones((3, 3)) + np.eye(3)) / 120
+    assert second == pytest.approx(np.einsum("f,fai,ab,fbj->ij", six, corners, shares, corners), rel=1e-11)
+    assert mesh.inertia == pytest.approx(rough_stone(3).inertia, rel=1e-9)
