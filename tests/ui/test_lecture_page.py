@@ -128,7 +128,7 @@ def test_that_the_degrees_grow_from_a_sphere(page):
     assert transport.slider.maximum() == 30
     for degree in (0, 5, 30):
         transport.go(degree)
-        assert f"l_max = {degree}:" in page.degrees.sentence.text()
+        assert f"l<sub>max</sub> = {degree}:" in page.degrees.sentence.text()
         assert f"={(degree + 1) ** 2}$" in page.degrees.formula.lines()[1]
         assert len(page.degrees.errors.curves[0].x) == degree + 1
     spread = page.degrees.frames["fit"].view._plotter.actors["surface"].mapper.dataset

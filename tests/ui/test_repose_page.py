@@ -5,10 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from PySide6.QtCore import QPointF
 from PySide6.QtWidgets import QFileDialog, QInputDialog, QWidget
 
 from regolith_studio.dataset.folder import write_dataset
 from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
+from regolith_studio.dem.evaluation.profile import Discs
 from regolith_studio.dem.pile import Pile, pile_bytes
 from regolith_studio.dem.run_folder import read_run
 from regolith_studio.geometry.directions import icosphere
@@ -20,6 +22,7 @@ from regolith_studio.studies.repose import runs_from
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.repose import PAGE
+from regolith_studio.ui.pages.repose.section_plot import grain_words
 from regolith_studio.ui.widgets.parameter_form import ParameterForm
 from regolith_studio.ui.widgets.toast import Toast
 from regolith_studio.ui.wiring import Wiring
@@ -131,6 +134,37 @@ def test_that_positions_are_measured_and_a_dragged_cut_changes_the_angle(page, t
     page.export_run()
     assert json.loads((out / "repose.json").read_text("utf-8"))["angle_deg"] == page._measured.angle
     assert (out / "sections.svg").exists()
+
+
+def test_that_a_section_tells_surface_models_and_grains_under_the_mouse(page, tmp_path, monkeypatch, wait):
+    pile = pile_of(30.0)
+    path = tmp_path / "pile.npz"
+    path.write_bytes(pile_bytes(pile))
+    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (str(path), ""))
+    page.open_positions()
+    wait(lambda: page.x_z.section is not None)
+    plot, section = page.x_z, page.x_z.section
+    at = np.flatnonzero(section.used & (section.profile.u < section.asymmetric.apex[0]))[3]
+    u, z = section.profile.u[at], section.profile.height[at]
+    words = plot.value_at(plot.canvas.plotItem.vb.mapViewToScene(QPointF(1e3 * u, 1e3 * z)))
+    left = section.asymmetric.left
+    assert words.splitlines()[0] == f"surface at {1e3 * u:.3g} mm: {1e3 * z:.3g} mm (between the cuts)"
+    assert words.splitlines()[1] == (
+        f"left flank: {1e3 * (left.slope * u + left.intercept):.3g} mm, {left.angle:.1f}°"
+    )
+    middle = pile.points[:, :2] - np.median(pile.points[:, :2], axis=0)
+    deep = np.argmin(np.hypot(middle[:, 0], pile.points[:, 2] - 0.3 * section.profile.top))
+    x, high = middle[deep, 0], pile.points[deep, 2]
+    assert grain_words(
+        Discs(middle[deep : deep + 1, 0], pile.points[deep : deep + 1, 2], np.array([1e-3])), x, high
+    ) == (f"grain 1: 2 mm at {1e3 * x:.3g}, {1e3 * high:.3g} mm")
+    assert plot.value_at(plot.canvas.plotItem.vb.mapViewToScene(QPointF(1e3 * x, 1e3 * high))).startswith(
+        "grain "
+    )
+    assert plot.value_at(plot.canvas.plotItem.vb.mapViewToScene(QPointF(0.0, 1e6))) == ""
+    columns, rows = plot.numbers()
+    assert columns[0] == "x [mm]"
+    assert sum(row[2] == "yes" for row in rows) == section.used.sum()
 
 
 def test_that_a_table_of_another_program_asks_for_its_unit(page, tmp_path, monkeypatch, wait):

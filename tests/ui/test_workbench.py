@@ -1,12 +1,14 @@
 """What makes the window a workbench: palette, projects, recovery, tasks, log, tour, layout, closing."""
 
 import json
+import threading
 
 import pytest
 from PySide6.QtCore import Qt, QTimer
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QMessageBox, QPushButton, QSplitter, QWidget
 
+from regolith_studio.jobs.events import Job, Progress
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.session.project import Project
 from regolith_studio.session.tasks import Task
@@ -15,9 +17,15 @@ from regolith_studio.ui.dialogs.closing import worth_asking
 from regolith_studio.ui.dialogs.command_palette import CommandPalette
 from regolith_studio.ui.panels.task_list import time_left
 from regolith_studio.ui.projects import autosave_path, stale_autosaves
+from regolith_studio.ui.shortcuts import plain
 from regolith_studio.ui.tour import TOUR_SEEN, Tour, start_tour, steps
 
 SECONDS = 120.0
+
+
+def wait_for_ever():
+    while True:
+        yield Progress(0, 0)
 
 
 @pytest.fixture
@@ -59,6 +67,17 @@ def test_that_the_palette_finds_commands_of_the_window_and_of_hidden_pages(windo
     QTest.keyClick(palette.line, Qt.Key.Key_Return)
     wait(lambda: window.pages.current == "sample", 5.0)
     wait(lambda: window.findChild(CommandPalette) is None)
+
+
+def test_that_the_palette_knows_every_command_of_every_page(window):
+    listed = [command.title for command in window.menus.palette(window.pages.pages, window.pages.run)]
+    assert len(listed) == len(set(listed))
+    for key, page in window.pages.pages.items():
+        for row in page.actions:
+            if row.text:
+                action = window.menus.by_name[f"{key}.{row.name}"]
+                assert f"{page.title}: {plain(action)}" in listed
+    assert {"Lecture: Play or pause", "Lecture: Step forward", "Lecture: Full screen"} <= set(listed)
 
 
 def test_that_shortcuts_of_a_page_do_not_collide_with_those_of_the_window(window):
@@ -131,7 +150,8 @@ def test_that_every_stop_of_the_tour_shows_something_that_is_there(window):
         tour.next.click()
     assert window.preferences.window[TOUR_SEEN] is True
     assert not tour.isVisible()
-    assert len(steps()) == 10
+    assert {step.page for step in steps()} == {"explore", "sample", "lecture"}
+    assert len(steps()) == 11
 
 
 def test_that_escape_ends_the_tour(window):
@@ -165,6 +185,39 @@ def test_that_tasks_are_listed_and_can_be_stopped_one_by_one(window):
     assert not panel.idle.isVisible()
     panel.show_tasks([])
     assert panel.idle.isVisible()
+
+
+def test_that_a_task_is_held_back_and_goes_on_from_the_list(window, wait):
+    window.menus.by_name["tasks"].trigger()
+    panel, session, over = window.activity.tasks, window.session, []
+
+    def count(n):
+        for number in range(n):
+            allowed.acquire(timeout=SECONDS)
+            yield Progress(number + 1, n)
+        return n
+
+    allowed = threading.Semaphore(1)
+    number = session.run("export", "Counting", Job(count, (3,)), over.append)
+    wait(lambda: any(task.done == 1 for task in session.tasks))
+    wait(lambda: panel.findChild(QPushButton, f"pause_task_{number}") is not None)
+    button = panel.findChild(QPushButton, f"pause_task_{number}")
+    button.click()
+    assert [task.paused for task in session.tasks] == [True]
+    wait(lambda: button.text() == "Resume")
+    allowed.release(2)
+    button.click()
+    wait(lambda: over == [3])
+    wait(lambda: panel.findChild(QPushButton, f"pause_task_{number}") is None)
+
+
+def test_that_a_task_that_is_held_back_can_be_left(window):
+    session = window.session
+    number = session.run("export", "Counting", Job(wait_for_ever), lambda _value: None)
+    session.pause(number)
+    timer = answer("closing_leave")
+    assert window.close()
+    timer.stop()
 
 
 @pytest.mark.parametrize(
@@ -207,7 +260,7 @@ def test_that_closing_asks_while_a_study_runs(window):
 
 
 def test_that_short_work_is_not_asked_about():
-    lanes = ("fit", "surface", "descriptors", "coarsening", "load", "inspect", "warm-up")
+    lanes = ("fit", "surface", "descriptors", "coarsening", "load", "inspect", "warm-up", "lecture:annealing")
     assert worth_asking([Task(n, lane, "x") for n, lane in enumerate(lanes)], []) == []
     assert len(worth_asking([Task(1, "export", "Building the dataset")], ["A run is not saved."])) == 2
 

@@ -8,8 +8,9 @@ from regolith_studio.session.plan import LIVE
 from regolith_studio.session.tasks import Task
 from regolith_studio.ui.translation import tr
 
-SHORT = {*(str(kind) for kind in LIVE), "load", "inspect", "warm-up"}
-"""Lanes whose work is repeated by itself when the file is opened again."""
+LESSONS = ("lecture:annealing", "lecture:degrees")
+SHORT = {*(str(kind) for kind in LIVE), "load", "inspect", "warm-up", *LESSONS}
+"""Lanes whose work is repeated by itself when the file, or the page, is opened again."""
 
 
 def worth_asking(tasks: Sequence[Task], busy: Sequence[str]) -> list[str]:

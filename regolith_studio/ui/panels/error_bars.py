@@ -54,7 +54,8 @@ class ErrorBarsPanel(QWidget):
                 _percent(self._bounds) if self._bounds else (),
             ),
         ]
-        self.plot.set_bars([*(plain_symbol(CATALOGUE[key].symbol) for key in LOSS_KEYS), "Jaccard"], series)
+        symbols = [plain_symbol(CATALOGUE[key].symbol) for key in LOSS_KEYS]
+        self.plot.set_bars([*symbols, "Jaccard"], series, short=[*symbols, "J"])
         self.plot.set_remark("" if done is None else tr("loss (Eq. 9): {loss:.4g}", loss=done.loss))
 
     def set_theme(self, theme: Theme) -> None:

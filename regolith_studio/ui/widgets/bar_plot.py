@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QPointF
-from PySide6.QtGui import QColor
+from PySide6.QtGui import QColor, QFontMetrics, QResizeEvent
 from PySide6.QtWidgets import QWidget
 
 from regolith_studio.ui.translation import tr
@@ -46,6 +46,7 @@ class BarPlot(Plot):
         self, x: str, y: str, placeholder: str, unit: str = "%", parent: QWidget | None = None
     ) -> None:
         self._categories: tuple[str, ...] = ()
+        self._short: tuple[str, ...] = ()
         self._series: tuple[BarSeries, ...] = ()
         self._items: list[object] = []
         self._unit = unit
@@ -56,9 +57,12 @@ class BarPlot(Plot):
         """What is drawn."""
         return self._series
 
-    def set_bars(self, categories: Sequence[str], series: Sequence[BarSeries]) -> None:
-        """Draw these instead."""
+    def set_bars(
+        self, categories: Sequence[str], series: Sequence[BarSeries], short: Sequence[str] = ()
+    ) -> None:
+        """Draw these instead; `short` names the categories where there is no room for the long names."""
         self._categories, self._series = tuple(categories), tuple(series)
+        self._short = tuple(short) or self._categories
         self.set_empty(not any(np.isfinite(each.values).any() for each in series))
         self.redraw()
 
@@ -89,7 +93,7 @@ class BarPlot(Plot):
             self._items.append(bars)
             if series.bounds:
                 self._draw_bounds(places, np.asarray(series.bounds), width / 2)
-        self.canvas.getAxis("bottom").setTicks([list(enumerate(self._categories))])
+        self._name_categories()
         tops = [value for each in self._series for value in each.values if np.isfinite(value)]
         top = max(tops, default=1.0) * 1.12 or 1.0
         self.canvas.setRange(
@@ -99,6 +103,18 @@ class BarPlot(Plot):
             disableAutoRange=True,
         )
         self.set_legend([(each.colour, each.label) for each in self._series])
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._name_categories()
+
+    def _name_categories(self) -> None:
+        """Below the bars, by the names that fit."""
+        axis = self.canvas.getAxis("bottom")
+        room = (self.width() - self.canvas.getAxis("left").width()) / max(1, len(self._categories))
+        metrics = QFontMetrics(axis.style["tickFont"] or self.font())
+        widest = max((metrics.horizontalAdvance(each) for each in self._categories), default=0)
+        axis.setTicks([list(enumerate(self._categories if widest < room else self._short))])
 
     def _draw_bounds(self, places: np.ndarray[Any, Any], bounds: np.ndarray[Any, Any], reach: float) -> None:
         seen = np.isfinite(bounds) & (bounds > 0.0)

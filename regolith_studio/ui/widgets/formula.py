@@ -31,7 +31,7 @@ class FormulaLabel(QWidget):
         super().__init__(parent)
         self._words, self._factor = words, factor
         self._lines: tuple[str, ...] = ()
-        self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+        self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Maximum)
         self.setAccessibleName(words)
 
     def lines(self) -> tuple[str, ...]:
@@ -62,7 +62,7 @@ class FormulaLabel(QWidget):
         return QSize(round(widest * scale) + 2, round(self._height() * scale) + 2)
 
     def minimumSizeHint(self) -> QSize:
-        return QSize(40, self.sizeHint().height())
+        return QSize(40, round(SMALLEST * self.sizeHint().height()))
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: ARG002
         if not self._lines:
@@ -73,7 +73,9 @@ class FormulaLabel(QWidget):
         painter.setBrush(self.palette().windowText())
         natural = self._scale()
         widest = max(outline(line).boundingRect().right() for line in self._lines)
-        scale = natural * max(SMALLEST, min(1.0, (self.width() - 2) / max(widest * natural, 1.0)))
+        wide = (self.width() - 2) / max(widest * natural, 1.0)
+        high = (self.height() - 2) / max(self._height() * natural, 1.0)
+        scale = natural * max(SMALLEST, min(1.0, wide, high))
         painter.translate(1, (self.height() - self._height() * scale) / 2)
         painter.scale(scale, scale)
         for line in self._lines:

@@ -65,7 +65,7 @@ class ExplorePage(PageWidget):
         middle.setObjectName("explore_rows")
         controls = scrolled_column([self.fit, self.coarsening, self.loss])
         parts = [padded(self.particles, 10, 10, 2, 8), padded(middle, 2, 10, 2, 8), controls]
-        columns = side_by_side(parts, [300, 900, CONTROLS_WIDTH], stretch=1)
+        columns = side_by_side(parts, [262, 900, CONTROLS_WIDTH], stretch=1)
         columns.setObjectName("explore_columns")
         layout = QHBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)

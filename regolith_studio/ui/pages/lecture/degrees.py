@@ -93,9 +93,11 @@ class DegreesView(QWidget):
         mesh = step.mesh
         self.sentence.setText(words.degree_sentence(step))
         self.formula.set_lines(*words.degree_lines(step))
+        count = (step.l_max + 1) ** 2
         self.frames["fit"].set_texts(
             f"Spherical-harmonics fit, l<sub>max</sub>&nbsp;=&nbsp;{step.l_max}",
-            f"{(step.l_max + 1) ** 2:,} coefficients",
+            f"{count:,} coefficients" if count > 1 else "1 coefficient",
+            f"Fit, l<sub>max</sub>&nbsp;=&nbsp;{step.l_max}",
         )
         if mesh is None:
             self.frames["fit"].view.draw(surfaces.clear)

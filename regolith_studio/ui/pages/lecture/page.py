@@ -149,7 +149,7 @@ class LecturePage(PageWidget):
         self._made_for["annealing"] = wanted
         order = choices.replaced(method="annealing", settings=settings, seed=seed).order
         index = [each.id for each in self._session.particles].index(entry.id)
-        imitated = f"the fit at l_max = {choices.l_max}" if fitted else "the particle"
+        imitated = f"the fit at l<sub>max</sub> = {choices.l_max}" if fitted else "the particle"
         self.request.setText(f"{choices.n_faces} planes, imitating {imitated}, seed {seed}")
         self.annealing.wait()
         show = self.annealing.show_lesson

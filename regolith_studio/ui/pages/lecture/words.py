@@ -10,6 +10,8 @@ from regolith_studio.jobs.lecturing import AnnealingLesson, AnnealingStep, Degre
 
 TERMS = (JACCARD, *LOSS_KEYS)
 REFUSED, ACCEPTED, LUCKY, START = "refused", "accepted", "lucky", "start"
+DEGREE = "l<sub>max</sub>"
+"""As rich text."""
 A_LINE = 4
 """Terms of the loss on one line."""
 GENERAL_LOSS = r"$L=\alpha_J\,J+\sum_i\alpha_i\,\varepsilon_i$"
@@ -128,12 +130,12 @@ def degree_lines(step: DegreeStep) -> tuple[str, ...]:
 def degree_sentence(step: DegreeStep) -> str:
     """What the fit keeps at a degree, in words."""
     if step.mesh is None:
-        return f"At l_max = {step.l_max} the series has a negative radius somewhere: it is no surface."
+        return f"At {DEGREE} = {step.l_max} the series has a negative radius somewhere: it is no surface."
     names = {0: "a sphere", 1: "a sphere that is shifted a little", 2: "nearly an ellipsoid"}
     shape = names.get(step.l_max, "finer and finer bumps")
     errors = ", ".join(f"{CATALOGUE[key].label.lower()} {value:.1%}" for key, value in step.errors.items())
     return (
-        f"l_max = {step.l_max}: {shape}. The radius is missed by {step.radial_error:.1%} in the root mean"
+        f"{DEGREE} = {step.l_max}: {shape}. The radius is missed by {step.radial_error:.1%} in the root mean"
         f" square; errors against the particle: {errors}."
     )
 

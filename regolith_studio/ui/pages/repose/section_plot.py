@@ -2,18 +2,20 @@
 
 import numpy as np
 import pyqtgraph as pg
-from PySide6.QtCore import Signal
+from PySide6.QtCore import QPointF, Signal
 from PySide6.QtWidgets import QWidget
 
-from regolith_studio.dem.evaluation.profile import project
+from regolith_studio.dem.evaluation.profile import Discs, project
 from regolith_studio.dem.evaluation.section import Section
 from regolith_studio.dem.pile import Pile
 from regolith_studio.studies.repose_figures import framed
-from regolith_studio.ui.widgets.plot import Plot
+from regolith_studio.ui.widgets.plot import Numbers, Plot
 
 MILLIMETRE = 1e3
 LEFT, RIGHT, BOTH = "#0072b2", "#e69f00", "#009e73"
 """Left flank, right flank, symmetric model, as in the paper's figure."""
+REACH = 12.0
+"""Pixels from a surface point at which it is still told."""
 
 
 class SectionPlot(Plot):
@@ -29,6 +31,7 @@ class SectionPlot(Plot):
         self._section: Section | None = None
         self._items: list[pg.GraphicsObject] = []
         self._cuts: dict[str, pg.InfiniteLine] = {}
+        self._discs: Discs | None = None
         super().__init__(f"{axis} [mm]", "z [mm]", "Run a test or open positions to see its section.", parent)
         self.canvas.setAspectLocked(True)
 
@@ -57,9 +60,26 @@ class SectionPlot(Plot):
 
     def show_nothing(self, sentence: str) -> None:
         """Say why there is no section."""
-        self._pile = self._section = None
+        self._pile = self._section = self._discs = None
         self.set_empty(True, sentence)
         self.redraw()
+
+    def value_at(self, place: QPointF) -> str:
+        """The surface point that is nearest, the models below or above it; a grain elsewhere in the pile."""
+        if self._pile is None or self._section is None:
+            return ""
+        here = self.canvas.plotItem.vb.mapSceneToView(place)
+        u, z = here.x() / MILLIMETRE, here.y() / MILLIMETRE
+        reach = REACH / MILLIMETRE * self.canvas.plotItem.vb.viewPixelSize()[0]
+        return surface_words(self._section, u, z, reach) or grain_words(self._discs, u, z)
+
+    def numbers(self) -> Numbers:
+        if self._section is None:
+            return (), []
+        profile, used = self._section.profile, self._section.used
+        rows = zip(MILLIMETRE * profile.u, MILLIMETRE * profile.height, used, strict=True)
+        columns = (self._labels[0], "surface z [mm]", "in the regression")
+        return columns, [(float(u), float(z), "yes" if taken else "no") for u, z, taken in rows if z == z]
 
     def redraw(self) -> None:
         for item in (*self._items, *self._cuts.values()):
@@ -77,7 +97,7 @@ class SectionPlot(Plot):
         )
 
     def _draw_grains(self, pile: Pile, section: Section) -> None:
-        discs = project(pile.points, pile.diameters, 0.0, np.radians(section.azimuth))
+        discs = self._discs = project(pile.points, pile.diameters, 0.0, np.radians(section.azimuth))
         grains = pg.ScatterPlotItem(
             x=MILLIMETRE * discs.u,
             y=MILLIMETRE * discs.z,
@@ -129,3 +149,37 @@ class SectionPlot(Plot):
     def _add(self, item: pg.GraphicsObject) -> None:
         self.canvas.addItem(item)
         self._items.append(item)
+
+
+def surface_words(section: Section, u: float, z: float, reach: float) -> str:
+    """The point of the surface within `reach` (metres) of a place, and where the models are there."""
+    profile = section.profile
+    away = np.hypot(profile.u - u, profile.height - z)
+    if not np.isfinite(away).any() or np.nanmin(away) > reach:
+        return ""
+    at = int(np.nanargmin(away))
+    x, high = float(profile.u[at]), float(profile.height[at])
+    two, one = section.asymmetric, section.symmetric
+    side, flank = ("left", two.left) if x < two.apex[0] else ("right", two.right)
+    line = flank.slope * x + flank.intercept
+    tent = one.apex[1] - one.slope * abs(x - one.apex[0])
+    taken = "between the cuts" if section.used[at] else "not used: outside the cuts"
+    return "\n".join(
+        (
+            f"surface at {MILLIMETRE * x:.3g} mm: {MILLIMETRE * high:.3g} mm ({taken})",
+            f"{side} flank: {MILLIMETRE * line:.3g} mm, {flank.angle:.1f}°",
+            f"symmetric model: {MILLIMETRE * tent:.3g} mm, {one.angle:.1f}°",
+        )
+    )
+
+
+def grain_words(discs: Discs | None, u: float, z: float) -> str:
+    """The grain that a place is on, the smallest if there are several; the plane's own place elsewhere."""
+    if discs is None:
+        return ""
+    over = np.flatnonzero(np.hypot(discs.u - u, discs.z - z) <= discs.radius)
+    if not len(over):
+        return ""
+    grain = over[np.argmin(discs.radius[over])]
+    size = 2 * MILLIMETRE * discs.radius[grain]
+    return f"grain {grain + 1}: {size:.3g} mm at {MILLIMETRE * u:.3g}, {MILLIMETRE * z:.3g} mm"
