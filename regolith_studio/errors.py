@@ -39,3 +39,9 @@ class EnvironmentProblem(RegolithError):
 
 class Cancelled(RegolithError):
     """The user stopped the work."""
+
+
+def of_the_system(error: OSError) -> str:
+    """What the operating system has refused, a full disk say, in a sentence."""
+    place = error.filename or "the files"
+    return f"The system does not let the program go on with {place} ({error.strerror or error})."

@@ -24,6 +24,7 @@ from regolith_studio.cli.options import (
     Unit,
     Weights,
     as_bad_use,
+    usable_file,
     values,
 )
 from regolith_studio.cli.whole_help import WholeHelp
@@ -171,7 +172,9 @@ def sample(
     count: Annotated[int, typer.Option("--number", "-n", min=0, help="Particles to draw.", metavar="N")],
     output: Annotated[
         Path | None,
-        typer.Option("--output", "-o", help="CSV file; the terminal if left out.", metavar="FILE"),
+        typer.Option(
+            "--output", "-o", help="CSV file; the terminal if left out.", metavar="FILE", callback=usable_file
+        ),
     ] = None,
     json: Json = False,
     jobs: Jobs = 1,

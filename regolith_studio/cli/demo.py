@@ -1,11 +1,11 @@
 """``demo``: the whole chain on the shipped sample, without a screen."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
 import typer
 
-from regolith_studio.cli.options import Jobs, Json, Seed
+from regolith_studio.cli.options import Folder, Jobs, Json, Seed
 
 if TYPE_CHECKING:
     from regolith_studio.session.performing import Performed
@@ -14,9 +14,7 @@ PICTURE = "three-views.png"
 
 
 def demo(
-    output: Annotated[Path, typer.Option("--output", "-o", help="Folder to write.", metavar="DIR")] = Path(
-        "regolith-demo"
-    ),
+    output: Folder = Path("regolith-demo"),
     json: Json = False,
     jobs: Jobs = 0,
     seed: Seed = 0,

@@ -5,7 +5,7 @@ import sys
 import traceback
 from collections.abc import Sequence
 
-from regolith_studio.errors import Cancelled, RegolithError
+from regolith_studio.errors import Cancelled, RegolithError, of_the_system
 
 DONE, BAD_INPUT, BAD_USE, INTERRUPTED = 0, 1, 2, 130
 
@@ -25,6 +25,8 @@ def run(arguments: Sequence[str]) -> int:
         return _say("Stopped.", INTERRUPTED)
     except RegolithError as error:
         return _say(str(error), BAD_INPUT)
+    except OSError as error:
+        return _say(of_the_system(error), BAD_INPUT)
     except MemoryError:
         return _say("The work needs more memory than this machine has.", BAD_INPUT)
     except Exception as error:  # noqa: BLE001  the last one who can turn it into a sentence

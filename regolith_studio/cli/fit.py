@@ -17,15 +17,26 @@ from regolith_studio.cli.options import (
     StarPoint,
     Unit,
     as_bad_use,
+    usable,
+    usable_file,
 )
 
 Stem = Annotated[
     Path,
-    typer.Option("--output", "-o", help="Writes FIT.json and FIT.npz.", metavar="FIT", show_default=False),
+    typer.Option(
+        "--output",
+        "-o",
+        help="Writes FIT.json and FIT.npz.",
+        metavar="FIT",
+        show_default=False,
+        callback=usable_file,
+    ),
 ]
 Surfaces = Annotated[
     Path | None,
-    typer.Option("--surfaces", help="Folder for the surface of each fit as STL.", metavar="DIR"),
+    typer.Option(
+        "--surfaces", help="Folder for the surface of each fit as STL.", metavar="DIR", callback=usable
+    ),
 ]
 
 

@@ -1,5 +1,6 @@
 """Options that several commands share, with their help."""
 
+import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -7,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from regolith_studio.errors import InputError
+from regolith_studio.errors import FileError, InputError
 
 Meshes = Annotated[
     list[Path], typer.Argument(metavar="MESH...", help="Mesh files, or folders that hold some.")
@@ -23,7 +24,38 @@ Unit = Annotated[
         "--unit", help="Length unit of files that have none: um mm m nm cm voxel:SIZE.", metavar="U"
     ),
 ]
-Folder = Annotated[Path, typer.Option("--output", "-o", help="Folder to write.", metavar="DIR")]
+
+
+def usable(folder: Path | None) -> Path | None:
+    """The folder, if it is one that can be written or made: said before hours of work and not after them.
+
+    Raises
+    ------
+    FileError
+        If a file stands there, or the place may not be written.
+    """
+    if folder is None:
+        return None
+    there = next(place for place in (folder, *folder.absolute().parents) if os.path.lexists(place))
+    if not there.is_dir():
+        raise FileError(f"{there} is a file; name a folder for the results.")
+    if not os.access(there, os.W_OK | os.X_OK):
+        raise FileError(f"The folder {there} cannot be written (Permission denied).")
+    return folder
+
+
+def usable_file(path: Path | None) -> Path | None:
+    """The path of a file, or of what several files are called after, if its folder is :func:`usable`."""
+    if path is not None:
+        usable(path.parent)
+        if path.is_dir():
+            raise FileError(f"{path} is a folder; name a file.")
+    return path
+
+
+Folder = Annotated[
+    Path, typer.Option("--output", "-o", help="Folder to write.", metavar="DIR", callback=usable)
+]
 LMax = Annotated[
     int, typer.Option("--l-max", help="Degree of the spherical harmonics, 0 to 30.", metavar="L")
 ]

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 import typer
 
 from regolith_studio.cli import repose_runs
-from regolith_studio.cli.options import Jobs, Json, Seed, Settings, as_bad_use
+from regolith_studio.cli.options import Jobs, Json, Seed, Settings, as_bad_use, usable
 from regolith_studio.cli.repose_options import evaluation_settings
 from regolith_studio.cli.whole_help import WholeHelp
 
@@ -19,7 +19,8 @@ app = typer.Typer(
 app.command("run")(repose_runs.run)
 app.command("study")(repose_runs.study)
 Figures = Annotated[
-    Path | None, typer.Option("--output", "-o", help="Folder for the JSON and Fig. 9.", metavar="DIR")
+    Path | None,
+    typer.Option("--output", "-o", help="Folder for the JSON and Fig. 9.", metavar="DIR", callback=usable),
 ]
 PositionUnit = Annotated[
     str, typer.Option("--unit", help="Length unit of files that have none: m mm um cm nm.", metavar="U")

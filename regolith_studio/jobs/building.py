@@ -144,7 +144,9 @@ def check_place(folder: Path, overwrite: bool) -> None:
         If something stands there that may not be replaced.
     """
     if folder.is_file() or (folder.is_dir() and any(folder.iterdir()) and not overwrite):
-        raise DatasetError(f"{folder} is there already; choose another folder or allow it to be overwritten.")
+        raise DatasetError(
+            f"{folder} is there already; choose another folder or allow it to be overwritten (--overwrite)."
+        )
 
 
 def dataset_of(

@@ -119,6 +119,8 @@ def perform(
         be resumed or is of another recipe.
     """
     choices, place = recipe.choices(), folder / JOURNAL_FOLDER
+    if folder.exists() and not folder.is_dir():
+        raise FileError(f"{folder} is a file; name a folder for the results.")
     over = (place / JOURNAL).exists() and _has_ended(place)
     if (place / JOURNAL).exists() and not (over or resume):
         raise FileError(

@@ -97,8 +97,9 @@ def test_that_check_answers_without_a_display_and_survives_a_broken_opengl() -> 
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals are a matter of POSIX")
-def test_that_ctrl_c_ends_with_130_without_a_traceback_or_half_an_output(
-    grains: Path, tmp_path: Path
+@pytest.mark.parametrize(("number", "code_of_end"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_that_a_signal_ends_a_command_without_a_traceback_or_half_an_output(
+    grains: Path, tmp_path: Path, number: signal.Signals, code_of_end: int
 ) -> None:
     ready = tmp_path / "ready"
     code = (
@@ -125,8 +126,8 @@ def test_that_ctrl_c_ends_with_130_without_a_traceback_or_half_an_output(
         assert child.poll() is None
         assert time.monotonic() < end
         time.sleep(0.05)
-    child.send_signal(signal.SIGINT)
+    child.send_signal(number)
     out, err = child.communicate(timeout=60)
-    assert child.returncode == 130
+    assert child.returncode == code_of_end
     assert "Traceback" not in out + err
-    assert not (tmp_path / "out").exists()
+    assert [path.name for path in tmp_path.iterdir()] == ["ready"]

@@ -3,7 +3,7 @@
 import traceback
 from collections.abc import Callable, Generator
 
-from regolith_studio.errors import Cancelled, RegolithError
+from regolith_studio.errors import Cancelled, RegolithError, of_the_system
 from regolith_studio.jobs.events import Ending, Failed, Finished, Job, Listener, Step, Stopped
 
 
@@ -47,4 +47,6 @@ def failure(error: BaseException) -> Failed:
         return Failed(str(error), details)
     if isinstance(error, MemoryError):
         return Failed("The work needs more memory than this machine has.", details)
+    if isinstance(error, OSError) and error.errno is not None:
+        return Failed(of_the_system(error), details)
     return Failed(f"The program made a mistake ({type(error).__name__}: {error}).", details)
