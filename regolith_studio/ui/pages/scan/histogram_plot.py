@@ -4,12 +4,12 @@ from collections.abc import Sequence
 
 import numpy as np
 import pyqtgraph as pg
-from PySide6.QtCore import Signal
+from PySide6.QtCore import QPointF, Signal
 from PySide6.QtWidgets import QWidget
 
 from regolith_studio.imaging.segmentation.thresholding import Histogram
 from regolith_studio.ui.theme import Theme
-from regolith_studio.ui.widgets.plot import Plot
+from regolith_studio.ui.widgets.plot import Numbers, Plot
 
 
 class HistogramPlot(Plot):
@@ -58,20 +58,49 @@ class HistogramPlot(Plot):
         self.line.label.setColor(theme.accent)
         self.line.label.fill = pg.mkBrush(theme.base)
 
+    def value_at(self, place: QPointF) -> str:
+        """Grey values of the bin there and their share of the voxels."""
+        box = self.canvas.getViewBox()
+        if not self._shown() or not box.sceneBoundingRect().contains(place):
+            return ""
+        value = float(box.mapSceneToView(place).x())
+        first, *_ = (seen for seen, _, _ in self._shown())
+        found = _bin_of(first, value)
+        if found is None:
+            return ""
+        lines = [_bin_words(first, found)]
+        for seen, _, label in self._shown():
+            place_in = _bin_of(seen, value)
+            if place_in is not None:
+                lines.append(f"{label}: {_shares(seen)[place_in]:.3g} % of voxels")
+        return "\n".join(lines)
+
+    def numbers(self) -> Numbers:
+        """Edges of the bins and what is in them."""
+        rows: list[tuple[str | float, ...]] = [
+            (label, float(low), float(high), int(count))
+            for seen, _, label in self._shown()
+            for low, high, count in zip(seen.edges[:-1], seen.edges[1:], seen.counts, strict=True)
+        ]
+        return ("Histogram", "From", "To", "Voxels"), rows
+
     def redraw(self) -> None:
         for curve in self._curves:
             self.canvas.removeItem(curve)
-        shown = [
+        self._curves = [
+            self.canvas.plot(_edges(seen), _heights(seen), stepMode="center", pen=self.pen(colour, 1.0))
+            for seen, colour, _ in self._shown()
+        ]
+        self.set_legend([(colour, label) for _, colour, label in self._shown()])
+        self.line.setZValue(10)
+
+    def _shown(self) -> list[tuple[Histogram, str, str]]:
+        """Histograms with their colours and names."""
+        known = [
             (self._scanned, self.theme.particle, "as scanned"),
             (self._denoised, self.theme.fit, "without noise"),
         ]
-        self._curves = [
-            self.canvas.plot(_edges(seen), _heights(seen), stepMode="center", pen=self.pen(colour, 1.0))
-            for seen, colour, _ in shown
-            if seen is not None
-        ]
-        self.set_legend([(colour, label) for seen, colour, label in shown if seen is not None])
-        self.line.setZValue(10)
+        return [(seen, colour, label) for seen, colour, label in known if seen is not None]
 
 
 def _plain_powers(values: Sequence[float], scale: float, spacing: float) -> list[str]:  # noqa: ARG001
@@ -85,5 +114,21 @@ def _edges(seen: Histogram) -> np.ndarray:
 
 def _heights(seen: Histogram) -> np.ndarray:
     """Share of all voxels, in per cent; empty bins at the foot of the logarithmic axis."""
-    share = 100.0 * seen.counts / max(int(seen.counts.sum()), 1)
-    return np.asarray(np.maximum(share, 1e-4))
+    return np.asarray(np.maximum(_shares(seen), 1e-4))
+
+
+def _shares(seen: Histogram) -> np.ndarray:
+    return np.asarray(100.0 * seen.counts / max(int(seen.counts.sum()), 1))
+
+
+def _bin_of(seen: Histogram, value: float) -> int | None:
+    """The bin that a grey value falls into."""
+    place = int(np.searchsorted(seen.edges, value, side="right")) - 1
+    return place if 0 <= place < len(seen.counts) else None
+
+
+def _bin_words(seen: Histogram, place: int) -> str:
+    low, high = float(seen.edges[place]), float(seen.edges[place + 1])
+    if high - low == 1.0 and low % 1.0 == 0.5:
+        return f"Grey value {low + 0.5:g}"
+    return f"Grey values {low:.4g} to {high:.4g}"
