@@ -4,17 +4,18 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.jobs.generating import drawn_names
-from regolith_studio.jobs.judging import DrawnShapes, FittedShapes
 from regolith_studio.jobs.loading import files_in
-from regolith_studio.model.materials import materials
-from regolith_studio.model.protocol import FittedModel
 from regolith_studio.readers.formats import mesh_suffixes
 from regolith_studio.readers.sample import sample_particles
 from regolith_studio.readers.table_particles import TABLE_SUFFIXES, TEXT_SUFFIXES
 from regolith_studio.session.recipe_inputs import Population, VolumeEntry
+
+if TYPE_CHECKING:  # what draws shapes takes a third of a second to import: the window begins without it
+    from regolith_studio.jobs.judging import DrawnShapes, FittedShapes
+    from regolith_studio.model.protocol import FittedModel
 
 Known = tuple[str, str, str]
 """A particle that an origin gives: what tells it from the others there, its name and its group."""
@@ -88,10 +89,10 @@ class Drawn:
     """
 
     population: Population
-    model: FittedModel | None = field(default=None, repr=False)
+    model: "FittedModel | None" = field(default=None, repr=False)
 
     @classmethod
-    def of(cls, drawn: DrawnShapes, fitted: FittedShapes, level: int) -> "Drawn":
+    def of(cls, drawn: "DrawnShapes", fitted: "FittedShapes", level: int) -> "Drawn":
         """The origin of particles that were drawn from `fitted`, or from what was edited in it.
 
         Parameters
@@ -99,6 +100,8 @@ class Drawn:
         level
             Subdivisions of the icosahedron that their surfaces are drawn on.
         """
+        from regolith_studio.model.materials import materials
+
         name, wish = fitted.source.name, drawn.order
         shipped = drawn.model is fitted.model and fitted.source.content == materials().get(name)
         population = Population(
@@ -114,6 +117,8 @@ class Drawn:
 
     def members(self) -> tuple[Known, ...]:
         """All that it gives, in order."""
+        from regolith_studio.jobs.generating import drawn_names
+
         names = drawn_names(self.population.name, self.population.n)
         return tuple((name, name, "") for name in names)
 

@@ -9,9 +9,11 @@ from regolith_studio.ui.start import make_splash
 START = """
 import sys
 from regolith_studio.ui import start
-heavy = {"numba", "scipy.stats", "pyvista", "matplotlib"} & set(sys.modules)
+heavy = {"numba", "scipy", "pyvista", "matplotlib"} & set(sys.modules)
 assert not heavy, heavy
 import regolith_studio.ui.app as app
+heavy = {"scipy.stats", "skimage", "sklearn", "h5py", "dask", "matplotlib.figure"} & set(sys.modules)
+assert not heavy, heavy
 seen = []
 def welcome(window):
     seen.append(window.isVisible())
