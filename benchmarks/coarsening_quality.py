@@ -30,6 +30,7 @@ from regolith_studio.readers.registry import read_mesh
 from regolith_studio.readers.sample import sample_particles
 
 KEPT = ("volume", "sphericity", "min_diameter", "max_diameter", "aspect_ratio")
+MESH_ENDINGS = (".stl", ".ply", ".obj", ".off")
 STEP = 2.0
 """Degrees between the axes that the independent measurement tries before it refines."""
 
@@ -95,9 +96,12 @@ def sets(folders: Sequence[Path], unit: str) -> list[tuple[str, list[Particle]]]
     """Names and particles; the shipped sample without folders."""
     if not folders:
         return [("sample", list(sample_particles()))]
-    return [
-        (folder.name, [read_mesh(path, unit) for path in sorted(folder.glob("*.stl"))]) for folder in folders
-    ]
+    return [(folder.name, [read_mesh(path, unit) for path in mesh_files(folder)]) for folder in folders]
+
+
+def mesh_files(folder: Path) -> list[Path]:
+    """Those of a folder that the program reads, by name."""
+    return sorted(path for path in folder.iterdir() if path.suffix.lower() in MESH_ENDINGS)
 
 
 def prepared(particles: Sequence[Particle]) -> tuple[list[Target], float]:

@@ -168,10 +168,12 @@ def test_that_both_studies_are_computed_and_saved(window, wait, settled, tmp_pat
     settled(window)
     assert not page.lmax_study.plot.is_empty()
     assert len(page.coarsening_study.table.values()) == len(row_labels())
-    monkeypatch.setattr(ASKED, lambda *_: str(tmp_path))
+    folder = tmp_path / "files"
+    folder.mkdir()
+    monkeypatch.setattr(ASKED, lambda *_: str(folder))
     window.menus.by_name["studies.save"].trigger()
     wait(lambda: not window.session.tasks and "files were written" in window.toast.sentence.text(), SECONDS)
-    assert {path.suffix for path in tmp_path.iterdir()} == {".csv", ".json", ".png", ".svg"}
+    assert {path.suffix for path in folder.iterdir()} == {".csv", ".json", ".png", ".svg"}
 
 
 def test_that_saving_before_computing_is_told(window):
