@@ -13,6 +13,7 @@ from PySide6.QtWidgets import QApplication
 from regolith_studio.errors import RegolithError
 from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.runners.thread import ThreadRunner
+from regolith_studio.jobs.thrift import pack_loaded_kernels
 from regolith_studio.jobs.warming import warm_up
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.session.session import Session
@@ -37,6 +38,7 @@ def open_window(
     preferences: Preferences | None = None,
 ) -> MainWindow:
     """A window with its own session; the particles arrive a moment later."""
+    pack_loaded_kernels()
     poster = Poster()
     runner = ThreadRunner(poster.post)
     session = Session(runner)

@@ -6,6 +6,7 @@ from PySide6.QtCore import QCoreApplication, QLocale, Qt
 from PySide6.QtGui import QIcon, QSurfaceFormat
 from PySide6.QtWidgets import QApplication
 
+from regolith_studio.jobs.thrift import share_one_heap
 from regolith_studio.resources import resource
 from regolith_studio.ui.views.factory import surface_format
 
@@ -15,6 +16,7 @@ NUMBERS = QLocale(QLocale.Language.C)
 
 def make_application(arguments: Sequence[str]) -> QApplication:
     """The one application object, with contexts shared between windows and the format that VTK needs."""
+    share_one_heap()
     QCoreApplication.setAttribute(Qt.ApplicationAttribute.AA_ShareOpenGLContexts)
     QSurfaceFormat.setDefaultFormat(surface_format())
     QLocale.setDefault(NUMBERS)
