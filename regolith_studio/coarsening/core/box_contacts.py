@@ -26,6 +26,7 @@ OUTSIDE = 1e-9
 """Vertices farther outside than this are outside."""
 APART = 1e-5
 """Ties that leave less of a turn than this, at size 1, are none."""
+MOST_SWAPS = 6
 SETTLED = 1e-11
 """Last turn of a box that has settled, in radians."""
 
@@ -214,17 +215,49 @@ def turned(frame: FloatArray, turn: Vector) -> None:
 
 
 @leaf
-def holds(vertices: FloatArray, contact: IntArray, frame: FloatArray) -> bool:
-    """Whether no vertex is outside the box."""
+def rested(
+    vertices: FloatArray, contact: IntArray, frame: FloatArray, points: FloatArray, farthest: float
+) -> bool:
+    """Settle a box so that it holds all vertices, with others in its row of contacts where it must be.
+
+    A vertex that is left outside takes the place of one in that side; False where that leads nowhere.
+
+    Parameters
+    ----------
+    points
+        Filled with the vertices of the row of contacts, shape (9, 3).
+    farthest
+        As in :func:`settled`.
+    """
+    for _ in range(MOST_SWAPS):
+        fill_points(vertices, contact, points)
+        if not settled(points, contact, frame, farthest):
+            return False
+        side, vertex = farthest_outside(vertices, contact, frame)
+        if side < 0:
+            return True
+        place = 1 + side
+        for tie in range(contact[0]):
+            if contact[7 + 2 * tie] == side:
+                place = 8 + 2 * tie
+        contact[place] = vertex
+    return False
+
+
+@leaf
+def farthest_outside(vertices: FloatArray, contact: IntArray, frame: FloatArray) -> tuple[int, int]:
+    """Side beyond which a vertex lies farthest outside, and that vertex; -1 where none does."""
+    most, most_side, most_vertex = OUTSIDE, -1, -1
     for axis in range(3):
         x = row(frame, axis)
-        high = along(vertices, contact[1 + 2 * axis], x) + OUTSIDE
-        low = along(vertices, contact[2 + 2 * axis], x) - OUTSIDE
+        high, low = along(vertices, contact[1 + 2 * axis], x), along(vertices, contact[2 + 2 * axis], x)
         for v in range(len(vertices)):
             here = along(vertices, v, x)
-            if here > high or here < low:
-                return False
-    return True
+            if here - high > most:
+                most, most_side, most_vertex = here - high, 2 * axis, v
+            if low - here > most:
+                most, most_side, most_vertex = low - here, 2 * axis + 1, v
+    return most_side, most_vertex
 
 
 @leaf

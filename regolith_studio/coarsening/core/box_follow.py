@@ -5,13 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from regolith_studio.coarsening.core.box import Solid
-from regolith_studio.coarsening.core.box_contacts import (
-    at_minimum,
-    fill_points,
-    holds,
-    pose_of,
-    settled,
-)
+from regolith_studio.coarsening.core.box_contacts import at_minimum, pose_of, rested
 from regolith_studio.coarsening.core.box_search import Boxes, likeness
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
 from regolith_studio.geometry.compiled import kernel, leaf
@@ -61,8 +55,8 @@ def watch(boxes: Boxes, chosen: IntArray, triples: IntArray) -> Watched:
 def followed(solid: Solid, triples: IntArray, watched: Watched) -> tuple[Boxes, BoolArray]:
     """The watched boxes on the changed polyhedron, and which of them are lost, shape (k,).
 
-    A box is lost if a corner that it touched is gone, if another corner is outside, or if a small turn would
-    make it smaller.
+    A box is lost if a corner that it touched is gone, if it cannot rest near by on others, or if a small turn
+    would make it smaller.
     """
     total, n = len(watched.frames), len(solid.normals)
     owner = np.full((n, n), -1, np.int64)
@@ -76,8 +70,7 @@ def followed(solid: Solid, triples: IntArray, watched: Watched) -> tuple[Boxes, 
         contact, frame = contacts[k], frames[k]
         if not renamed(contact, watched.planes[k], owner, triples):
             continue
-        fill_points(solid.vertices, contact, points)
-        if not settled(points, contact, frame, FARTHEST) or not holds(solid.vertices, contact, frame):
+        if not rested(solid.vertices, contact, frame, points, FARTHEST):
             continue
         pose = pose_of(points, contact, frame)
         if not at_minimum(pose, contact):

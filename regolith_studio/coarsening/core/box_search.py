@@ -28,15 +28,7 @@ from regolith_studio.coarsening.core.box_arcs import (
     spare_samples,
     worth_a_look,
 )
-from regolith_studio.coarsening.core.box_contacts import (
-    ROW,
-    at_minimum,
-    fill_points,
-    holds,
-    pose_of,
-    settled,
-    touched,
-)
+from regolith_studio.coarsening.core.box_contacts import ROW, at_minimum, pose_of, rested, touched
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.compiled import kernel, leaf
 from regolith_studio.geometry.vectors import along, mixed, row
@@ -159,8 +151,7 @@ def at_rest(solid: Solid, boxes: Boxes) -> Boxes:
     for k in range(len(frames)):
         frame = frames[k].copy()
         touched(solid.vertices, frame, contacts[k], ties)
-        fill_points(solid.vertices, contacts[k], points)
-        if settled(points, contacts[k], frame, SETTLING) and holds(solid.vertices, contacts[k], frame):
+        if rested(solid.vertices, contacts[k], frame, points, SETTLING):
             pose = pose_of(points, contacts[k], frame)
             kept[k] = k == 0 or at_minimum(pose, contacts[k])
             frames[k] = frame
