@@ -182,7 +182,7 @@ def _mouse(widget, kind, place):
 
 
 @pytest.fixture
-def window(shown, preferences, wait, monkeypatch):
+def window(monkeypatch, shown, preferences, wait):
     """``REGOLITH_STUDIO_VIEWS=live`` lets it play with live views."""
     monkeypatch.setattr("regolith_studio.ui.main_window.may_close", lambda *_: True)
     views = os.environ.get("REGOLITH_STUDIO_VIEWS", "image")
