@@ -1,6 +1,7 @@
 """Files with bytes changed at random: every parser gives triangles or one sentence, nothing else."""
 
 import json
+import struct
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +23,7 @@ NAMES = [
     "big.ply",
     "cube.gltf",
     "cube.3mf",
+    "cube.glb",
 ]
 WORDS = [
     b"",
@@ -50,7 +52,16 @@ def seeds(cube):
         "bufferViews": [{"buffer": 0, "byteLength": 36}],
         "buffers": [{"byteLength": 36, "uri": "data:;base64," + "AAAA" * 12}],
     }
-    return {**cube.files(), "cube.gltf": json.dumps(document).encode(), "cube.3mf": cube.three_mf()}
+    text = json.dumps({**document, "buffers": [{"byteLength": 36}]}).encode()
+    text += b" " * (-len(text) % 4)
+    chunks = struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", 36, b"BIN\0") + bytes(36)
+    binary = b"glTF" + struct.pack("<II", 2, 12 + len(chunks)) + chunks
+    return {
+        **cube.files(),
+        "cube.gltf": json.dumps(document).encode(),
+        "cube.3mf": cube.three_mf(),
+        "cube.glb": binary,
+    }
 
 
 def mutated(data, rng):

@@ -1,5 +1,6 @@
 """A folder of slices: one TIFF, PNG or BMP file for each."""
 
+import struct
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -20,6 +21,8 @@ from regolith_studio.readers.volume_format import (
 )
 
 SLICE_SUFFIXES = (".tif", ".tiff", ".png", ".bmp")
+_BMP = struct.Struct("<10xIIiiHHIIxxxxxxxxI")
+"""Place of the pixels, length of the header, width, height, planes, bits, packing, size, colours."""
 
 
 class SliceFiles:
@@ -106,8 +109,8 @@ def _picture(path: Path) -> NDArray[Any]:
     if data.startswith(b"\x89PNG\r\n\x1a\n") and len(data) > 24:
         edges = int.from_bytes(data[16:20], "big"), int.from_bytes(data[20:24], "big")
         decode = imagecodecs.png_decode
-    elif data.startswith(b"BM") and len(data) > 26:
-        edges = int.from_bytes(data[18:22], "little"), abs(int.from_bytes(data[22:26], "little", signed=True))
+    elif data.startswith(b"BM") and len(data) > _BMP.size:
+        edges = _bmp_edges(data)
         decode = imagecodecs.bmp_decode
     else:
         raise FileError("is neither a PNG nor a BMP image.")
@@ -115,6 +118,26 @@ def _picture(path: Path) -> NDArray[Any]:
         raise FileError(f"cannot have {edges[0]:,} × {edges[1]:,} pixels.")
     decoded: NDArray[Any] = decode(data)
     return decoded
+
+
+def _bmp_edges(data: bytes) -> tuple[int, int]:
+    """Width and height of a bitmap; the decoder trusts its header, so that all of it is checked.
+
+    Raises
+    ------
+    FileError
+        If the pixels are packed, or do not lie where the header says.
+    """
+    begin, header, width, height, planes, bits, packing, _, colours = _BMP.unpack_from(data)
+    if header < 40 or planes != 1 or bits not in (1, 4, 8, 16, 24, 32) or width <= 0:
+        raise FileError("has no header of a Windows bitmap; save it as PNG.")
+    if packing != 0:
+        raise FileError("is a packed bitmap; save it unpacked, or as PNG.")
+    table = 4 * (colours or (1 << bits if bits <= 8 else 0))
+    row = (width * bits + 31) // 32 * 4
+    if colours > 256 or not 14 + header + table <= begin <= len(data) - row * abs(height):
+        raise FileError("ends before its pixels do.")
+    return width, abs(height)
 
 
 def _stated(path: Path) -> Any:

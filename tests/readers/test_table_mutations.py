@@ -1,0 +1,182 @@
+"""Tables of coefficients, fits, models, cards, archives and slices with bytes changed at random.
+
+Every reader gives values or one sentence, nothing else; all are asked in this process, so that nothing
+but the error of a bad file passes for an answer.
+"""
+
+import os
+import shutil
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from types import SimpleNamespace
+from typing import Any
+
+import imageio.v3 as imageio
+import numpy as np
+import pytest
+
+from regolith_studio.errors import FileError
+from regolith_studio.geometry.directions import icosphere
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.harmonics.files import write_fits
+from regolith_studio.harmonics.fit import fit_harmonics
+from regolith_studio.model.files import write_model
+from regolith_studio.model.materials import materials, write_card
+from regolith_studio.model.models import MODELS
+from regolith_studio.model.sample import Sample
+from regolith_studio.readers.coefficient_tables import read_coefficients
+from regolith_studio.readers.npz import read_npz
+from regolith_studio.readers.position_task import read_number_rows
+from regolith_studio.readers.shape_files import read_shape_source
+from regolith_studio.readers.volume_task import checked_slices, opened_volume
+
+HURTS = [b"", b"\0", b"\xff\xff\xff\xff", b"-1", b"1e999", b"NaN", b"9" * 12, b"\n", b" ", b",", b'"', b"{"]
+HURTS += [b"[", b"null", b"true", b"l_max", b"PK\x03\x04", b"<U9999999", b"(99999999,)"]
+Reader = Callable[[Path], Any]
+
+
+class InProcess:
+    """Answers as the guard does, without a child."""
+
+    def request(self, task: str, path: Path, **options: Any) -> Any:
+        assert task == "numbers"
+        return read_number_rows({"path": str(path), **options})
+
+
+def table(path: Path) -> Any:
+    return read_coefficients(path, guard=InProcess())  # type: ignore[arg-type]
+
+
+def source(path: Path) -> Any:
+    return read_shape_source(str(path))
+
+
+def slices(path: Path) -> Any:
+    volume, _ = opened_volume(path.parent, {"names": sorted(each.name for each in path.parent.iterdir())})
+    try:
+        return checked_slices(volume, 0, 2)
+    finally:
+        volume.close()
+
+
+def detached(path: Path) -> Any:
+    volume, _ = opened_volume(path, {})
+    try:
+        return checked_slices(volume, 0, 2)
+    finally:
+        volume.close()
+
+
+CASES: dict[str, Reader] = {
+    "complex/grain.anm": table,
+    "shtools/grain.shc": table,
+    "fit/fit.json": source,
+    "fit/fit.npz": source,
+    "model/model.json": source,
+    "model/model.npz": source,
+    "card/card.json": source,
+    "arrays/arrays.npz": read_npz,
+    "png/slice_1.png": slices,
+    "bmp/slice_1.bmp": slices,
+    "nhdr/voxels.nhdr": detached,
+    "mhd/voxels.mhd": detached,
+}
+
+
+def coefficients(separator: str, lowest: Callable[[int], int]) -> str:
+    values = {(0, 0): 3.5, (2, 0): 0.2, (2, 1): 0.1, (2, -1): -0.1}
+    rows = [(l, m, values.get((l, m), 0.0), 0.0) for l in range(4) for m in range(lowest(l), l + 1)]  # noqa: E741
+    return "".join(separator.join(map(str, row)) + "\n" for row in rows)
+
+
+def write_all(place: Path) -> None:
+    """A well-formed file of each kind in a folder of its own, with what belongs to it."""
+    for name in CASES:
+        (place / name).parent.mkdir(exist_ok=True)
+    (place / "complex/grain.anm").write_text(coefficients(" ", lambda degree: -degree))
+    (place / "shtools/grain.shc").write_text(coefficients(", ", lambda _: 0))
+    sphere = icosphere(2)
+    bodies = [Mesh(sphere.vertices * axes, sphere.faces) for axes in ((3, 2, 1.5), (2, 2, 1), (4, 3, 2))]
+    fits = [fit_harmonics(body, 3, sampling_degree=8) for body in bodies]
+    write_fits(place / "fit/fit", list("abc"), fits)
+    sample = Sample(np.stack([fit.coefficients.values for fit in fits]))
+    model = MODELS["gaussian_field"]
+    write_model(place / "model/model", model.fit(sample, model.Settings(3)))
+    write_card(materials()["ma165"], place / "card/card.json")
+    np.savez_compressed(place / "arrays/arrays.npz", a=np.arange(12).reshape(3, 4), b=np.array(["x", "yz"]))
+    voxels = np.random.default_rng(1).integers(0, 9, (4, 5, 6)).astype(np.uint8)
+    for suffix in ("png", "bmp"):
+        for number, image in enumerate(voxels):
+            imageio.imwrite(place / suffix / f"slice_{number}.{suffix}", image)
+    for folder in ("nhdr", "mhd"):
+        (place / folder / "voxels.raw").write_bytes(voxels.tobytes())
+    (place / "nhdr/voxels.nhdr").write_text(
+        "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 6 5 4\nencoding: raw\nspacings: 1 1 2\n"
+        "data file: voxels.raw\n\n"
+    )
+    (place / "mhd/voxels.mhd").write_text(
+        "ObjectType = Image\nNDims = 3\nDimSize = 6 5 4\nElementSpacing = 1 1 2\n"
+        "ElementType = MET_UCHAR\nElementDataFile = voxels.raw\n"
+    )
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    place = tmp_path_factory.mktemp("written")
+    write_all(place)
+    return place
+
+
+@pytest.fixture
+def folder(written: Path) -> Iterator[Path]:
+    """A copy in memory where there is one: disks take milliseconds for a file that is written anew."""
+    memory = Path("/dev/shm")
+    with TemporaryDirectory(dir=memory if memory.is_dir() and os.access(memory, os.W_OK) else None) as made:
+        shutil.copytree(written, made, dirs_exist_ok=True)
+        yield Path(made)
+
+
+def mutated(data: bytes, rng: np.random.Generator) -> bytes:
+    """`data` with one to four bytes changed, left out, doubled or replaced by a word that hurts."""
+    for _ in range(rng.integers(1, 5)):
+        place = int(rng.integers(0, len(data) + 1))
+        end = place + int(rng.choice([0, 0, 1, 1, 4, 4, 20, len(data)]))
+        change = [rng.bytes(1), HURTS[rng.integers(len(HURTS))], data[place:end] * 2, b""][rng.integers(4)]
+        data = data[:place] + change + data[end:]
+    return data
+
+
+def survive(name: str, count: int, seed: int, folder: Path) -> SimpleNamespace:
+    """Values or a sentence for so many changed files, and nothing else."""
+    rng, path, read = np.random.default_rng(seed), folder / name, CASES[name]
+    data = path.read_bytes()
+    assert read(path) is not None
+    said = SimpleNamespace(read=0, refused=0)
+    for _ in range(count):
+        path.write_bytes(mutated(data, rng))
+        try:
+            read(path)
+            said.read += 1
+        except FileError as error:
+            sentence = str(error)
+            said.refused += 1
+            assert sentence.endswith("."), sentence
+            assert "\n" not in sentence, sentence
+            assert len(sentence) < 400, sentence
+    return said
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_that_two_hundred_mutations_give_values_or_a_sentence(name: str, folder: Path) -> None:
+    assert survive(name, 200, 41, folder).refused > 0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", CASES)
+def test_that_forty_thousand_mutations_of_each_reader_give_values_or_a_sentence(
+    name: str, folder: Path
+) -> None:
+    """The kinds of file of one reader share them."""
+    count = 40_000 // sum(reader is CASES[name] for reader in CASES.values())
+    assert survive(name, count, 42, folder).refused > 0
