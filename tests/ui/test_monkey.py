@@ -3,6 +3,7 @@
 import os
 import random
 import sys
+import traceback
 
 import psutil
 import pytest
@@ -214,7 +215,8 @@ def play(window, monkeypatch, app, count, seed, pages=PAGES):
         monkey.act()
         if number % LOOK_AROUND == 0:
             app.processEvents()
-        assert not wrong, f"event {number} of seed {seed}: {wrong[0]}"
+        story = "".join(traceback.format_exception(*wrong[0])) if wrong else ""
+        assert not wrong, f"event {number} of seed {seed}: {story}"
     mistakes = [text for text in problems if "Traceback" in text and "regolith_studio.errors" not in text]
     assert not mistakes, mistakes[0]
     for task in window.session.tasks:

@@ -145,3 +145,15 @@ def test_that_statistics_undo_the_loss_at_the_border_only_where_there_was_one(sh
     assert panel.value().rows[0][2] == pytest.approx((small + 3 * large) / 4)
     QTest.mouseClick(panel.border, Qt.MouseButton.LeftButton, pos=QPoint(8, panel.border.height() // 2))
     assert panel.value().rows[0][2] == pytest.approx((small + large) / 2)
+
+
+def test_that_a_logarithmic_plot_cannot_be_dragged_to_where_numbers_end(shown):
+    from regolith_studio.ui.widgets.curve_plot import CurvePlot
+    from regolith_studio.ui.widgets.log_axes import DECADES
+
+    plot = shown(CurvePlot("degree", "amplitude", "nothing", log_y=True))
+    plot.canvas.setYRange(-1e4, 1e4)
+    assert max(map(abs, plot.canvas.getAxis("left").range)) <= DECADES
+    plot.canvas.setXRange(0, 1e4)
+    assert plot.canvas.getAxis("bottom").range[1] >= 1e4
+    plot.set_theme(plot.theme)

@@ -9,6 +9,7 @@ from PySide6.QtCore import QPointF
 from PySide6.QtWidgets import QWidget
 
 from regolith_studio.ui.translation import tr
+from regolith_studio.ui.widgets.log_axes import set_log_mode
 from regolith_studio.ui.widgets.plot import Numbers, Plot
 from regolith_studio.ui.widgets.plot_files import plain_text
 
@@ -68,7 +69,7 @@ class CurvePlot(Plot):
         self._line: pg.InfiniteLine | None = None
         super().__init__(x, y, placeholder, parent)
         self._log_y = log_y
-        self.canvas.setLogMode(x=False, y=log_y)
+        set_log_mode(self.canvas, x=False, y=log_y)
         self.canvas.getAxis("left").logTickStrings = _plain_decades
 
     @property

@@ -15,6 +15,7 @@ from regolith_studio.scene.palette import DESCRIPTOR_COLOURS
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.widgets.labels import rich_symbol
+from regolith_studio.ui.widgets.log_axes import set_log_mode
 from regolith_studio.ui.widgets.plot import Plot
 
 ZINGG = ("flatness", "elongation")
@@ -99,7 +100,7 @@ class ScatterPanel(QWidget):
         x, y = self.axes()
         self.plot.set_labels(_axis_label(x), _axis_label(y))
         logarithmic = self.log.isChecked()
-        canvas.setLogMode(x=logarithmic, y=logarithmic)
+        set_log_mode(canvas, x=logarithmic, y=logarithmic)
         if (x, y) == ZINGG:
             self._draw_zingg()
         groups = list(dict.fromkeys(entry.particle.group for entry in self._entries))

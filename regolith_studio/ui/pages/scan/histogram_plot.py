@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QWidget
 
 from regolith_studio.imaging.segmentation.thresholding import Histogram
 from regolith_studio.ui.theme import Theme
+from regolith_studio.ui.widgets.log_axes import set_log_mode
 from regolith_studio.ui.widgets.plot import Numbers, Plot
 
 
@@ -28,7 +29,7 @@ class HistogramPlot(Plot):
         super().__init__(
             "Grey value", "Voxels [%]", "Open a volume of grey values to see its histogram.", parent
         )
-        self.canvas.setLogMode(x=False, y=True)
+        set_log_mode(self.canvas, x=False, y=True)
         self.canvas.getAxis("left").logTickStrings = _plain_powers
         self.canvas.addItem(self.line, ignoreBounds=True)
         self.canvas.setAccessibleName("Histogram of grey values with the threshold")
