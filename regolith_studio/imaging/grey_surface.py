@@ -7,7 +7,8 @@ loses none. A mask at any level has no such property; a blur of 0.8 voxels takes
 volume of a grain of 24 voxels in diameter, a threshold nearer to one mineral than to another more.
 
 The shape is the contour at half the way from b to g, after as much of the blur is undone as the
-noise permits, smoothed as masks are, and scaled to that volume.
+noise permits (or a little is added, so that noise makes no warts), smoothed as masks are, and scaled
+to that volume.
 """
 
 from typing import Any
@@ -35,6 +36,7 @@ _NOISIEST = 0.35
 _STRANGEST = 2.0
 _MOST_STEPS = 8
 _NOISE_OF_MOST = 0.03
+_CALMING = 0.42
 _SPECK = 8
 
 Floats = NDArray[np.float32]
@@ -67,10 +69,11 @@ def grey_mesh(crop: GrainCrop, body: BoolArray, iterations: int = 20, pass_band:
     volume = float(rim.sum(dtype=np.float64))
     if not 1.0 / _STRANGEST < volume / np.count_nonzero(body) < _STRANGEST:
         return "its brightness and its number of voxels tell different volumes"
-    plain = _contoured(rim)
     if steps := _steps(noise):
-        plain = _contoured(_sharpened(rim, _blur(rim, noise, plain.surface_area), steps))
-    return with_volume(windowed_sinc(plain, iterations, pass_band), volume)
+        shape = _sharpened(rim, _blur(rim, noise, _contoured(rim).surface_area), steps)
+    else:
+        shape = ndimage.gaussian_filter(rim, _CALMING)
+    return with_volume(windowed_sinc(_contoured(shape), iterations, pass_band), volume)
 
 
 def _levels(values: Floats, others: BoolArray, inside: Floats, outside: Floats) -> tuple[Floats, float] | str:
