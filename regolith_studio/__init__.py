@@ -8,7 +8,7 @@ The doors for notebooks; each leads to the folder of its name and is opened when
     rs.describe(particle.mesh)["sphericity"]
     fit = rs.fit_harmonics(particle.mesh)
     coarse = rs.coarsen(particle.mesh, n_faces=20)
-    dataset = rs.build_dataset([(particle, coarse)])
+    rs.write_dataset("grains", rs.build_dataset([(particle, coarse)]))
 """
 
 from importlib import import_module
@@ -16,17 +16,21 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from regolith_studio.coarsening.coarsen import coarsen
+    from regolith_studio.coarsening.weights import LossWeights
     from regolith_studio.dataset.build import build_dataset
-    from regolith_studio.dataset.folder import read_dataset
+    from regolith_studio.dataset.folder import read_dataset, write_dataset
     from regolith_studio.dem.repose import measure_repose
     from regolith_studio.descriptors.describe import describe
     from regolith_studio.harmonics.fit import fit_harmonics
+    from regolith_studio.harmonics.surface import reconstruct
     from regolith_studio.model.models.gaussian_field import GaussianFieldModel as GaussianRadiusModel
-    from regolith_studio.readers.registry import read_mesh
+    from regolith_studio.readers.registry import read_mesh, read_particles
+    from regolith_studio.readers.sample import sample_particles
 
 __version__ = "0.1.0"
 __all__ = [
     "GaussianRadiusModel",
+    "LossWeights",
     "__version__",
     "build_dataset",
     "coarsen",
@@ -35,10 +39,15 @@ __all__ = [
     "measure_repose",
     "read_dataset",
     "read_mesh",
+    "read_particles",
+    "reconstruct",
+    "sample_particles",
+    "write_dataset",
 ]
 
 _DOORS = {
     "GaussianRadiusModel": "model.models.gaussian_field:GaussianFieldModel",
+    "LossWeights": "coarsening.weights:LossWeights",
     "build_dataset": "dataset.build:build_dataset",
     "coarsen": "coarsening.coarsen:coarsen",
     "describe": "descriptors.describe:describe",
@@ -46,6 +55,10 @@ _DOORS = {
     "measure_repose": "dem.repose:measure_repose",
     "read_dataset": "dataset.folder:read_dataset",
     "read_mesh": "readers.registry:read_mesh",
+    "read_particles": "readers.registry:read_particles",
+    "reconstruct": "harmonics.surface:reconstruct",
+    "sample_particles": "readers.sample:sample_particles",
+    "write_dataset": "dataset.folder:write_dataset",
 }
 
 
