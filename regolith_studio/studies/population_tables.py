@@ -131,10 +131,11 @@ def _targets(study: PopulationStudy, model: JudgedModel) -> Iterator[tuple[str, 
 
 def _notes(study: PopulationStudy) -> tuple[str, ...]:
     splits = len(study.models[0].novelty) if study.models else 0
+    often = "once" if study.n_repeats == 1 else f"{study.n_repeats} times"
     return (
         f"{len(study.measured)} measured particles at l_max = {study.l_max}, {study.left_out} left out; "
         f"fitted to one half, judged on the other; {splits} {'split' if splits == 1 else 'splits'}, "
-        f"{study.n_draws} draws {study.n_repeats} times from each fit, seed {study.seed}.",
+        f"{study.n_draws} draws {often} from each fit, seed {study.seed}.",
         "Wasserstein distances are shares of the measured mean; the floor is the distance between random "
         f"halves, {N_FLOOR_SPLITS} of them; by volume means weighted with the cube of the equivalent radius.",
         f"Low and high hold the distance of one round in {CONFIDENCE:.0%} of {N_RESAMPLES} resamples of "

@@ -13,10 +13,12 @@ from regolith_studio.model.models import MODELS
 from regolith_studio.model.sample import Sample
 from regolith_studio.readers.shape_files import ShapeSource, read_shape_source
 from regolith_studio.session.session import Session
+from regolith_studio.session.tasks import Task
 from regolith_studio.studies.population import KEYS
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.model import PAGE
+from regolith_studio.ui.pages.model.judgement import JudgementPanel
 from regolith_studio.ui.widgets.spectrum_editor import SpectrumEditor
 from regolith_studio.ui.widgets.toast import Toast
 from regolith_studio.ui.wiring import Wiring
@@ -212,3 +214,21 @@ def test_that_the_state_of_the_page_is_plain_and_comes_back(page):
     assert page.state()["drawing"]["n"] == 100
     page.restore(state)
     assert page.state() == state
+
+
+def test_that_stop_answers_before_the_work_has_ended(shown):
+    panel = shown(JudgementPanel())
+    asked = []
+    panel.cancelRequested.connect(asked.append)
+    panel.show_task(Task(3, "judge", "Judging models"))
+    words = panel.frame.stop.text()
+    panel.frame.stop.click()
+    assert asked == [3]
+    for _ in range(2):
+        assert not panel.frame.stop.isEnabled()
+        assert panel.frame.stop.text() == "Stopping …"
+        panel.show_task(Task(3, "judge", "Judging models", 1, 10))
+    panel.show_task(None)
+    panel.show_task(Task(4, "judge", "Judging models"))
+    assert panel.frame.stop.isEnabled()
+    assert panel.frame.stop.text() == words

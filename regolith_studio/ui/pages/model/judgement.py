@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from PySide6.QtCore import Signal
+from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import (
     QAbstractItemView,
     QCheckBox,
@@ -21,6 +21,7 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.jobs.judging import JudgedShapes
 from regolith_studio.model.models import MODELS
+from regolith_studio.session.tasks import Task
 from regolith_studio.studies.population import PopulationStudy
 from regolith_studio.studies.population_tables import distance_table, pair_table, ranking_table, target_table
 from regolith_studio.studies.tables import Table
@@ -53,6 +54,7 @@ TIPS = (
     "Median distance to the nearest measured particle, over that between measured ones: 0 is a copy",
     "Draws thrown away",
 )
+NUMBERS = Qt.AlignmentFlag.AlignCenter
 LEGIBLE = 0.55
 """Scale of the figures below which their panels are scrolled instead of shrunk."""
 
@@ -84,8 +86,9 @@ class JudgementPanel(QWidget):
         column.addLayout(self._options())
         column.addWidget(self.tabs, 1)
         self.frame = StudyFrame("model_judge", inside)
+        self._stopped, self._stop_words = 0, self.frame.stop.text()
         self.frame.startRequested.connect(self.startRequested)
-        self.frame.cancelRequested.connect(self.cancelRequested)
+        self.frame.cancelRequested.connect(self._stop)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(self.frame)
@@ -96,6 +99,21 @@ class JudgementPanel(QWidget):
         self.frame.start.setText("Judge")
         self.frame.start.setEnabled(not why_not)
         self.frame.set_remark(why_not)
+
+    def show_task(self, task: Task | None) -> None:
+        """Show how far a study is, that it is being stopped, or that none runs."""
+        self.frame.show_task(task)
+        self._show_stopping(task is not None and task.id == self._stopped)
+
+    def _stop(self, number: int) -> None:
+        """Answer at once: processes that have just been started may take a few seconds to end."""
+        self._stopped = number
+        self._show_stopping(True)
+        self.cancelRequested.emit(number)
+
+    def _show_stopping(self, stopping: bool) -> None:
+        self.frame.stop.setEnabled(not stopping)
+        self.frame.stop.setText("Stopping …" if stopping else self._stop_words)
 
     def value(self) -> dict[str, Any]:
         """All models or only the chosen one, splits, and drawings from each fit."""
@@ -138,7 +156,10 @@ class JudgementPanel(QWidget):
                 f"{rejected:.1f} %",
             )
             for column, text in enumerate(words):
-                self.ranking.setItem(row, column, QTableWidgetItem(text))
+                item = QTableWidgetItem(text)
+                if column:
+                    item.setTextAlignment(NUMBERS)
+                self.ranking.setItem(row, column, item)
         self.notes.setText(table.notes[0])
 
     def _options(self) -> QHBoxLayout:

@@ -284,7 +284,7 @@ class ModelPage(PageWidget):
     def _show_tasks(self) -> None:
         lane = f"{self._context.key}:{JUDGE}"
         running = next((task for task in self._context.session.tasks if task.lane == lane), None)
-        self.judgement.frame.show_task(running)
+        self.judgement.show_task(running)
 
     def _sample(self) -> Sample | None:
         content = self._fitted.source.content if self._fitted else None
