@@ -93,6 +93,9 @@ THEMES = {"light": LIGHT, "dark": DARK}
 SMALLEST, USUAL, LARGEST = 80.0, 100.0, 200.0
 """Sizes of letters in percent."""
 
+OWN_FONTS = ("QMenuBar", "QMenu", "QToolButton", "QStatusBar", "QMessageBox", "QTipLabel", "QDockWidgetTitle")
+"""Widgets to which a desktop may have given fonts of their own."""
+
 _chosen: list[str] = ["system"]
 _letters: list[float] = [USUAL]
 
@@ -116,15 +119,17 @@ def choose_letters(percent: object) -> None:
 
 def apply_theme(app: QApplication, theme: Theme) -> None:
     """Give the whole application a theme, and letters of the chosen size."""
+    app.setStyle("Fusion")
+    app.setPalette(_palette(theme))
+    app.setStyleSheet(_style_sheet(theme))
     font = app.font()
     of_system = float(app.property("system_letters") or font.pointSizeF())
     app.setProperty("system_letters", of_system)
     font.setPointSizeF(of_system * _letters[0] / USUAL)
-    if font != app.font():
+    if font != app.font() or _letters[0] != USUAL:  # a style may take back fonts of its widgets
         app.setFont(font)
-    app.setStyle("Fusion")
-    app.setPalette(_palette(theme))
-    app.setStyleSheet(_style_sheet(theme))
+        for name in OWN_FONTS:
+            app.setFont(font, name)  # type: ignore[arg-type]  # bytes would not do, whatever the stubs say
 
 
 def _palette(theme: Theme) -> QPalette:

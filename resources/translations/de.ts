@@ -1081,11 +1081,6 @@
    <translation>GIF von l_max 0 bis 30</translation>
   </message>
   <message>
-   <location filename="ui/pages/explore/__init__.py" />
-   <source>GIF or WebP of one turn</source>
-   <translation>GIF oder WebP einer Umdrehung</translation>
-  </message>
-  <message>
    <location filename="ui/dialogs/batch.py" />
    <source>Go on with the run that has not ended</source>
    <translation>Den nicht beendeten Lauf fortsetzen</translation>
@@ -1503,6 +1498,11 @@
    <location filename="ui/pages/lecture/__init__.py" />
    <source>One step</source>
    <translation>Ein Schritt</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/explore/__init__.py" />
+   <source>One turn: GIF, WebP, PNG files</source>
+   <translation>Eine Umdrehung: GIF, WebP, PNG-Dateien</translation>
   </message>
   <message>
    <source>One weight for each term of the loss (Eq. 9), with the presets of the paper. A weight of 0 lets a descriptor go. Reset brings the preset back.</source>
@@ -2075,6 +2075,11 @@
    <location filename="ui/pages/scan/__init__.py" />
    <source>Segment the whole volume</source>
    <translation>Das ganze Volumen segmentieren</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/explore/pictures.py" />
+   <source>Sequence of PNG files (*.png)</source>
+   <translation>Folge von PNG-Dateien (*.png)</translation>
   </message>
   <message>
    <location filename="ui/panels/coarsening.py" />

@@ -40,6 +40,14 @@ def test_that_a_stick_is_long_from_the_side_and_short_from_its_end(tmp_path, end
     assert abs(widths[2] - widths[0]) <= 3
 
 
+def test_that_a_sequence_of_pictures_is_numbered_and_holds_every_frame(tmp_path):
+    frames = [np.full((4, 6, 3), 20 * number, dtype=np.uint8) for number in range(3)]
+    save_animation(frames, [0.1] * 3, tmp_path / "turn.png")
+    assert sorted(path.name for path in tmp_path.iterdir()) == [f"turn-{n:03d}.png" for n in range(3)]
+    for number, frame in enumerate(frames):
+        np.testing.assert_array_equal(np.array(Image.open(tmp_path / f"turn-{number:03d}.png")), frame)
+
+
 def test_that_an_animation_of_an_unknown_kind_is_refused(tmp_path):
     with pytest.raises(InputError, match=r"\.gif or \.webp"):
         save_animation([np.zeros((4, 4, 3), dtype=np.uint8)], [0.1], tmp_path / "a.avi")

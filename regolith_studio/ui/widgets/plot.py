@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pyqtgraph as pg
 from PySide6.QtCore import QPointF, Qt
-from PySide6.QtGui import QColor, QContextMenuEvent, QFont, QResizeEvent
+from PySide6.QtGui import QColor, QContextMenuEvent, QFont, QFontMetrics, QResizeEvent
 from PySide6.QtWidgets import (
     QFileDialog,
     QHBoxLayout,
@@ -143,7 +143,8 @@ class Plot(QWidget):
             axis.setTextPen(pg.mkPen(theme.muted))
             axis.setTickFont(small)
             axis.enableAutoSIPrefix(False)
-        self.canvas.getAxis("left").setWidth(58)
+        metrics = QFontMetrics(small)
+        self.canvas.getAxis("left").setWidth(metrics.horizontalAdvance("00.0000") + metrics.height())
         self.canvas.getAxis("left").setGrid(70 if theme.dark else 55)
         self.set_labels(*self._labels)
         self.redraw()

@@ -46,7 +46,7 @@ PAGE = Page(
             "&View", "enlarge", "&Enlarge one view", "", "Ctrl+Shift+M", "One after the other, then all"
         ),
         ActionSpec(PAGE_MENU, "save_picture", "Save &picture …", "camera", "Ctrl+P", "PNG", bar="icon"),
-        ActionSpec(PAGE_MENU, "save_turntable", "Save &turntable …", tip="GIF or WebP of one turn"),
+        ActionSpec(PAGE_MENU, "save_turntable", "Save &turntable …", tip="One turn: GIF, WebP, PNG files"),
         ActionSpec(PAGE_MENU, "save_animation", "Save &animation of l_max …", tip="GIF of l_max 0 to 30"),
     ),
 )

@@ -17,6 +17,9 @@ from regolith_studio.ui.panels.particle_list import ParticleListPanel
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.views.triptych import Triptych
 
+LIST_WIDTH = 35
+"""Of the list of particles at first, in digits."""
+
 
 class ExplorePage(PageWidget):
     """Places panels and views, and lets the session fill them."""
@@ -65,7 +68,8 @@ class ExplorePage(PageWidget):
         middle.setObjectName("explore_rows")
         controls = scrolled_column([self.fit, self.coarsening, self.loss])
         parts = [padded(self.particles, 10, 10, 2, 8), padded(middle, 2, 10, 2, 8), controls]
-        columns = side_by_side(parts, [262, 900, CONTROLS_WIDTH], stretch=1)
+        wide_enough = self.fontMetrics().horizontalAdvance("0" * LIST_WIDTH)
+        columns = side_by_side(parts, [wide_enough, 900, CONTROLS_WIDTH], stretch=1)
         columns.setObjectName("explore_columns")
         layout = QHBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)

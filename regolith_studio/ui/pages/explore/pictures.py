@@ -29,7 +29,8 @@ KINDS = {
     SEEN: mark("The views as they are seen"),
     FIGURE: mark("A figure on white, 1860 × 560 times the scale"),
 }
-MOVING = "GIF (*.gif);;WebP (*.webp)"
+MOVING = ("GIF (*.gif)", "WebP (*.webp)", mark("Sequence of PNG files (*.png)"))
+ENDINGS = (".gif", ".webp", ".png")
 TOLD = {
     "figure": mark("The picture is in {path}."),
     "turntable": mark("The turntable is in {path}."),
@@ -51,6 +52,7 @@ class Pictures(QObject):
     def __init__(self, context: PageContext, triptych: Triptych, parent: QWidget) -> None:
         super().__init__(parent)
         self._context, self._triptych, self._window = context, triptych, parent
+        self._kind = ""
 
     def save_picture(self) -> None:
         """Ask for kind, scale and file, and write the three views."""
@@ -103,7 +105,8 @@ class Pictures(QObject):
             self._context.start(title, job, self._told("animation", path), lane="animation")
 
     def _told(self, what: str, path: Path) -> Callable[[object], None]:
-        return lambda _: self._context.toast.note(tr(TOLD[what], path=path))
+        first = path.with_name(f"{path.stem}-000.png") if path.suffix == ".png" and what != "figure" else path
+        return lambda _: self._context.toast.note(tr(TOLD[what], path=first))
 
     def _write(self, picture: QImage, path: Path) -> None:
         if picture.save(str(path)):
@@ -112,15 +115,22 @@ class Pictures(QObject):
             self._context.toast.problem(tr("The picture {path} cannot be written.", path=path))
 
     def _ask_moving(self, title: str, name: str) -> tuple[str, str]:
-        chosen = self._ask(title, f"{name}.gif", MOVING)
-        return chosen, ".webp" if chosen.lower().endswith(".webp") else ".gif"
+        kinds = [tr(kind) for kind in MOVING]
+        chosen = self._ask(title, f"{name}{ENDINGS[0]}", ";;".join(kinds))
+        return chosen, _ending(chosen, kinds.index(self._kind) if self._kind in kinds else 0)
 
     def _ask(self, title: str, name: str, kinds: str) -> str:
         start = str(Path(str(self._context.recall("pictures", Path.home()))) / name)
-        chosen, _ = QFileDialog.getSaveFileName(self._window, title, start, kinds)
+        chosen, self._kind = QFileDialog.getSaveFileName(self._window, title, start, kinds)
         if chosen:
             self._context.remember("pictures", str(Path(chosen).parent))
         return chosen
+
+
+def _ending(name: str, kind: int) -> str:
+    """What was typed, if it is not the ending that was suggested, else the kind that was chosen."""
+    typed = Path(name).suffix.lower()
+    return typed if typed in ENDINGS[1:] else ENDINGS[kind]
 
 
 class PictureDialog(QDialog):
