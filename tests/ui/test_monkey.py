@@ -9,7 +9,7 @@ import psutil
 import pytest
 import shiboken6
 from PySide6.QtCore import QEvent, QPoint, QPointF, Qt
-from PySide6.QtGui import QDesktopServices, QMouseEvent, QWheelEvent
+from PySide6.QtGui import QDesktopServices, QGuiApplication, QMouseEvent, QWheelEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import (
     QAbstractButton,
@@ -183,10 +183,16 @@ def _mouse(widget, kind, place):
 
 
 @pytest.fixture
-def window(monkeypatch, shown, preferences, wait):
+def views():
     """``REGOLITH_STUDIO_VIEWS=live`` lets it play with live views."""
+    return os.environ.get("REGOLITH_STUDIO_VIEWS", "image")
+
+
+@pytest.fixture
+def window(monkeypatch, shown, preferences, wait, views):
     monkeypatch.setattr("regolith_studio.ui.main_window.may_close", lambda *_: True)
-    views = os.environ.get("REGOLITH_STUDIO_VIEWS", "image")
+    if views == "live" and QGuiApplication.platformName() == "offscreen":
+        pytest.skip("live views need a display")
     made = open_window(views=views, preferences=preferences)
     made.resize(760, 520)
     shown(made)
@@ -230,6 +236,15 @@ def test_that_a_short_visit_of_the_monkey_leaves_the_window_well(window, monkeyp
     window.session.choose(selected=window.session.particles[0].id, l_max=7)
     wait(lambda: not window.session.tasks, 60.0)
     assert window.session.results.surface_l_max == 7 or window.session.results.surface is None
+
+
+@pytest.mark.slow
+@pytest.mark.window
+@pytest.mark.parametrize("views", ["live"])
+@pytest.mark.parametrize("seed", [3, 4, 5])
+def test_that_live_views_bear_a_thousand_events(window, monkeypatch, app, settled, seed):
+    play(window, monkeypatch, app, 1_000, seed, pages=tuple(window.pages.pages))
+    settled(window, 110.0)
 
 
 @pytest.mark.slow
