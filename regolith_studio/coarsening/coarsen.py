@@ -18,6 +18,7 @@ from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.descriptors.comparison import relative_errors
 from regolith_studio.descriptors.describe import Descriptors, describe
 from regolith_studio.errors import InputError
+from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.mesh import Mesh
 
 DEFAULT_METHOD = "exact"
@@ -136,7 +137,7 @@ def _measured(
     target: Target, result: MethodResult, method: str, n_faces: int, weights: LossWeights
 ) -> Coarsened:
     """Measure the result by the public descriptors, independently of the method."""
-    unit = polyhedron_of(result.half_spaces)
+    unit = ConvexPolyhedron.from_half_spaces(result.half_spaces)
     polyhedron = unit.moved(rotation=target.axes.T, scale=target.scale)
     achieved = describe(unit)
     errors = relative_errors(target.descriptors, achieved)

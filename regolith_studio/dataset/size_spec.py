@@ -55,7 +55,7 @@ def parse_sizes(text: str) -> Sizing:
             raise InputError(f"{kind} sizes are counted as the dataset's weights are; leave @{counted} out.")
         return _from_members(kind, rest)
     if kind not in {form.partition(":")[0] for form in FORMS}:
-        raise InputError(f"There are no sizes {text!r}; they are written as {', '.join(FORMS)}.")
+        raise InputError(_no_form(text))
     try:
         fixed = _fixed(kind, rest, weighting)
     except ValidationError as error:

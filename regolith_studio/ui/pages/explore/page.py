@@ -17,7 +17,7 @@ from regolith_studio.ui.panels.particle_list import ParticleListPanel
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.views.triptych import Triptych
 
-LIST_WIDTH = 35
+LIST_WIDTH = 40
 """Of the list of particles at first, in digits."""
 
 
