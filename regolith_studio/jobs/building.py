@@ -16,6 +16,7 @@ from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.expansion import USUAL, Expansion
 from regolith_studio.harmonics.sample_spectrum import sample_spectrum
 from regolith_studio.jobs.coarsening import CoarsenedParticle, CoarseningOrder, coarsen_sample
+from regolith_studio.jobs.crew import Crew
 from regolith_studio.jobs.events import Progress, Started, Step, Steps
 from regolith_studio.jobs.representing import (
     ChosenParticles,
@@ -39,7 +40,7 @@ class DatasetOptions:
     overwrite
         Whether a dataset that is there already may be replaced.
     workers
-        Processes that coarsen at the same time; 0 for one a core.
+        Processes that coarsen at the same time, 0 for one a core; or who is hired already.
     representatives
         How particles that stand for all are chosen; ``None`` lets every particle stand for itself.
     sizes
@@ -49,7 +50,7 @@ class DatasetOptions:
     name: str = ""
     preset: str | None = None
     overwrite: bool = False
-    workers: int = 1
+    workers: int | Crew = 1
     representatives: RepresentativesOrder | None = None
     sizes: str = "measured"
 

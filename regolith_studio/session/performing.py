@@ -39,6 +39,7 @@ from regolith_studio.session.batch.sinks import (
     shapes_of,
     time_sink,
 )
+from regolith_studio.session.batch.standing import build_standing, check_standing, export_standing
 from regolith_studio.session.batch.working import Wish, work_on
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.outputs.extraction import RECIPE as EXTRACTION
@@ -46,6 +47,7 @@ from regolith_studio.session.outputs.staging import staged_folder, write_bytes
 from regolith_studio.session.outputs.studies import STUDIES
 from regolith_studio.session.outputs.summary import Summary, write_summary
 from regolith_studio.session.recipe import Recipe
+from regolith_studio.session.recipe_dataset import Representatives
 
 Part = Generator[Step, None, Any]
 JOURNAL_FOLDER, PREPARED_FOLDER = "journal", "prepared"
@@ -126,8 +128,8 @@ def perform(
         raise FileError(
             f"{folder} holds a run that has not ended; go on with --resume, or remove {place} to begin anew."
         )
-    if recipe.outputs.dataset and recipe.population is not None:
-        check_count(recipe.population.n, recipe.n_faces)
+    if recipe.population is not None:
+        _check_size(recipe, recipe.population.n)
     with hired(workers) as crew:
         prepared: Prepared = yield from prepare(
             recipe, base, place / PREPARED_FOLDER, crew, over=over and resume
@@ -141,7 +143,7 @@ def perform(
             yield from _worked(done, batch, crew)
             yield from _assembled(done, batch)
             _tell_of_volumes(done, prepared)
-            yield from _studied(done, crew)
+            yield from _whole(done, crew)
             if recipe.outputs.summary:
                 write_summary(folder, done.recipe, done.summary, done.studies, done.problems)
             write_bytes(folder / "recipe.json", recipe.to_json().encode("utf-8"))
@@ -156,8 +158,15 @@ def _check(done: Performed) -> None:
     if not done.items.members:
         sentences = [problem.sentence for problem in done.items.problems]
         raise FileError(sentences[0] if sentences else "There is no file to read.")
-    if done.recipe.outputs.dataset:
-        check_count(len(done.items.members), done.recipe.n_faces)
+    _check_size(done.recipe, len(done.items.members))
+    check_standing(done.recipe, len(done.items.members))
+
+
+def _check_size(recipe: Recipe, n_particles: int) -> None:
+    """Refuse a dataset that could not be read again."""
+    if recipe.outputs.dataset:
+        wish = recipe.representatives
+        check_count(wish.count if wish and wish.count else n_particles, recipe.n_faces)
 
 
 def _opened(done: Performed, resume: bool, chunk: int | None) -> Batch:
@@ -186,12 +195,13 @@ def _ending(batch: Batch) -> list[str] | None:
 
 def _worked(done: Performed, batch: Batch, crew: Crew) -> Part:
     wish = done.recipe.outputs
-    coarse = wish.meshes or wish.dataset or wish.summary
+    shapes = wish.dataset and done.recipe.representatives is None
+    coarse = wish.meshes or shapes or wish.summary
     asked = Wish(
         examine=wish.descriptors or wish.summary,
         fit=wish.fits,
         order=done.choices.order if coarse else None,
-        shapes=wish.dataset,
+        shapes=shapes,
         box_metric=done.choices.box_metric,
         expansion=done.choices.expansion,
     )
@@ -223,7 +233,7 @@ def _assembled(done: Performed, batch: Batch) -> Part:
             for sink in sinks:
                 sink.add(record)
             yield Progress(record.index + 1, batch.n_items, record.values["name"])
-    if wish.dataset:
+    if wish.dataset and done.recipe.representatives is None:
         _write_dataset(done, batch)
 
 
@@ -258,14 +268,13 @@ def _tell_of_volumes(done: Performed, prepared: Prepared) -> None:
 
 
 def _write_dataset(done: Performed, batch: Batch) -> None:
-    preset = None if done.choices.preset_modified else done.choices.preset
     try:
         write_stored(
             done.folder / "dataset",
             lambda: shapes_of(batch),
             done.tally.n_coarse,
             name=done.folder.resolve().name,
-            provenance=story(done.tally.fitted, done.choices.order, preset),
+            provenance=story(done.tally.fitted, done.choices.order, _preset(done)),
         )
     except RegolithError as error:
         if done.tally.n_coarse:
@@ -273,11 +282,43 @@ def _write_dataset(done: Performed, batch: Batch) -> None:
         done.problems.append(f"There is no dataset, because no particle could be coarsened. ({error})")
 
 
-def _studied(done: Performed, crew: Crew) -> Part:
+def _preset(done: Performed) -> str | None:
+    return None if done.choices.preset_modified else done.choices.preset
+
+
+def _whole(done: Performed, crew: Crew) -> Part:
+    """What needs all particles at the same time: representatives and studies; then the exports."""
+    recipe, wish, there = done.recipe, done.recipe.outputs, done.tally.n_coarse > 0
+    if recipe.representatives or wish.lmax_study or wish.coarsening_study:
+        particles = yield from _read(done)
+        if recipe.representatives is not None:
+            there = yield from _represented(done, recipe.representatives, particles, crew)
+        yield from _studied(done, particles, crew)
+    if recipe.exports is not None and there:
+        try:
+            yield from export_standing(recipe.exports, recipe.seed, done.folder)
+        except RegolithError as error:
+            done.problems.append(str(error))
+
+
+def _represented(
+    done: Performed, wish: Representatives, particles: list[Particle], crew: Crew
+) -> Generator[Step, None, bool]:
+    """Write the dataset of those that stand for all; whether that was possible."""
+    try:
+        built = yield from build_standing(
+            done.recipe, wish, particles, done.choices.order, _preset(done), done.folder, crew
+        )
+    except RegolithError as error:
+        done.problems.append(f"There is no dataset. ({error})")
+        return False
+    failed = [f"{each.name}: {each.problem}" for each in built.outcomes if each.coarsened is None]
+    done.problems += [sentence for sentence in failed if sentence not in done.problems]
+    return True
+
+
+def _studied(done: Performed, particles: list[Particle], crew: Crew) -> Part:
     wish, choices = done.recipe.outputs, done.choices
-    if not (wish.lmax_study or wish.coarsening_study):
-        return
-    particles = yield from _read(done)
     if wish.lmax_study:
         yield from _study(
             done, "lmax_study", study_lmax(particles, crew, choices.seed, expansion=choices.expansion)

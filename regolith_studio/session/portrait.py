@@ -11,6 +11,7 @@ from regolith_studio.model.protocol import FittedModel
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.origins import Drawn, Files, Grains, Origin, Place, Shipped
 from regolith_studio.session.recipe import SAMPLE, Outputs, Recipe
+from regolith_studio.session.recipe_dataset import Standing
 from regolith_studio.session.recipe_inputs import Chosen, FilesEntry
 from regolith_studio.session.results import ParticleEntry
 
@@ -35,9 +36,14 @@ class Portrait:
 
     @classmethod
     def of(
-        cls, entries: Sequence[ParticleEntry], choices: Choices, outputs: Outputs | None = None
+        cls,
+        entries: Sequence[ParticleEntry],
+        choices: Choices,
+        outputs: Outputs | None = None,
+        standing: Standing | None = None,
     ) -> "Portrait":
-        """Of particles and choices; without any particle, of the sample."""
+        """Of particles and choices, and of the wish for a dataset; without any particle, of the sample."""
+        wish = standing if standing and (outputs is None or outputs.dataset) else Standing()
         placed = [(entry.id, entry.place) for entry in entries]
         origins = _in_order([place.origin for _, place in placed if place is not None])
         named = dict(_names(origins))
@@ -53,6 +59,8 @@ class Portrait:
             volumes=[each.volume for each in origins if isinstance(each, Grains)],
             population=drawn.population if drawn else None,
             particles=_selection(pairs, list(named.values())),
+            representatives=wish.representatives,
+            exports=wish.exports,
         )
         lost = tuple(name for known, name in pairs if known is None)
         return cls(recipe, drawn.model if drawn else None, lost)

@@ -11,6 +11,7 @@ from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.errors import FileError, InputError
 from regolith_studio.harmonics.expansion import USUAL
 from regolith_studio.session.choices import Choices, Scalar
+from regolith_studio.session.recipe_dataset import Exports, Representatives
 from regolith_studio.session.recipe_inputs import Chosen, FilesEntry, Population, Strict, VolumeEntry
 
 FORMAT: Literal["regolith-studio recipe"] = "regolith-studio recipe"
@@ -54,6 +55,10 @@ class Recipe(Strict):
     particles
         Names of those of all these particles that are worked on, in this order; all of them, in the order
         of the fields above, where left out.
+    representatives
+        Which of them the dataset holds, and their sizes; all as they are where left out.
+    exports
+        Other programs that the dataset is written for, below ``exports``.
     """
 
     format: Literal["regolith-studio recipe"] = FORMAT
@@ -76,6 +81,8 @@ class Recipe(Strict):
     n_faces: int = 20
     seed: int = 0
     box_metric: str = "exact"
+    representatives: Representatives | None = None
+    exports: Exports | None = None
     outputs: Outputs = Field(default_factory=Outputs)
 
     @model_validator(mode="before")
@@ -93,6 +100,12 @@ class Recipe(Strict):
     def _has_particles(self) -> Self:
         if not self.inputs and not self.volumes and self.population is None:
             raise ValueError("inputs must name a file or folder, or there must be volumes or a population")
+        return self
+
+    @model_validator(mode="after")
+    def _has_dataset(self) -> Self:
+        if not self.outputs.dataset and (self.representatives or self.exports):
+            raise ValueError("representatives and exports need the dataset among the outputs")
         return self
 
     @property

@@ -19,6 +19,7 @@ from regolith_studio.session.portrait import Portrait
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.session.project import input_shown, inputs_of
 from regolith_studio.session.recipe import read_recipe
+from regolith_studio.session.recipe_dataset import STANDING
 from regolith_studio.session.scripting import as_command, as_python
 from regolith_studio.session.session import Session
 from regolith_studio.ui.dialogs.export import ExportDialog, ExportOrder
@@ -112,7 +113,8 @@ class Commands(QObject):
         name, _ = QFileDialog.getSaveFileName(self._window, tr("Save recipe"), start, kinds)
         if not name:
             return
-        portrait = Portrait.of(self._session.particles, self._session.choices)
+        standing = self._session.shelf.get(STANDING)
+        portrait = Portrait.of(self._session.particles, self._session.choices, standing=standing)
         try:
             write_bytes(Path(name), portrait.beside(Path(name)).to_json().encode("utf-8"))
         except RegolithError as error:

@@ -82,3 +82,73 @@ def test_that_a_run_is_resumed_on_the_command_line(command, grains: Path, tmp_pa
     again = command("run", wish, "-o", tmp_path / "out", "--resume", "--json")
     assert first.json["files"] == again.json["files"]
     assert again.code == 0
+
+
+def tree(folder: Path) -> dict[str, bytes]:
+    return {p.relative_to(folder).as_posix(): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
+
+
+STANDING = {
+    "count": 2,
+    "weighting": "volume",
+    "size_importance": 0.5,
+    "sizes": "classes:5,9,20",
+    "name": "two",
+}
+
+
+def test_that_representatives_and_exports_are_those_of_the_dataset_commands(
+    command, grains: Path, tmp_path: Path
+) -> None:
+    exports = {"targets": ["yade", "rocky"], "coarse_graining": 4, "particles": 7}
+    exports |= {"settings": {"density": 2500.0}}
+    whole = {"seed": 5, "level": 4, "representatives": STANDING}
+    wish = recipe(tmp_path, grains, **whole, exports=exports)
+    assert command("run", wish, "-o", tmp_path / "out").code == 0
+    shape = ("--method", "quadric", "--l-max", 4, "--faces", 12, "--seed", 5)
+    chosen = ("--representatives", 2, "--weighting", "volume", "--size-importance", 0.5)
+    sizes = ("--sizes", "classes:5,9,20", "--name", "two")
+    built = command("dataset", "build", grains, "-o", tmp_path / "ds", *shape, *chosen, *sizes)
+    assert built.code == 0
+    told = ("--coarse-graining", 4, "--particles", 7, "--seed", 5, "--set", "density=2500.0")
+    assert (
+        command("dataset", "export", tmp_path / "ds", "-o", tmp_path / "ex", "--to", "yade,rocky", *told).code
+        == 0
+    )
+    assert tree(tmp_path / "out" / "dataset") == tree(tmp_path / "ds")
+    assert tree(tmp_path / "out" / "exports") == tree(tmp_path / "ex")
+    assert len(list((tmp_path / "out" / "meshes").glob("*.stl"))) > 2
+    only = {"descriptors": False, "meshes": False, "summary": False}
+    alone = recipe(tmp_path, grains, **whole, outputs=only)
+    assert command("run", alone, "-o", tmp_path / "alone", "--jobs", 2).code == 0
+    assert tree(tmp_path / "alone" / "dataset") == tree(tmp_path / "ds")
+
+
+def test_that_sizes_can_be_changed_where_each_particle_stands_for_itself(
+    command, grains: Path, tmp_path: Path
+) -> None:
+    each = {"count": 0, "sizes": "log-normal:50,0.4", "name": "all"}
+    wish = recipe(tmp_path, grains, level=4, representatives=each)
+    assert command("run", wish, "-o", tmp_path / "out").code == 0
+    shape = ("--method", "quadric", "--l-max", 4, "--faces", 12)
+    sizes = ("--sizes", "log-normal:50,0.4", "--name", "all")
+    assert command("dataset", "build", grains, "-o", tmp_path / "ds", *shape, *sizes).code == 0
+    assert tree(tmp_path / "out" / "dataset") == tree(tmp_path / "ds")
+
+
+def test_that_a_wish_for_the_dataset_that_cannot_be_met_is_refused_before_the_work(
+    command, grains: Path, tmp_path: Path
+) -> None:
+    for entries, sentence in (
+        ({"representatives": {"count": 99}}, "99 representatives of 3 particles"),
+        ({"representatives": {"sizes": "huge"}}, "huge"),
+        ({"representatives": {"weighting": "beauty"}}, "representatives.weighting"),
+        ({"exports": {"targets": ["crayon"]}}, "no format 'crayon'"),
+        ({"exports": {"targets": ["yade"], "settings": {"colour": 1}}}, "no setting 'colour'"),
+        ({"exports": {"targets": ["yade"]}, "outputs": {"dataset": False}}, "need the dataset"),
+    ):
+        said = command("run", recipe(tmp_path, grains, **entries), "-o", tmp_path / "out")
+        assert said.code in (1, 2)
+        assert sentence in said.err
+        assert not (tmp_path / "out" / "dataset").exists()
+        assert not (tmp_path / "out" / "journal").exists()

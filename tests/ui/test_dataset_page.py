@@ -14,7 +14,11 @@ from regolith_studio.dataset.folder import read_dataset, validate_dataset
 from regolith_studio.dataset.reading import dataset_hash
 from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.particle import Particle
+from regolith_studio.imaging.stl import stl_bytes
 from regolith_studio.jobs.runners.inline import InlineRunner
+from regolith_studio.session.performing import perform
+from regolith_studio.session.recipe import read_recipe
+from regolith_studio.session.recipe_dataset import STANDING
 from regolith_studio.session.session import Session
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.page import PageContext
@@ -286,3 +290,50 @@ def test_that_a_picture_shows_a_lit_solid_on_a_clear_ground() -> None:
     assert image.pixelColor(32, 32).alpha() == 255
     tones = {image.pixelColor(x, y).rgb() for x in range(16, 48) for y in range(16, 48)}
     assert len(tones) > 5
+
+
+def tree(folder):
+    return {p.relative_to(folder).as_posix(): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
+
+
+def test_that_a_saved_recipe_makes_the_dataset_and_the_exports_of_the_page(
+    page, wait, tmp_path, monkeypatch
+) -> None:
+    for grain in grains():
+        (tmp_path / f"{grain.name}.stl").write_bytes(stl_bytes(grain.mesh, "test"))
+    page.session.open(sorted(tmp_path.glob("*.stl")), "um")
+    saved = tmp_path / "recipe.json"
+    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (str(saved), ""))
+    commands = page._context.commands
+    commands.save_recipe()
+    assert read_recipe(saved).representatives is None
+    assert read_recipe(saved).exports is None
+    wait(lambda: page.representatives.start.isEnabled())
+    page.representatives.setValue({"count": 3, "weighting": "volume"})
+    page.find_representatives()
+    wait(lambda: len(page.gallery.shown) == 3)
+    page.sizes.set_text("classes:30,60,120")
+    page.folder.name.setText("three")
+    page.targets.setValue(
+        {"targets": ["yade"], "coarse_graining": 4.0, "particles": 7, "contact": {"density": 2500.0}}
+    )
+    commands.save_recipe()
+    page.build_in(tmp_path / "window" / "dataset")
+    page.export_to(tmp_path / "window" / "exports")
+    wait(lambda: page.exports.exports)
+    for _ in perform(read_recipe(saved), tmp_path, tmp_path / "run"):
+        pass
+    for part in ("dataset", "exports"):
+        assert tree(tmp_path / "run" / part) == tree(tmp_path / "window" / part)
+    assert len(read_dataset(tmp_path / "run" / "dataset")) == 3
+
+
+def test_that_a_format_that_may_not_change_shapes_is_in_no_recipe(chosen) -> None:
+    altering = next(key for key, each in EXPORTERS.items() if each.alters)
+    chosen.targets.setValue({"targets": [altering]})
+    assert chosen.session.shelf.get(STANDING).exports is None
+    chosen.targets.setValue({"targets": [altering], "lossy": True})
+    assert chosen.session.shelf.get(STANDING).exports.targets == [altering]
+    chosen.session.adopt(grains(first=3))
+    chosen._show_particles()
+    assert chosen.session.shelf.get(STANDING) is None

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Mapping
+from dataclasses import asdict
 from typing import Any
 
 from PySide6.QtCore import QSignalBlocker, Signal
@@ -10,6 +11,7 @@ from PySide6.QtWidgets import QComboBox, QLineEdit, QPushButton, QVBoxLayout, QW
 from regolith_studio.dataset.size_spec import Sizing, parse_sizes
 from regolith_studio.errors import InputError
 from regolith_studio.jobs.representing import RepresentativesOrder
+from regolith_studio.session.recipe_dataset import Representatives
 from regolith_studio.ui.widgets.labels import heading, remark
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
 
@@ -72,6 +74,10 @@ class RepresentativesPanel(QWidget):
     def order(self) -> RepresentativesOrder:
         """What is asked for."""
         return RepresentativesOrder.of(int(self.count.value()), self.weighting.currentData())
+
+    def wish(self, sizes: str, name: str) -> Representatives:
+        """What a recipe says of them and of their dataset."""
+        return Representatives(**asdict(self.order()), sizes=sizes, name=name)
 
     def show_population(self, n_particles: int) -> None:
         """Say how many particles there are to choose from."""

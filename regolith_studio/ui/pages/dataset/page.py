@@ -18,6 +18,7 @@ from regolith_studio.jobs.datasets import open_dataset_folder, validate_dataset_
 from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.exporting import export_dataset_folder
 from regolith_studio.jobs.representing import ChosenParticles, Survey, choose_one, survey
+from regolith_studio.session.recipe_dataset import STANDING, Standing
 from regolith_studio.ui.layout import padded, scrolled_column, side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.dataset.controls import FolderPanel, RepresentativesPanel, SizesPanel
@@ -271,6 +272,7 @@ class DatasetPage(PageWidget):
         )
         self.folder.build.setEnabled(bool(shown))
         self._show_sizes()
+        self._leave_wish()
 
     def _show_sizes(self) -> None:
         classes = self._classes()
@@ -348,6 +350,15 @@ class DatasetPage(PageWidget):
             f"{choices.n_faces} faces, method {choices.method}, as chosen on the page Explore."
         )
 
+    def _leave_wish(self) -> None:
+        """Leave what a recipe would say of the dataset; nothing before representatives are chosen."""
+        shelf, wish = self._context.session.shelf, None
+        if self._chosen is not None and self.sizes.sizing() is not None:
+            name = self.folder.name.text().strip()
+            wish = Standing(self.representatives.wish(self.sizes.text(), name), self.targets.wish())
+        if wish != shelf.get(STANDING):
+            shelf.put(STANDING, wish)
+
     def _show_losses(self) -> None:
         self.losses.show_formats(self.targets.chosen())
 
@@ -363,6 +374,9 @@ class DatasetPage(PageWidget):
         self.library.openRequested.connect(self._use)
         self.targets.exportRequested.connect(self.export)
         self.targets.chosenChanged.connect(self._show_losses)
+        for told in (self.targets.chosenChanged, self.targets.optionsChanged, self.sizes.sizesChanged):
+            told.connect(self._leave_wish)
+        self.folder.name.textChanged.connect(lambda _: self._leave_wish())
 
     def _place(self) -> None:
         left = scrolled_column((self.representatives, self.sizes, self.folder, self.targets))

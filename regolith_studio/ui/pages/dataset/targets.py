@@ -23,6 +23,7 @@ from regolith_studio.dataset.exporting import PARTS, Exported, ExportOptions
 from regolith_studio.dataset.parameters import NOT_GIVEN, ContactParameters, LiftingCylinderTest, ScriptTimes
 from regolith_studio.dataset.simulation_case import today_named
 from regolith_studio.errors import InputError
+from regolith_studio.session.recipe_dataset import Exports
 from regolith_studio.ui.widgets.collapsible import Collapsible
 from regolith_studio.ui.widgets.labels import ElidedLabel, heading, remark
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
@@ -42,6 +43,7 @@ class TargetsPanel(QWidget):
 
     exportRequested = Signal()  # noqa: N815
     chosenChanged = Signal()  # noqa: N815
+    optionsChanged = Signal()  # noqa: N815
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -76,6 +78,10 @@ class TargetsPanel(QWidget):
         layout.addWidget(self.export)
         self.coarse_graining.setValue(10)
         self.particles.setValue(200)
+        for slider in (self.coarse_graining, self.particles):
+            slider.valueChanged.connect(lambda _: self.optionsChanged.emit())
+        for part in PARTS:
+            getattr(self, part).valueChanged.connect(self.optionsChanged)
         self.lossy.toggled.connect(lambda _: self._show())
         self.export.clicked.connect(self.exportRequested)
         self._ready = False
@@ -114,6 +120,19 @@ class TargetsPanel(QWidget):
             **{part: getattr(self, part).changes() for part in PARTS},
         }
 
+    def wish(self) -> Exports | None:
+        """What a recipe says of them; ``None`` where they could not be exported."""
+        if not self.chosen() or not self._allowed():
+            return None
+        return Exports(
+            targets=list(self.chosen()),
+            coarse_graining=float(self.coarse_graining.value()),
+            particles=int(self.particles.value()),
+            seed=0,
+            settings={name: x for part in PARTS for name, x in getattr(self, part).changes().items()},
+            lossy=self.consent(),
+        )
+
     def setValue(self, value: Mapping[str, Any]) -> None:
         """Tick these; names that are not known are left out, those of earlier versions are understood."""
         wanted = set(value.get("targets", FIRST))
@@ -140,10 +159,14 @@ class TargetsPanel(QWidget):
         box.toggled.connect(lambda _: self._show())
         return box
 
+    def _allowed(self) -> bool:
+        """Whether no ticked format changes shapes, or that is accepted."""
+        return self.consent() or not any(EXPORTERS[key].alters for key in self.chosen())
+
     def _show(self) -> None:
         altering = [key for key in self.chosen() if EXPORTERS[key].alters]
         self.lossy.setVisible(bool(altering))
-        allowed = not altering or self.consent()
+        allowed = self._allowed()
         self.export.setEnabled(getattr(self, "_ready", False) and bool(self.chosen()) and allowed)
         self.export.setToolTip(
             "" if allowed else f"{EXPORTERS[altering[0]].label}: {EXPORTERS[altering[0]].alters}"

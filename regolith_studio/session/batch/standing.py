@@ -1,0 +1,101 @@
+"""A recipe's dataset of representatives and its exports, made as ``regolith-studio dataset`` makes them."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from regolith_studio.dataset.exporting import ExportOptions, check_consent
+from regolith_studio.dataset.size_spec import parse_sizes
+from regolith_studio.errors import InputError
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.jobs.building import DatasetOptions, build_dataset_folder
+from regolith_studio.jobs.coarsening import CoarseningOrder
+from regolith_studio.jobs.crew import Crew
+from regolith_studio.jobs.events import Steps
+from regolith_studio.jobs.exporting import chosen_exporters, export_dataset_folder
+from regolith_studio.jobs.representing import RepresentativesOrder
+from regolith_studio.session.recipe import Recipe
+from regolith_studio.session.recipe_dataset import Exports, Representatives
+
+DATASET, EXPORTS = "dataset", "exports"
+
+
+def check_standing(recipe: Recipe, n_particles: int) -> None:
+    """Refuse before the work what could not be done after it.
+
+    Raises
+    ------
+    InputError
+        If there are too few particles, or sizes, formats or settings make no sense.
+    DatasetError
+        If a format changes the shapes and that is not allowed.
+    """
+    if (wish := recipe.representatives) is not None:
+        parse_sizes(wish.sizes)
+        if wish.count > n_particles:
+            raise InputError(
+                f"The recipe asks for {wish.count} representatives of {n_particles} particles; there cannot "
+                "be more of them than particles."
+            )
+    if recipe.exports is not None:
+        for exporter in chosen_exporters(recipe.exports.targets):
+            check_consent(exporter, recipe.exports.lossy)
+        export_options(recipe.exports, recipe.seed)
+
+
+def build_standing(
+    recipe: Recipe,
+    wish: Representatives,
+    particles: Sequence[Particle],
+    order: CoarseningOrder,
+    preset: str | None,
+    folder: Path,
+    workers: int | Crew,
+) -> Steps:
+    """Write ``dataset`` below `folder`; returns :class:`regolith_studio.jobs.building.Built`.
+
+    Raises
+    ------
+    RegolithError
+        As :func:`regolith_studio.jobs.building.build_dataset_folder`.
+    """
+    name = wish.name or folder.resolve().name
+    options = DatasetOptions(
+        name, preset, True, workers, representatives_order(wish, recipe.seed), sizes=wish.sizes
+    )
+    return (yield from build_dataset_folder(particles, order, folder / DATASET, options))
+
+
+def export_standing(wish: Exports, seed: int, folder: Path) -> Steps:
+    """Write ``dataset`` below `folder` for other programs, below ``exports``; returns the exports.
+
+    Raises
+    ------
+    RegolithError
+        As :func:`regolith_studio.jobs.exporting.export_dataset_folder`.
+    """
+    return (
+        yield from export_dataset_folder(
+            folder / DATASET, wish.targets, folder / EXPORTS, export_options(wish, seed), wish.lossy
+        )
+    )
+
+
+def representatives_order(wish: Representatives, seed: int) -> RepresentativesOrder | None:
+    """How those that stand for all are chosen; ``None`` where each stands for itself."""
+    if not wish.count:
+        return None
+    chosen = seed if wish.seed is None else wish.seed
+    return RepresentativesOrder.of(wish.count, wish.weighting, wish.size_importance, chosen)
+
+
+def export_options(wish: Exports, seed: int) -> ExportOptions:
+    """What the formats are told.
+
+    Raises
+    ------
+    InputError
+        If there is no such setting, or a value cannot be used.
+    """
+    told = ExportOptions(coarse_graining_factor=wish.coarse_graining, n_particles=wish.particles)
+    return replace(told, seed=seed if wish.seed is None else wish.seed).replaced(**wish.settings)
