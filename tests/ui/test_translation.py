@@ -342,7 +342,11 @@ def cut_off(root):
                     if widget.heightForWidth(widget.width()) > widget.height() + 1:
                         found.append((name, text, "too low"))
             case QAbstractButton() if widget.text():
-                wanted, text = widget.minimumSizeHint().width(), widget.text()
+                text = widget.text()
+                letters = widget.fontMetrics().horizontalAdvance(text.replace("&", "")) + 12
+                wanted = min(widget.minimumSizeHint().width(), letters + widget.iconSize().width())
+                if widget.icon().isNull():
+                    wanted = min(wanted, letters)
             case _:
                 continue
         if wanted > widget.width() + 1:

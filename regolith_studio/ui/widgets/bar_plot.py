@@ -7,11 +7,16 @@ from typing import Any
 import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QPointF
-from PySide6.QtGui import QColor, QFontMetrics, QResizeEvent
+from PySide6.QtGui import QColor, QFont, QFontMetrics, QResizeEvent
 from PySide6.QtWidgets import QWidget
 
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.plot import Numbers, Plot
+
+GAP = 3
+"""Pixels between the names of two categories."""
+LEAST_POINTS = 6.0
+"""Size of the smallest letters."""
 
 
 @dataclass(frozen=True)
@@ -109,12 +114,14 @@ class BarPlot(Plot):
         self._name_categories()
 
     def _name_categories(self) -> None:
-        """Below the bars, by the names that fit."""
-        axis = self.canvas.getAxis("bottom")
-        room = (self.width() - self.canvas.getAxis("left").width()) / max(1, len(self._categories))
-        metrics = QFontMetrics(axis.style["tickFont"] or self.font())
-        widest = max((metrics.horizontalAdvance(each) for each in self._categories), default=0)
-        axis.setTicks([list(enumerate(self._categories if widest < room else self._short))])
+        """Below the bars, by the names that fit, in smaller letters where none do."""
+        axis, font = self.canvas.getAxis("bottom"), self.small_font()
+        room = (self.width() - self.canvas.getAxis("left").width()) / max(1, len(self._categories)) - GAP
+        names = self._categories if _widest(self._categories, font) < room else self._short
+        while _widest(names, font) > room and font.pointSizeF() > LEAST_POINTS:
+            font.setPointSizeF(font.pointSizeF() - 0.5)
+        axis.setTickFont(font)
+        axis.setTicks([list(enumerate(names))])
 
     def _draw_bounds(self, places: np.ndarray[Any, Any], bounds: np.ndarray[Any, Any], reach: float) -> None:
         seen = np.isfinite(bounds) & (bounds > 0.0)
@@ -137,3 +144,8 @@ class BarPlot(Plot):
             if each.bounds and each.bounds[category] > 0.0
         ]
         return "\n".join([self._categories[category], *lines])
+
+
+def _widest(names: Sequence[str], font: QFont) -> int:
+    metrics = QFontMetrics(font)
+    return max(map(metrics.horizontalAdvance, names), default=0)

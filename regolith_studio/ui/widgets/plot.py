@@ -131,12 +131,17 @@ class Plot(QWidget):
         for side, text in zip(("bottom", "left"), self._labels, strict=True):
             self.canvas.setLabel(side, text, **style)
 
+    def small_font(self) -> QFont:
+        """Of the numbers at the axes."""
+        small = QFont(self.font())
+        small.setPointSizeF(max(6.0, self.font().pointSizeF() - 1.0))
+        return small
+
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
         self.theme = theme
         self.canvas.setBackground(theme.base)
-        small = QFont(self.font())
-        small.setPointSizeF(max(6.0, self.font().pointSizeF() - 1.0))
+        small = self.small_font()
         for side in ("bottom", "left"):
             axis = self.canvas.getAxis(side)
             axis.setPen(pg.mkPen(theme.border))

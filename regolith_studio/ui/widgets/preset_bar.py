@@ -56,6 +56,7 @@ class PresetBar(QWidget):
         self.box.setMinimumContentsLength(12)
         self.reset = QPushButton(tr("Reset"))
         self.reset.setToolTip(tr("Back to the values of the preset"))
+        self.reset.setMaximumWidth(self.reset.fontMetrics().horizontalAdvance(self.reset.text()) + 16)
         self.more = QToolButton()
         self.more.setText("⋯")
         self.more.setObjectName(f"{name}_more")
@@ -65,6 +66,7 @@ class PresetBar(QWidget):
         self.more.setMenu(self._menu())
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
+        row.setSpacing(4)
         row.addWidget(self.box, 1)
         row.addWidget(self.reset)
         row.addWidget(self.more)
@@ -93,6 +95,7 @@ class PresetBar(QWidget):
             for row, entry in enumerate(self._entries):
                 moved = modified and entry.key == key
                 self.box.setItemText(row, tr(MODIFIED, preset=entry.label) if moved else entry.label)
+        self.box.setToolTip(self.box.currentText())  # whole, where the box is narrow
         self.reset.setEnabled(modified)
         own = any(entry.own and entry.key == key for entry in self._entries)
         self.delete.setEnabled(own)
