@@ -36,11 +36,16 @@ class Looks(QObject):
         dialog.open()
 
     def choose(self, **changes: object) -> None:
-        """Keep settings by their names; theme and letters are seen at once."""
+        """Keep settings by their names; another theme and other letters are seen at once."""
+        before = self._seen()
         self._preferences.window = self._preferences.window | changes
         self._preferences.save()
         self._take()
-        self._apply()
+        if self._seen() != before:  # a style takes a second to reach all widgets
+            self._apply()
+
+    def _seen(self) -> tuple[object, object]:
+        return self._preferences.window.get("theme", "system"), self._preferences.window.get(LETTERS)
 
     def _take(self) -> None:
         choose_theme(str(self._preferences.window.get("theme", "system")))
