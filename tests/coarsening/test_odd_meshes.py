@@ -35,7 +35,7 @@ def outcome(number: int, n_faces: int) -> str:
         assert np.isfinite([*made.errors.values(), *made.achieved.values(), made.jaccard_distance]).all()
         if method == "exact":
             met = max(made.errors[key] for key in CONDITIONS) <= 1e-6
-            assert met != bool(made.reason), kind
+            assert (met and made.n_faces == n_faces) != bool(made.reason), kind
             answer = "met" if met else "reason"
     return answer
 

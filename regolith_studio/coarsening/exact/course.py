@@ -138,7 +138,7 @@ def course(
     for later in steps_down(full, state, bound_steps):
         state = later
         yield attempt(full, state.point)
-    yield from mended(target, full, state, bound_steps // 2)
+    yield from mended(target, full, state.point, bound_steps // 2)
 
 
 def compromise(
@@ -183,13 +183,13 @@ def steps_down(problem: Problem, state: State, steps: int) -> Iterator[State]:
         yield state
 
 
-def mended(target: Target, problem: Problem, state: State, steps: int) -> Iterator[Attempt]:
+def mended(target: Target, problem: Problem, begun: Polished, steps: int) -> Iterator[Attempt]:
     """Redundant half-spaces are put back as cuts, polished and taken along by a short descent.
 
     What a cut loses again in the polish comes back as a smaller one: its volume goes with the cube of its
     depth, so the smallest survive.
     """
-    point = state.point
+    point = begun
     for depth in CUT_DEPTHS:
         shape = point.shape
         cuts, normals, offsets = _with_cuts(target, shape.normals, shape.offsets, depth)
@@ -200,7 +200,7 @@ def mended(target: Target, problem: Problem, state: State, steps: int) -> Iterat
         if tried.worst <= TOLERANCE and n_facets(tried) >= n_facets(point):
             point = tried
             yield attempt(problem, point)
-    if point is state.point:
+    if point is begun:
         return
     for later in steps_down(problem, started(problem, point, OVERLAP, reach(point) / 10), steps):
         yield attempt(problem, later.point)

@@ -76,12 +76,17 @@ class Request:
         )
 
 
-def reason_for(target: Target, request: Request, n_faces: int, errors: dict[str, float]) -> str | None:
-    """One sentence about the condition that is missed by most; ``None`` where all are met to 1e-6."""
+def reason_for(
+    target: Target, request: Request, n_faces: int, n_real: int, errors: dict[str, float]
+) -> str | None:
+    """One sentence about the condition that is missed by most, else about facets that are missing.
+
+    ``None`` where all conditions are met to 1e-6 with `n_real` = `n_faces` facets.
+    """
     missed = {key: errors[_reported(key, request)] for key in request.keys}
     worst = max(missed, key=lambda key: missed[key], default=None)
     if worst is None or missed[worst] <= EXACT:
-        return None
+        return None if n_real == n_faces else facets_reason(n_real, n_faces)
     if "sphericity" in missed:
         bound = sphericity_reason(target.descriptors["sphericity"], n_faces)
         if bound is not None:
@@ -90,6 +95,14 @@ def reason_for(target: Target, request: Request, n_faces: int, errors: dict[str,
     return (
         f"No polyhedron with {n_faces} faces was found that meets all descriptors:"
         f" {name} is off by {100 * missed[worst]:.2g} %; more faces or a weight of 0 would free it."
+    )
+
+
+def facets_reason(n_real: int, n_faces: int) -> str:
+    """One sentence about half-spaces that bound no facet."""
+    return (
+        f"The result has {n_real} facets instead of {n_faces}: no place was found where the other half-spaces"
+        " bound a facet and all descriptors are met."
     )
 
 

@@ -10,6 +10,7 @@ from regolith_studio.coarsening.core.box_search import DENSE_ANGLE, FINE_ANGLE, 
 from regolith_studio.coarsening.core.cuts import SMALLEST_FACET
 from regolith_studio.coarsening.evaluation import LossFunction
 from regolith_studio.coarsening.exact.course import Attempt, compromise, course, densely_checked, start_planes
+from regolith_studio.coarsening.exact.growth import FEW_FACES, SAFE_FACES, grown
 from regolith_studio.coarsening.exact.problem import Problem
 from regolith_studio.coarsening.exact.request import CONDITION_KEYS, EXACT, Request, reason_for
 from regolith_studio.coarsening.polyhedra import facet_areas, polyhedron_of
@@ -106,7 +107,13 @@ class ExactMethod:
             planes = start_planes(target, n_faces, rng)
             if tried == 1:
                 yield MethodStep(0, total, judge.value(*planes, SAMPLE_ANGLE), HalfSpaces(*planes))
-            for found in course(target, free, full, planes, level.free_steps, level.bound_steps):
+            steps = (level.free_steps, level.bound_steps)
+            if n_faces > SAFE_FACES and not hopeless:
+                few = FEW_FACES[(tried - 1) % len(FEW_FACES)]
+                attempts = grown(target, free, full, planes, few, rng, *steps)
+            else:
+                attempts = course(target, free, full, planes, *steps)
+            for found in attempts:
                 if not found.better_than(best):
                     continue
                 best = found
@@ -127,10 +134,11 @@ class ExactMethod:
                         best = found
                         history.append(value)
                         yield MethodStep(total, total, value, HalfSpaces(best.normals, best.offsets))
-        achieved = describe(polyhedron_of(real_planes(best)), LOSS_KEYS)
-        reason = reason_for(target, request, n_faces, relative_errors(target.descriptors, achieved))
+        planes_kept = real_planes(best)
+        errors = relative_errors(target.descriptors, describe(polyhedron_of(planes_kept), LOSS_KEYS))
+        reason = reason_for(target, request, n_faces, len(planes_kept), errors)
         counts = {"starts": float(tried), "exact": float(best.exact)}
-        return MethodResult(real_planes(best), tuple(history), reason, counts)
+        return MethodResult(planes_kept, tuple(history), reason, counts)
 
 
 def confirmed(request: Request, problems: tuple[Problem, ...], found: Attempt) -> Attempt:
@@ -145,7 +153,7 @@ def confirmed(request: Request, problems: tuple[Problem, ...], found: Attempt) -
             return found
         values = describe(polyhedron_of(real_planes(found)), CONDITION_KEYS)
         worst = max((abs(values[key] / wanted[key] - 1.0) for key in request.keys), default=0.0)
-        if worst <= EXACT:
+        if worst <= EXACT / 2:  # so that the ratio of two diameters has no more than EXACT
             return found
     return replace(found, worst=worst)
 
