@@ -3,12 +3,14 @@
 import os
 import random
 import sys
+import time
 import traceback
+from contextlib import contextmanager
 
 import psutil
 import pytest
 import shiboken6
-from PySide6.QtCore import QEvent, QPoint, QPointF, Qt
+from PySide6.QtCore import QEvent, QPoint, QPointF, Qt, QTimer
 from PySide6.QtGui import QDesktopServices, QGuiApplication, QMouseEvent, QWheelEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import (
@@ -57,6 +59,8 @@ ANSWERS = {
     "getExistingDirectory": "",
 }
 """Of dialogs with a loop of their own: they would wait for somebody."""
+PATIENCE = 200
+"""Milliseconds after which a menu that a button has opened is closed: it has a loop of its own, too."""
 
 
 class Monkey:
@@ -163,13 +167,26 @@ class Monkey:
         return isinstance(widget, QComboBox | QMenu | QLineEdit) and self.random.random() < 0.7
 
     def _close_dialogs(self):
-        popup = QApplication.activePopupWidget()
-        while popup is not None:
-            popup.close()
-            popup = QApplication.activePopupWidget()
+        _close_popups()
         for each in QApplication.topLevelWidgets():
             if isinstance(each, QDialog | QMessageBox | QFileDialog) and each.isVisible():
                 each.reject()
+
+
+def _close_popups():
+    while (popup := QApplication.activePopupWidget()) is not None:
+        popup.close()
+
+
+@contextmanager
+def _somebody_closes_popups():
+    timer = QTimer(interval=PATIENCE)
+    timer.timeout.connect(_close_popups)
+    timer.start()
+    try:
+        yield
+    finally:
+        timer.stop()
 
 
 def _mouse(widget, kind, place):
@@ -201,33 +218,36 @@ def window(monkeypatch, shown, preferences, wait, views):
     return made
 
 
-def play(window, monkeypatch, app, count, seed, pages=PAGES):
+def play(window, monkeypatch, app, count, seed, pages=PAGES, tell=lambda *_: None):
     """Let the monkey act; what goes wrong in a slot reaches sys.excepthook and fails the test.
 
-    Returns the resident megabytes at each tenth of the way.
+    `tell` is told at each twentieth of the way how many events there were, how many megabytes are resident,
+    and how many seconds the longest event since the last time took.
     """
     for name, answer in ANSWERS.items():
         monkeypatch.setattr(QFileDialog, name, lambda *_args, answer=answer, **_more: answer)
     monkeypatch.setattr(QMessageBox, "question", lambda *_: QMessageBox.StandardButton.No)
     monkeypatch.setattr(QDesktopServices, "openUrl", lambda *_: True)
-    wrong, held = [], []
+    wrong, problems, slowest = [], [], 0.0
     monkeypatch.setattr(sys, "excepthook", lambda *error: wrong.append(error))
-    problems = []
     window.toast.said.connect(lambda _mood, _sentence, details: problems.append(details))
     monkey = Monkey(window, seed, pages)
-    for number in range(count):
-        if number % max(1, count // 10) == 0:
-            held.append(round(psutil.Process().memory_info().rss / 1e6))
-        monkey.act()
-        if number % LOOK_AROUND == 0:
-            app.processEvents()
-        story = "".join(traceback.format_exception(*wrong[0])) if wrong else ""
-        assert not wrong, f"event {number} of seed {seed}: {story}"
+    with _somebody_closes_popups():
+        for number in range(count):
+            if number % max(1, count // 20) == 0:
+                tell(number, round(psutil.Process().memory_info().rss / 1e6), slowest)
+                slowest = 0.0
+            began = time.perf_counter()
+            monkey.act()
+            slowest = max(slowest, time.perf_counter() - began)
+            if number % LOOK_AROUND == 0:
+                app.processEvents()
+            story = "".join(traceback.format_exception(*wrong[0])) if wrong else ""
+            assert not wrong, f"event {number} of seed {seed}: {story}"
     mistakes = [text for text in problems if "Traceback" in text and "regolith_studio.errors" not in text]
     assert not mistakes, mistakes[0]
     for task in window.session.tasks:
         window.session.cancel(task.id)
-    return held
 
 
 def test_that_a_short_visit_of_the_monkey_leaves_the_window_well(window, monkeypatch, app, wait):
@@ -248,11 +268,16 @@ def test_that_live_views_bear_a_thousand_events(window, monkeypatch, app, settle
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(0)
 @pytest.mark.skipif("REGOLITH_STUDIO_MONKEY" not in os.environ, reason="asked for by a number of events")
 def test_that_a_long_visit_of_the_monkey_leaves_the_window_well(window, monkeypatch, app, wait, capsys):
     """``REGOLITH_STUDIO_MONKEY=50000`` lets it stay for so many events, about 15 ms each."""
     count, pages = int(os.environ["REGOLITH_STUDIO_MONKEY"]), tuple(window.pages.pages)
-    held = play(window, monkeypatch, app, count, seed=2, pages=pages)
+
+    def tell(number, megabytes, slowest):
+        with capsys.disabled():
+            sys.stdout.write(f"\n{number:,} events: {megabytes} MB, longest {slowest:.2f} s")
+            sys.stdout.flush()
+
+    play(window, monkeypatch, app, count, seed=2, pages=pages, tell=tell)
     wait(lambda: not window.session.tasks, 60.0)
-    with capsys.disabled():
-        sys.stdout.write(f"\n{count} events; megabytes at each tenth: {held}\n")
