@@ -105,7 +105,8 @@ class Monkey:
         return widget if alive else self.window.page
 
     def _place(self, widget):
-        return QPoint(self.random.randrange(widget.width()), self.random.randrange(widget.height()))
+        wide, high = max(1, widget.width()), max(1, widget.height())
+        return QPoint(self.random.randrange(wide), self.random.randrange(high))
 
     def _click(self):
         widget = self._some_widget()

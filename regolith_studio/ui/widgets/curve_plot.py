@@ -8,6 +8,7 @@ import pyqtgraph as pg
 from PySide6.QtCore import QPointF
 from PySide6.QtWidgets import QWidget
 
+from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.log_axes import set_log_mode
 from regolith_studio.ui.widgets.plot import Numbers, Plot
@@ -102,7 +103,7 @@ class CurvePlot(Plot):
         while len(self._items) < len(self._curves):
             self._items.append(self.canvas.plot(antialias=True))
         for item, curve in zip(self._items, self._curves, strict=True):
-            item.setData(np.asarray(curve.x, dtype=float), np.asarray(curve.y, dtype=float))
+            item.setData(*self._drawable(curve))
             item.setPen(self.pen(curve.colour, dash=curve.dash) if curve.line else None)
             item.setSymbol("o" if curve.markers else None)
             item.setSymbolSize(5)
@@ -110,6 +111,12 @@ class CurvePlot(Plot):
             item.setSymbolPen(None)
         self.set_legend([(curve.colour, curve.label) for curve in self._curves if curve.label])
         self._draw_marker()
+
+    def _drawable(self, curve: Curve) -> tuple[FloatArray, FloatArray]:
+        """Points of a curve; none where no point has a place on the axes."""
+        x, y = np.asarray(curve.x, dtype=float), np.asarray(curve.y, dtype=float)
+        placed = np.isfinite(x) & (np.isfinite(y) & (y > 0.0) if self._log_y else np.isfinite(y))
+        return (x, y) if placed.any() else (x[:0], y[:0])
 
     def value_at(self, place: QPointF) -> str:
         """The nearest point of a curve, in words; empty if it is far."""

@@ -114,7 +114,11 @@ class ScatterPanel(QWidget):
 
     def _draw_group(self, members: Sequence[ParticleEntry], number: int) -> None:
         x, y = self.axes()
-        at = np.array([[e.descriptors[x], e.descriptors[y]] for e in members if e.descriptors])
+        values = [(each.descriptors[x], each.descriptors[y]) for each in members if each.descriptors]
+        members = [each for each, pair in zip(members, values, strict=True) if np.isfinite(pair).all()]
+        at = np.array([pair for pair in values if np.isfinite(pair).all()])
+        if not members:
+            return
         if self.log.isChecked():
             at = np.log10(np.maximum(at, 1e-300))
         colour = QColor(DESCRIPTOR_COLOURS[number % len(DESCRIPTOR_COLOURS)])
