@@ -68,8 +68,8 @@ class CurvePlot(Plot):
         self._items: list[pg.PlotDataItem] = []
         self._marker: float | None = None
         self._line: pg.InfiniteLine | None = None
-        super().__init__(x, y, placeholder, parent)
         self._log_y = log_y
+        super().__init__(x, y, placeholder, parent)
         set_log_mode(self.canvas, x=False, y=log_y)
         self.canvas.getAxis("left").logTickStrings = _plain_decades
 
