@@ -38,24 +38,9 @@ class HeatTable(QWidget):
         super().__init__(parent)
         self._theme = current_theme()
         self._values: tuple[tuple[float, ...], ...] = ()
-        self.table = QTableWidget()
-        self.table.setAccessibleName("Table of errors")
-        self.table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
-        self.table.setSelectionMode(QAbstractItemView.SelectionMode.NoSelection)
-        self.table.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        self.table.setShowGrid(False)
-        self.table.setFrameShape(self.table.Shape.NoFrame)
-        self.table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
-        self.table.horizontalHeader().setMinimumSectionSize(24)
-        self.table.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self.table.verticalHeader().setTextElideMode(Qt.TextElideMode.ElideRight)
-        self.table.verticalHeader().setDefaultSectionSize(self.table.fontMetrics().height() + 7)
-        empty = QLabel(placeholder)
-        empty.setProperty("role", "remark")
-        empty.setAlignment(Qt.AlignmentFlag.AlignCenter)
-        empty.setWordWrap(True)
+        self.table = numbers_table("Table of errors", spare=7)
         self._stack = QStackedLayout(self)
-        self._stack.addWidget(empty)
+        self._stack.addWidget(remark_in_the_middle(placeholder))
         self._stack.addWidget(self.table)
 
     def values(self) -> tuple[tuple[float, ...], ...]:
@@ -102,3 +87,37 @@ class HeatTable(QWidget):
             colour.setAlphaF(0.75 * min(1.0, heat))
             item.setBackground(colour)
         return item
+
+
+def numbers_table(name: str, spare: int) -> QTableWidget:
+    """A table to be read only, as wide as its place.
+
+    Parameters
+    ----------
+    name
+        For those who hear the window.
+    spare
+        Pixels between two lines.
+    """
+    table = QTableWidget()
+    table.setAccessibleName(name)
+    table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
+    table.setSelectionMode(QAbstractItemView.SelectionMode.NoSelection)
+    table.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+    table.setShowGrid(False)
+    table.setFrameShape(table.Shape.NoFrame)
+    table.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+    table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
+    table.horizontalHeader().setMinimumSectionSize(24)
+    table.verticalHeader().setTextElideMode(Qt.TextElideMode.ElideRight)
+    table.verticalHeader().setDefaultSectionSize(table.fontMetrics().height() + spare)
+    return table
+
+
+def remark_in_the_middle(text: str) -> QLabel:
+    """A sentence where there are no numbers yet."""
+    label = QLabel(text)
+    label.setProperty("role", "remark")
+    label.setAlignment(Qt.AlignmentFlag.AlignCenter)
+    label.setWordWrap(True)
+    return label

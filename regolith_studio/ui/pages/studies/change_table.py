@@ -3,19 +3,12 @@
 import numpy as np
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QColor, QResizeEvent
-from PySide6.QtWidgets import (
-    QAbstractItemView,
-    QHeaderView,
-    QLabel,
-    QStackedLayout,
-    QTableWidget,
-    QTableWidgetItem,
-    QWidget,
-)
+from PySide6.QtWidgets import QStackedLayout, QTableWidgetItem, QWidget
 
 from regolith_studio.studies.coarsening import CoarseningStudy
 from regolith_studio.studies.variations import beyond_chance, change_text, changes
 from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.widgets.heat_table import numbers_table, remark_in_the_middle
 
 ROWS_SHARE = 0.33
 """Of the width, that the names of the rows take at most."""
@@ -28,26 +21,11 @@ class ChangeTable(QWidget):
         super().__init__(parent)
         self._theme, self._headers = current_theme(), headers
         self._study: CoarseningStudy | None = None
-        self.table = QTableWidget()
-        self.table.setAccessibleName("Changes of errors in percentage points")
-        self.table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
-        self.table.setSelectionMode(QAbstractItemView.SelectionMode.NoSelection)
-        self.table.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        self.table.setShowGrid(False)
+        self.table = numbers_table("Changes of errors in percentage points", spare=5)
         self.table.setTextElideMode(Qt.TextElideMode.ElideNone)
         self.table.setWordWrap(False)
-        self.table.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self.table.setFrameShape(self.table.Shape.NoFrame)
-        self.table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
-        self.table.horizontalHeader().setMinimumSectionSize(24)
-        self.table.verticalHeader().setTextElideMode(Qt.TextElideMode.ElideRight)
-        self.table.verticalHeader().setDefaultSectionSize(self.table.fontMetrics().height() + 5)
-        empty = QLabel(placeholder)
-        empty.setProperty("role", "remark")
-        empty.setAlignment(Qt.AlignmentFlag.AlignCenter)
-        empty.setWordWrap(True)
         self._stack = QStackedLayout(self)
-        self._stack.addWidget(empty)
+        self._stack.addWidget(remark_in_the_middle(placeholder))
         self._stack.addWidget(self.table)
 
     def show_study(self, study: CoarseningStudy | None) -> None:
