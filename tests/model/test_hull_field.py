@@ -14,7 +14,7 @@ from regolith_studio.model.copula import GaussianCopula
 from regolith_studio.model.draws import Draws, virtual_mesh
 from regolith_studio.model.forms import forms, log_ellipsoids, with_forms
 from regolith_studio.model.hull_aims import come_to, numbers_and_aim
-from regolith_studio.model.hull_radii import hull_grid, hull_radii
+from regolith_studio.model.hull_radii import ROWS, hull_grid, supports
 from regolith_studio.model.materials import materials
 from regolith_studio.model.models import MODELS
 from regolith_studio.model.models.hull_field import HullFieldSettings
@@ -67,9 +67,11 @@ def test_that_hulls_on_the_grid_hold_the_hull_of_its_points() -> None:
 
 def test_that_compiled_hulls_equal_plain_python() -> None:
     shapes = hull_grid(5, 2)
-    radii = np.exp(_dented(2)[:, : len(shapes.grid.weights)]).astype(np.float32)
-    plain = hull_radii.py_func(radii, shapes.cosines, shapes.reciprocals)
-    np.testing.assert_allclose(hull_radii(radii, shapes.cosines, shapes.reciprocals), plain, rtol=1e-6)
+    radii = np.exp(_dented(3)[:, : len(shapes.grid.weights)]).astype(np.float32)
+    plain = supports.py_func(radii, shapes.cosines, shapes.reaches)
+    np.testing.assert_array_equal(supports(radii, shapes.cosines, shapes.reaches), plain)
+    np.testing.assert_array_equal(plain, (radii[:, :, None] * shapes.cosines).max(axis=1))
+    assert len(shapes.cosines) % ROWS, "the last directions are fewer than a group"
 
 
 def test_that_a_surface_drawn_to_its_hull_fills_the_share_asked_for() -> None:
