@@ -22,6 +22,7 @@ from regolith_studio.ui.posting import Poster
 from regolith_studio.ui.tour import TOUR_SEEN
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.factory import best_kind
+from regolith_studio.ui.views.loading import load_pyvista
 
 
 def welcome(window: MainWindow) -> None:
@@ -45,6 +46,7 @@ def open_window(
     found = [Path(path) for path in paths]
     if not found:
         session.open_sample()  # is read while the window is built
+    load_pyvista()
     window = MainWindow(session, preferences or Preferences.load(), views or best_kind())
     poster.setParent(window)
     if found:

@@ -21,6 +21,11 @@ def welcome(window):
 app.welcome = welcome
 code = start.run()
 assert seen == [True], seen
+import linecache
+read = {name.split(".")[0] for name, module in sys.modules.items()
+        if getattr(module, "__file__", None) in linecache.cache}
+assert not read & {"pyvista", "pyqtgraph", "matplotlib"}, f"sources are kept in memory: {read}"
+assert "mypy" not in sys.modules
 sys.exit(code)
 """
 
