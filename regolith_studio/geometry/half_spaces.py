@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray, locked_floats
+from regolith_studio.geometry.exits import exits
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,6 +90,7 @@ class HalfSpaces:
         directions
             Shape (k, 3). The result has shape (k,) and is infinite where no plane is met.
         """
-        closeness = (directions @ (self.normals / self.offsets[:, None]).T).max(axis=1)
-        with np.errstate(divide="ignore"):
-            return np.asarray(np.where(closeness > 0.0, 1.0 / closeness, np.inf), dtype=np.float64)
+        rays = np.array(directions, dtype=np.float64, order="C")
+        radius, plane = np.empty(len(rays)), np.empty(len(rays), dtype=np.int64)
+        exits(np.array(self.normals), np.array(self.offsets), rays, radius, plane)
+        return radius

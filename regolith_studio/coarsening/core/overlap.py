@@ -4,27 +4,9 @@ import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.compiled import kernel
+from regolith_studio.geometry.exits import exits
 
-
-@kernel
-def exits(
-    normals: FloatArray, offsets: FloatArray, directions: FloatArray, radius: FloatArray, plane: IntArray
-) -> None:
-    """Where each ray leaves the polyhedron: `radius` (k,) and `plane` (k,) are filled."""
-    n = len(offsets)
-    dual = np.empty((n, 3))
-    for i in range(n):
-        for c in range(3):
-            dual[i, c] = normals[i, c] / offsets[i]
-    for k in range(len(directions)):
-        u0, u1, u2 = directions[k, 0], directions[k, 1], directions[k, 2]
-        best, at = 0.0, 0
-        for i in range(n):
-            here = u0 * dual[i, 0] + u1 * dual[i, 1] + u2 * dual[i, 2]
-            if here > best:
-                best, at = here, i
-        radius[k] = 1.0 / best if best > 0.0 else np.inf
-        plane[k] = at
+__all__ = ["exits", "jaccard", "shared_charge", "shared_volume"]
 
 
 @kernel
