@@ -2,7 +2,8 @@
 
 Run as ``python -m benchmarks.imaging [--edge 512] [--grey] [--memory GIB]``. Writes a volume of many grains
 into a temporary folder (one grain a cell of 51 voxels: 1,000 grains at 512 voxels an edge, 8,000 at 1,024;
-``--share 0.25`` fills every fourth cell only, ``--packed`` writes a compressed HDF5 file instead of NPY),
+``--share 0.25`` fills every fourth cell only, ``--packed`` writes a compressed HDF5 file instead of NPY,
+``--packed --chunk 64`` one of cubic chunks),
 then makes its particles, each forgotten once it is made, in a process of its own whose private memory
 (RLIMIT_DATA) is limited. Reported are seconds by the clock and by the processor, and the peak of resident
 memory; pages of files count in the latter.
@@ -49,7 +50,9 @@ def grain_masks() -> list[NDArray[np.bool_]]:
     return masks
 
 
-def write_volume(path: Path, edge: int, grey: bool, share: float = 1.0, seed: int = 0) -> int:
+def write_volume(
+    path: Path, edge: int, grey: bool, share: float = 1.0, seed: int = 0, chunk: int | None = None
+) -> int:
     """Write an NPY or HDF5 volume, slices first, layer of cells by layer; returns the number of grains."""
     shape, dtype = (edge, edge, edge), np.dtype(np.uint8 if grey else np.uint16)
     if path.suffix == ".npy":
@@ -59,7 +62,12 @@ def write_volume(path: Path, edge: int, grey: bool, share: float = 1.0, seed: in
         return count
     with h5py.File(path, "w") as file:
         data = file.create_dataset(
-            "exported_data", shape, dtype, chunks=(8, 512, 512), compression="gzip", compression_opts=1
+            "exported_data",
+            shape,
+            dtype,
+            chunks=(chunk, chunk, chunk) if chunk else (8, 512, 512),
+            compression="gzip",
+            compression_opts=1,
         )
         return _fill(data, edge, grey, share, np.random.default_rng(seed))
 
@@ -135,6 +143,7 @@ def main() -> int:
     options.add_argument("--grey", action="store_true")
     options.add_argument("--share", type=float, default=1.0, help="of the cells that hold a grain")
     options.add_argument("--packed", action="store_true", help="compressed HDF5 instead of NPY")
+    options.add_argument("--chunk", type=int, help="edge of a chunk of --packed, instead of 8 x 512 x 512")
     options.add_argument("--memory", type=float, default=0.0, help="limit of private memory, in GiB")
     options.add_argument("--folder", type=Path, default=None)
     options.add_argument("--child", type=Path, help=argparse.SUPPRESS)
@@ -144,7 +153,7 @@ def main() -> int:
         return 0
     with tempfile.TemporaryDirectory(dir=wish.folder) as folder:
         path = Path(folder) / ("volume.h5" if wish.packed else "volume.npy")
-        n_grains = write_volume(path, wish.edge, wish.grey, wish.share)
+        n_grains = write_volume(path, wish.edge, wish.grey, wish.share, chunk=wish.chunk)
         size = path.stat().st_size / 2**30
         print(f"{wish.edge}^3 voxels, {n_grains} grains, {size:.2f} GiB", flush=True)
         call = [sys.executable, "-m", "benchmarks.imaging", "--child", str(path)]

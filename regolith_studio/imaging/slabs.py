@@ -8,6 +8,8 @@ import math
 import shutil
 import tempfile
 import weakref
+from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Protocol
@@ -56,10 +58,43 @@ def slab_ranges(shape: tuple[int, int, int], voxels: int = SLAB_VOXELS) -> list[
     return [(first, min(first + thickness, nz)) for first in range(0, nz, thickness)]
 
 
-def read_with_margin(source: SlabSource, first: int, stop: int, margin: int) -> tuple[NDArray[Any], slice]:
-    """A slab with `margin` slices more on either side where there are any, and where the slab is in it."""
-    low, high = max(first - margin, 0), min(stop + margin, source.shape[2])
-    return source.read(low, high), slice(first - low, stop - low)
+@dataclass(frozen=True, eq=False)
+class ThickSlab:
+    """A slab with slices more on either side, where there are any.
+
+    Parameters
+    ----------
+    first, stop
+        The slab's first slice and the one after its last.
+    values
+        Shape (nx, ny, thickness with margins).
+    inner
+        Where the slab is in `values`, along z.
+    """
+
+    first: int
+    stop: int
+    values: NDArray[Any]
+    inner: slice
+
+
+def thick_slabs(source: SlabSource, ranges: list[tuple[int, int]], margin: int) -> Iterator[ThickSlab]:
+    """The slabs `ranges` of a volume, each with `margin` slices more on either side where there are any.
+
+    Every slice is read once and in order, since a file that is one compressed stream must begin anew to go
+    back: what two slabs share is kept from one to the next.
+    """
+    kept: NDArray[Any] | None = None
+    begin, end = 0, 0
+    for first, stop in ranges:
+        low, high = max(first - margin, 0), min(stop + margin, source.shape[2])
+        parts = [] if kept is None else [kept[:, :, low - begin :]]
+        if high > end:
+            parts.append(source.read(end, high))
+        values = parts[0] if len(parts) == 1 else np.concatenate(parts, axis=2)
+        begin, end = max(stop - margin, 0), high
+        kept = values[:, :, begin - low :].copy(order="F") if end > begin else None
+        yield ThickSlab(first, stop, values, slice(first - low, stop - low))
 
 
 class Scratch:

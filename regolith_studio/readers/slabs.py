@@ -13,7 +13,7 @@ from regolith_studio.readers.guard import START_SECONDS, WORKING_SECONDS, Guard,
 from regolith_studio.readers.plain_voxels import PlainVoxels, plain_voxels
 from regolith_studio.readers.sentences import sentence_about
 from regolith_studio.readers.volume_files import slice_names, slices_stamp
-from regolith_studio.readers.volume_format import DatasetEntry, VoxelHeader
+from regolith_studio.readers.volume_format import KEPT_BYTES, DatasetEntry, VoxelHeader
 from regolith_studio.readers.volume_header import RawLayout
 
 SLAB = 64 * 1024**2
@@ -22,6 +22,8 @@ LARGEST_LAYER = 256 * 1024**2
 """Bytes that may be handed over at once where a file is packed in chunks of so many slices."""
 BYTES_OPENED_A_SECOND, BYTES_READ_A_SECOND, BYTES_SKIPPED_A_SECOND = 5e6, 1e7, 3e7
 SECONDS_A_SLICE = 2e-3
+DEFLATE_AT_BEST = 1032
+"""Bytes that a packed byte can stand for; what unpacks to more is no work, since it is empty."""
 PATIENCE = 6.0
 """How much longer than its work a task may take on a busy machine."""
 LEAST_MEMORY = 512 * 1024**2
@@ -72,6 +74,13 @@ class OpenedFile:
             yield start, end
             start = end
 
+    def _layer_bytes(self, z0: int, z1: int) -> int:
+        """Bytes of the layers of chunks, if there are any, that must be unpacked for some of their slices."""
+        if self.layer == 1:
+            return 0
+        first, last = z0 // self.layer * self.layer, -(-z1 // self.layer) * self.layer
+        return (min(last, self.header.shape[0]) - first) * self.header.slice_bytes
+
     def read(self, z0: int, z1: int, into: NDArray[Any] | None = None) -> NDArray[Any]:
         """Slices z0 to z1, shape (z1 - z0, ny, nx).
 
@@ -96,7 +105,10 @@ class OpenedFile:
         work = WORKING_SECONDS + size / BYTES_READ_A_SECOND + (z1 - z0) * SECONDS_A_SLICE
         if self.in_order:
             work += z0 * self.header.slice_bytes / BYTES_SKIPPED_A_SECOND
-        request = {**self.request, "memory": LEAST_MEMORY + 6 * size}
+        layers = self._layer_bytes(z0, z1)
+        file_bytes: int = self.request["stamp"][0]
+        work += min(layers, file_bytes * DEFLATE_AT_BEST) / BYTES_SKIPPED_A_SECOND
+        request = {**self.request, "memory": LEAST_MEMORY + 6 * size + min(layers, KEPT_BYTES)}
         message = (self.guard or volume_guard()).ask(
             "volume-slices", self.path, PATIENCE * work, work, z0=z0, z1=z1, **request
         )

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from regolith_studio.errors import EnvironmentProblem
-from regolith_studio.imaging.slabs import Scratch, read_with_margin, slab_ranges
-from regolith_studio.imaging.volume import Volume
+from regolith_studio.imaging.slabs import Scratch, slab_ranges, thick_slabs
 
 
 @pytest.mark.parametrize("shape", [(5, 5, 1), (7, 3, 8), (100, 100, 103), (3000, 3000, 20)])
@@ -20,12 +19,32 @@ def test_that_slabs_cover_every_slice_once(shape: tuple[int, int, int]) -> None:
     assert all(stop - first >= 8 for first, stop in ranges[:-1])
 
 
-@pytest.mark.parametrize(("first", "stop"), [(0, 4), (3, 7), (8, 10), (0, 10)])
-def test_that_a_margin_is_cut_off_again(first: int, stop: int) -> None:
-    volume = Volume(np.arange(60).reshape(2, 3, 10), (1, 1, 1), "grey", "t")
-    thick, inner = read_with_margin(volume, first, stop, 2)
-    assert np.array_equal(thick[:, :, inner], volume.array[:, :, first:stop])
-    assert thick.shape[2] == min(stop + 2, 10) - max(first - 2, 0)
+class Sequence:
+    """A volume that remembers which slices were asked for."""
+
+    voxel_size, kind, name = (1.0, 1.0, 1.0), "grey", "t"
+
+    def __init__(self, array: np.ndarray) -> None:
+        self.array, self.shape, self.dtype = array, array.shape, array.dtype
+        self.asked: list[int] = []
+
+    def read(self, z0: int, z1: int) -> np.ndarray:
+        self.asked.extend(range(z0, z1))
+        return self.array[:, :, z0:z1]
+
+
+@pytest.mark.parametrize("margin", [0, 1, 3, 20])
+@pytest.mark.parametrize("depth", [1, 7, 8, 9, 30])
+def test_that_thick_slabs_read_each_slice_once_and_in_order(depth: int, margin: int) -> None:
+    """At eight slices a slab, the margin is once larger than a slab."""
+    volume = Sequence(np.arange(6 * depth).reshape(2, 3, depth))
+    slabs = list(thick_slabs(volume, slab_ranges(volume.shape, 48), margin))
+    assert volume.asked == list(range(depth))
+    assert [(slab.first, slab.stop) for slab in slabs] == slab_ranges(volume.shape, 48)
+    for slab in slabs:
+        low, high = max(slab.first - margin, 0), min(slab.stop + margin, depth)
+        assert np.array_equal(slab.values, volume.array[:, :, low:high])
+        assert np.array_equal(slab.values[:, :, slab.inner], volume.array[:, :, slab.first : slab.stop])
 
 
 def test_that_scratch_arrays_are_the_same_in_memory_and_on_disk(tmp_path: Path) -> None:

@@ -1,12 +1,16 @@
 """HDF5 as ilastik and others write it, in any order of axes; nothing outside the file is read."""
 
+import io
 import json
+from collections import Counter
 
 import h5py
 import numpy as np
 import pytest
 
 from regolith_studio.errors import FileError
+from regolith_studio.readers.chunk_layers import ChunkLayers
+from regolith_studio.readers.volume_formats.hdf5 import open_hdf5
 from regolith_studio.readers.volumes import datasets_in, describe_volume, open_slabs, read_volume
 
 SLICES = np.random.default_rng(8).integers(0, 60_000, (9, 11, 13)).astype(np.uint16)
@@ -183,3 +187,62 @@ def test_that_slabs_end_where_chunks_do(path, monkeypatch) -> None:
     assert list(opened.pieces(2, 9)) == [(2, 4), (4, 8), (8, 9)]
     monkeypatch.setattr(slabs, "SLAB", opened.header.slice_bytes)
     assert list(opened.pieces(0, 9)) == [(0, 4), (4, 8), (8, 9)]
+
+
+class Watched(io.FileIO):
+    """A file that remembers where it was read from; HDF5 reads each chunk by one call at its place."""
+
+    def __init__(self, path) -> None:
+        super().__init__(path)
+        self.places: Counter = Counter()
+
+    def readinto(self, view) -> int:
+        self.places[self.tell()] += 1
+        return super().readinto(view)
+
+
+def unpackings(path, monkeypatch, use) -> set[int]:
+    """How often each chunk is unpacked while `use` has the file, without HDF5's own cache."""
+    with h5py.File(path) as file:
+        stored = file["data"].id
+        offsets = [stored.get_chunk_info(k).byte_offset for k in range(stored.get_num_chunks())]
+    opened = h5py.File
+    with Watched(path) as raw, monkeypatch.context() as patch:
+        patch.setattr(h5py, "File", lambda *_, **__: opened(raw, "r", rdcc_nbytes=0))
+        use()
+        return {raw.places[offset] for offset in offsets}
+
+
+DEEP = np.random.default_rng(9).integers(0, 250, (20, 24, 18)).astype(np.uint8)
+
+
+@pytest.mark.parametrize("axes", ["zyx", "xyz", "czyx"])
+@pytest.mark.parametrize("depth", [1, 4, 8, 20])
+def test_that_each_chunk_is_unpacked_once_however_thin_the_slabs(axes, depth, path, monkeypatch) -> None:
+    """Six slices a chunk, which some of the slabs share and some do not."""
+    array = np.stack([DEEP + 1, DEEP]) if "c" in axes else DEEP
+    array = array.transpose(["czyx".index(axis) - ("c" not in axes) for axis in axes])
+    with h5py.File(path, "w") as file:
+        chunks = tuple({"z": 6, "y": 5, "x": 7, "c": 2}[axis] for axis in axes)
+        file.create_dataset("data", data=array, chunks=chunks, compression="gzip")
+
+    def read() -> None:
+        volume = open_hdf5(path, {"axes": axes, "dataset": "data[1]" if "c" in axes else "data"})
+        parts = [volume.read(z, min(z + depth, 20)) for z in range(0, 20, depth)]
+        volume.close()
+        assert np.array_equal(np.concatenate(parts), DEEP)
+
+    assert unpackings(path, monkeypatch, read) == {1}
+
+
+def test_that_only_what_does_not_fit_the_memory_is_unpacked_again(path, monkeypatch) -> None:
+    """Layers of 6 x 24 x 18 bytes, of which 13 of the 24 rows may be kept: two of four chunks."""
+    with h5py.File(path, "w") as file:
+        file.create_dataset("data", data=DEEP, chunks=(6, 6, 18), compression="gzip")
+
+    def read() -> None:
+        with h5py.File(path) as file:
+            layers = ChunkLayers(file["data"], "zyx", 0, kept_bytes=6 * 13 * 18)
+            assert np.array_equal(np.concatenate([layers.read(z, z + 2) for z in range(0, 20, 2)]), DEEP)
+
+    assert unpackings(path, monkeypatch, read) == {1, 3}

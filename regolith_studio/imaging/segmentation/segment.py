@@ -29,7 +29,7 @@ from regolith_studio.imaging.segmentation.thresholding import (
     span,
 )
 from regolith_studio.imaging.segmentation.tiles import BodySplitter, TileSettings
-from regolith_studio.imaging.slabs import Scratch, SlabSource, read_with_margin, slab_ranges
+from regolith_studio.imaging.slabs import Scratch, SlabSource, slab_ranges, thick_slabs
 from regolith_studio.imaging.volume import Volume
 
 
@@ -183,14 +183,12 @@ def _denoised(source: SlabSource, settings: SegmentationSettings, scratch: Scrat
     keep = how.method == "none" or settings.threshold.method == "probability"
     values = None if keep else scratch.zeros(source.shape, source.dtype)
     seen = Histogram(np.zeros(len(edges) - 1, dtype=np.int64), edges)
-    for done, (first, stop) in enumerate(ranges, start=1):
-        if values is None:
-            slab = source.read(first, stop)
-        else:
-            thick, inner = read_with_margin(source, first, stop, how.margin)
-            slab = denoised(thick, how, noise)[:, :, inner]
-            values[:, :, first:stop] = slab
-        seen = seen + histogram(slab, edges)
+    for done, slab in enumerate(thick_slabs(source, ranges, 0 if keep else how.margin), start=1):
+        smooth = slab.values
+        if values is not None:
+            smooth = denoised(slab.values, how, noise)[:, :, slab.inner]
+            values[:, :, slab.first : slab.stop] = smooth
+        seen = seen + histogram(smooth, edges)
         yield SegmentationProgress("Denoising", done, len(ranges))
     if values is None:
         return source, seen
@@ -199,11 +197,15 @@ def _denoised(source: SlabSource, settings: SegmentationSettings, scratch: Scrat
 
 def _first_look(source: SlabSource) -> tuple[FloatArray, float]:
     """Edges of the histogram's bins, and the noise of the middle slice."""
-    slabs = (finite(source.read(first, stop)) for first, stop in slab_ranges(source.shape))
-    spans = np.array([span(slab) for slab in slabs if slab.size])
-    middle = source.shape[2] // 2
-    lowest, highest = span(spans)
-    return bins_between(lowest, highest, source.dtype), noise_of(source.read(middle, middle + 1))
+    middle, noise, spans = source.shape[2] // 2, 0.0, []
+    for first, stop in slab_ranges(source.shape):
+        slab = source.read(first, stop)
+        if first <= middle < stop:
+            noise = noise_of(slab[:, :, middle - first : middle - first + 1])
+        if (known := finite(slab)).size:
+            spans.append(span(known))
+    lowest, highest = span(np.array(spans))
+    return bins_between(lowest, highest, source.dtype), noise
 
 
 def _numbered(
@@ -211,10 +213,9 @@ def _numbered(
 ) -> Generator[SegmentationProgress, None, Bodies]:
     """Write the provisional numbers of the bodies into `numbers`."""
     counter, ranges = BodyCounter(), slab_ranges(values.shape)
-    for done, (first, stop) in enumerate(ranges, start=1):
-        thick, inner = read_with_margin(values, first, stop, settings.cleaning.margin)
-        mask = cleaned(grain_voxels(thick, level, settings.threshold), settings.cleaning)
-        numbers[:, :, first:stop] = counter.numbered(mask[:, :, inner], first)
+    for done, slab in enumerate(thick_slabs(values, ranges, settings.cleaning.margin), start=1):
+        mask = cleaned(grain_voxels(slab.values, level, settings.threshold), settings.cleaning)
+        numbers[:, :, slab.first : slab.stop] = counter.numbered(mask[:, :, slab.inner], slab.first)
         yield SegmentationProgress("Finding bodies", done, len(ranges))
     return counter.finish()
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
+from regolith_studio.readers.chunk_layers import ChunkLayers
 from regolith_studio.readers.hdf5_contents import (
     Candidate,
     candidates_in,
@@ -28,36 +29,23 @@ from regolith_studio.readers.volume_format import (
 )
 
 LARGEST_CHUNK = 1 << 29
-_CACHE = 1 << 26
 
 
 class Hdf5Voxels:
-    """A dataset whose slices are read chunk by chunk."""
+    """A dataset whose slices are read layer of chunks by layer of chunks."""
 
     def __init__(self, file: Any, dataset: Any, candidate: Candidate, header: VoxelHeader) -> None:
         self.header = header
-        self.layer = _layer(dataset, candidate)
-        self._file, self._dataset, self._candidate = file, dataset, candidate
+        self._file, self._layers = file, ChunkLayers(dataset, candidate.axes, candidate.channel)
+        self.layer = self._layers.depth
 
     def read(self, z0: int, z1: int) -> NDArray[Any]:
         """Slices z0 to z1, shape (z1 - z0, ny, nx)."""
-        axes = self._candidate.axes
-        picked = {
-            "z": slice(z0, z1),
-            "y": slice(None),
-            "x": slice(None),
-            "c": self._candidate.channel,
-            "t": 0,
-        }
         try:
-            part = self._dataset[tuple(picked[axis] for axis in axes)]
+            part = self._layers.read(z0, z1)
         except (OSError, ValueError, RuntimeError):
             raise FileError(f"is damaged: its slices {z0 + 1} to {z1} cannot be unpacked.") from None
-        kept = [axis for axis in axes if axis in "zyx"]
-        if "z" not in kept:
-            part, kept = part[np.newaxis], ["z", *kept]
-        turned = part.transpose([kept.index(axis) for axis in "zyx"])
-        return np.ascontiguousarray(turned, dtype=self.header.dtype)
+        return np.ascontiguousarray(part, dtype=self.header.dtype)
 
     def close(self) -> None:
         """Let go of the file."""
@@ -76,7 +64,7 @@ def open_hdf5(path: Path, options: Mapping[str, Any]) -> Hdf5Voxels:
 
     file: Any = None
     try:
-        file = h5py.File(path, "r", locking=False, rdcc_nbytes=_CACHE)
+        file = h5py.File(path, "r", locking=False)
         return _chosen(file, options.get("dataset"), str(options.get("axes") or ""))
     except Exception as error:
         if file is not None:
@@ -128,13 +116,6 @@ def _candidate(candidates: list[Candidate], wanted: Any) -> Candidate:
 def _check_chunks(dataset: Any) -> None:
     if dataset.chunks and prod(dataset.chunks) * dataset.dtype.itemsize > LARGEST_CHUNK:
         raise FileError("is packed in chunks of more than 0.5 GiB; save it with smaller ones.")
-
-
-def _layer(dataset: Any, candidate: Candidate) -> int:
-    """Slices that are best read together: the depth of a chunk."""
-    if not dataset.chunks or "z" not in candidate.axes:
-        return 1
-    return int(dataset.chunks[candidate.axes.index("z")])
 
 
 def _prepare() -> None:
