@@ -1,15 +1,45 @@
 """Intersection of half-spaces by dual incremental insertion: vertices as triples of planes."""
 
+from typing import NamedTuple
+
 import numpy as np
+from numpy.typing import NDArray
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.compiled import kernel
+from regolith_studio.geometry.compiled import kernel, leaf
+from regolith_studio.geometry.vectors import Vector, cross, dot, row
 
 REACH = 40.0
 """Polyhedra that reach farther than this many times their largest offset count as unbounded."""
 
 FINE, UNBOUNDED, DEGENERATE = 0, 1, 2
 """Status of an intersection."""
+
+PlaceArray = NDArray[np.uint32]
+"""Numbers of places and planes: unsigned, so that compiled code need not ask for negative ones."""
+HEIGHT = 3
+DEAD, FREE = 0, 1
+
+
+class Work(NamedTuple):
+    """Memory of one intersection; a vertex lives in a place that is used again when it has been cut off.
+
+    Parameters
+    ----------
+    place
+        Coordinates, and the height above the present plane: NaN where nobody lives, shape (4, places).
+    planes
+        Of the vertex in each place, shape (places, 3).
+    owner
+        Place of the vertex that owns the planes (a, b), shape (n + 4, n + 4).
+    lists
+        Places above the present plane, and those that are free, shape (2, places).
+    """
+
+    place: FloatArray
+    planes: PlaceArray
+    owner: PlaceArray
+    lists: PlaceArray
 
 
 @kernel
@@ -37,128 +67,151 @@ def intersect(normals: FloatArray, offsets: FloatArray) -> tuple[int, FloatArray
     """
     n = len(offsets)
     capacity = 4 * (n + 4) + 8
-    xyz = np.empty((capacity, 3))
-    planes = np.empty((capacity, 3), np.int64)
-    above = np.empty(capacity)
-    alive = np.zeros(capacity, np.bool_)
-    owner = np.full((n + 4, n + 4), -1, np.int64)
-    free = np.empty(capacity, np.int64)
-    dead = np.empty(capacity, np.int64)
-    used, n_free = start(xyz, planes, alive, owner, n, REACH * offsets.max()), 0
+    work = Work(
+        np.empty((4, capacity + 1)),
+        np.empty((capacity + 1, 3), np.uint32),
+        np.empty((n + 4, n + 4), np.uint32),
+        np.empty((2, capacity), np.uint32),
+    )
+    vertices, triples = np.empty((2 * n, 3)), np.empty((2 * n, 3), np.int64)
+    status, count = cut_out(normals, offsets, REACH * offsets.max(), work, vertices, triples)
+    return status, vertices[:count].copy(), triples[:count].copy()
+
+
+@leaf
+def cut_out(
+    normals: FloatArray,
+    offsets: FloatArray,
+    reach: float,
+    work: Work,
+    vertices: FloatArray,
+    triples: IntArray,
+) -> tuple[int, int]:
+    """Fill vertices (2 n, 3) and triples (2 n, 3); the status, and how many there are."""
+    place, planes, owner, lists = work
+    n, nobody = len(offsets), np.uintp(place.shape[1] - 1)
+    used, n_free = begun(work, n, reach), np.uintp(0)
     for j in range(n):
-        n_dead = 0
-        for v in range(used):
-            if alive[v]:
-                above[v] = (
-                    normals[j, 0] * xyz[v, 0]
-                    + normals[j, 1] * xyz[v, 1]
-                    + normals[j, 2] * xyz[v, 2]
-                    - offsets[j]
-                )
-                if above[v] > 0.0:
-                    dead[n_dead] = v
-                    n_dead += 1
+        n_dead = above_plane(place, used, row(normals, j), offsets[j], lists)
         for i in range(n_dead):
-            alive[dead[i]] = False
-        for i in range(n_dead):
-            v = dead[i]
+            v = np.uintp(lists[DEAD, i])
             for k in range(3):
-                a, b = planes[v, k], planes[v, (k + 1) % 3]
-                u = owner[b, a]
-                if not alive[u]:
+                a, b = np.uintp(planes[v, k]), np.uintp(planes[v, (k + 1) % 3])
+                u = np.uintp(owner[b, a])
+                if not place[HEIGHT, u] <= 0.0:
                     continue
                 if n_free > 0:
-                    n_free -= 1
-                    w = free[n_free]
-                elif used < capacity:
-                    w = used
+                    n_free -= np.uintp(1)
+                    w = np.uintp(lists[FREE, n_free])
+                elif used < nobody:
+                    w = np.uintp(used)
                     used += 1
                 else:
-                    return DEGENERATE, np.empty((0, 3)), np.empty((0, 3), np.int64)
-                t = above[u] / (above[u] - above[v])
+                    return DEGENERATE, 0
+                t = place[HEIGHT, u] / (place[HEIGHT, u] - place[HEIGHT, v])
                 for c in range(3):
-                    xyz[w, c] = xyz[u, c] + t * (xyz[v, c] - xyz[u, c])
+                    place[c, w] = place[c, u] + t * (place[c, v] - place[c, u])
+                place[HEIGHT, w] = 0.0
                 planes[w, 0], planes[w, 1], planes[w, 2] = a, b, j
-                owner[a, b] = w
-                owner[b, j] = w
-                owner[j, a] = w
-                alive[w] = True
-                above[w] = 0.0
+                owner[a, b] = owner[b, j] = owner[j, a] = w
         for i in range(n_dead):
-            free[n_free] = dead[i]
-            n_free += 1
-    return collected(normals, offsets, xyz, planes, alive, owner, used)
+            v = np.uintp(lists[DEAD, i])
+            place[0, v] = place[HEIGHT, v] = np.nan
+            lists[FREE, n_free] = v
+            n_free += np.uintp(1)
+    return collected(normals, offsets, work, used, vertices, triples)
 
 
-@kernel
-def start(xyz: FloatArray, planes: IntArray, alive, owner: IntArray, n: int, reach: float) -> int:  # type: ignore[no-untyped-def]
-    """The first tetrahedron, with planes n .. n + 3 at distance `reach`; its four vertices."""
-    corner = np.array([[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]])
-    triple = np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]])
+@leaf
+def above_plane(place: FloatArray, used: int, normal: Vector, offset: float, lists: PlaceArray) -> int:
+    """Heights of all vertices above a plane; those above 0 are listed as dead, and counted."""
+    for v in range(used):
+        place[HEIGHT, v] = (
+            normal[0] * place[0, v] + normal[1] * place[1, v] + normal[2] * place[2, v] - offset
+        )
+    count = np.uintp(0)
+    for v in range(used):
+        lists[DEAD, count] = v
+        count += np.uintp(place[HEIGHT, v] > 0.0)
+    return count  # type: ignore[return-value]
+
+
+@leaf
+def begun(work: Work, n: int, reach: float) -> int:
+    """The first tetrahedron, with planes n .. n + 3 at distance `reach`; its four vertices.
+
+    The last place belongs to nobody and counts as dead.
+    """
+    place, planes, owner, _ = work
+    nobody = place.shape[1] - 1
+    place[0, nobody] = place[HEIGHT, nobody] = np.nan
+    for a in range(n + 4):
+        for b in range(n + 4):
+            owner[a, b] = nobody
+    far = reach * np.sqrt(3.0)
     for v in range(4):
         for c in range(3):
-            xyz[v, c] = corner[v, c] * reach * np.sqrt(3.0)
-            planes[v, c] = n + triple[v, c]
-        alive[v] = True
-        for k in range(3):
-            owner[planes[v, k], planes[v, (k + 1) % 3]] = v
+            place[c, v] = far if v in (0, c + 1) else -far
+    for v, triple in enumerate(((1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1))):
+        a, b, c = n + triple[0], n + triple[1], n + triple[2]
+        planes[v, 0], planes[v, 1], planes[v, 2] = a, b, c
+        owner[a, b] = owner[b, c] = owner[c, a] = v
     return 4
 
 
-@kernel
-def collected(  # type: ignore[no-untyped-def]
+@leaf
+def collected(
+    normals: FloatArray, offsets: FloatArray, work: Work, used: int, vertices: FloatArray, triples: IntArray
+) -> tuple[int, int]:
+    """Living vertices, refined against their planes; the bookkeeping is checked by Euler's formula."""
+    place, planes, owner, _ = work
+    n, count, facets = len(offsets), 0, 0
+    for v in range(used):
+        if not place[HEIGHT, v] <= 0.0:
+            continue
+        if count == len(triples):
+            return DEGENERATE, 0
+        for k in range(3):
+            a, b = np.uintp(planes[v, k]), np.uintp(planes[v, (k + 1) % 3])
+            if a >= n:
+                return UNBOUNDED, 0
+            if owner[a, b] != v or not place[HEIGHT, np.uintp(owner[b, a])] <= 0.0:
+                return DEGENERATE, 0
+            triples[count, k] = a
+        refine(normals, offsets, planes, place, v, vertices, count)
+        count += 1
+    for i in range(n):
+        owner[0, i] = 1
+    for v in range(count):
+        for k in range(3):
+            facets += owner[0, triples[v, k]]
+            owner[0, triples[v, k]] = 0
+    return (FINE, count) if count == 2 * facets - 4 else (DEGENERATE, 0)
+
+
+@leaf
+def refine(
     normals: FloatArray,
     offsets: FloatArray,
-    xyz: FloatArray,
-    planes: IntArray,
-    alive,
-    owner: IntArray,
-    used: int,
-) -> tuple[int, FloatArray, IntArray]:
-    """Living vertices, refined against their planes; the bookkeeping is checked by Euler's formula."""
-    n = len(offsets)
-    vertices = np.empty((used, 3))
-    triples = np.empty((used, 3), np.int64)
-    real = np.zeros(n, np.bool_)
-    count = 0
-    for v in range(used):
-        if not alive[v]:
-            continue
-        for k in range(3):
-            a, b = planes[v, k], planes[v, (k + 1) % 3]
-            if a >= n:
-                return UNBOUNDED, vertices[:0], triples[:0]
-            partner = owner[b, a]
-            if owner[a, b] != v or partner < 0 or not alive[partner]:
-                return DEGENERATE, vertices[:0], triples[:0]
-            real[a] = True
-            triples[count, k] = a
-        refine(normals, offsets, planes[v], xyz[v], vertices[count])
-        count += 1
-    if count != 2 * np.sum(real) - 4:
-        return DEGENERATE, vertices[:0], triples[:0]
-    return FINE, vertices[:count].copy(), triples[:count].copy()
-
-
-@kernel
-def refine(
-    normals: FloatArray, offsets: FloatArray, triple: IntArray, guess: FloatArray, out: FloatArray
+    planes: PlaceArray,
+    place: FloatArray,
+    v: int,
+    out: FloatArray,
+    to: int,
 ) -> None:
-    """One Newton step towards the common point of three planes."""
-    a, b, c = normals[triple[0]], normals[triple[1]], normals[triple[2]]
-    bc0, bc1, bc2 = b[1] * c[2] - b[2] * c[1], b[2] * c[0] - b[0] * c[2], b[0] * c[1] - b[1] * c[0]
-    ca0, ca1, ca2 = c[1] * a[2] - c[2] * a[1], c[2] * a[0] - c[0] * a[2], c[0] * a[1] - c[1] * a[0]
-    ab0, ab1, ab2 = a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
-    det = a[0] * bc0 + a[1] * bc1 + a[2] * bc2
-    out[0], out[1], out[2] = guess[0], guess[1], guess[2]
+    """One Newton step from place v towards the common point of its three planes, into row `to` of `out`."""
+    i, j, k = planes[v, 0], planes[v, 1], planes[v, 2]
+    a, b, c, at = row(normals, i), row(normals, j), row(normals, k), (place[0, v], place[1, v], place[2, v])
+    bc, ca, ab = cross(b, c), cross(c, a), cross(a, b)
+    det = dot(a, bc)
+    out[to, 0], out[to, 1], out[to, 2] = at
     if abs(det) < 1e-9:
         return
-    ra = (offsets[triple[0]] - a[0] * guess[0] - a[1] * guess[1] - a[2] * guess[2]) / det
-    rb = (offsets[triple[1]] - b[0] * guess[0] - b[1] * guess[1] - b[2] * guess[2]) / det
-    rc = (offsets[triple[2]] - c[0] * guess[0] - c[1] * guess[1] - c[2] * guess[2]) / det
-    out[0] += ra * bc0 + rb * ca0 + rc * ab0
-    out[1] += ra * bc1 + rb * ca1 + rc * ab1
-    out[2] += ra * bc2 + rb * ca2 + rc * ab2
+    ra = (offsets[i] - a[0] * at[0] - a[1] * at[1] - a[2] * at[2]) / det
+    rb = (offsets[j] - b[0] * at[0] - b[1] * at[1] - b[2] * at[2]) / det
+    rc = (offsets[k] - c[0] * at[0] - c[1] * at[1] - c[2] * at[2]) / det
+    for d in range(3):
+        out[to, d] += ra * bc[d] + rb * ca[d] + rc * ab[d]
 
 
 @kernel

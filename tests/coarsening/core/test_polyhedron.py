@@ -60,6 +60,22 @@ def test_that_a_plane_outside_of_everything_bounds_no_facet() -> None:
     assert area[:6] == pytest.approx(4.0)
 
 
+@pytest.mark.parametrize("seed", range(6))
+def test_that_planes_that_tie_bound_the_polyhedron_of_qhull_or_nothing(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    for _ in range(50):
+        normals = rng.integers(-1, 2, size=(rng.integers(6, 30), 3)).astype(float)
+        normals[~normals.any(axis=1)] = [0.0, 0.0, 1.0]
+        normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+        offsets = rng.choice([0.8, 1.0, 1.1], len(normals))
+        status, vertices, triples = intersect(normals, offsets)
+        if status != FINE:
+            assert len(vertices) == len(triples) == 0
+            continue
+        hull = ConvexHull(HalfspaceIntersection(np.c_[normals, -offsets], np.zeros(3)).intersections)
+        assert volume_and_area(normals, offsets) == pytest.approx((hull.volume, hull.area), rel=1e-9)
+
+
 def test_that_the_compiled_kernel_is_its_python_reference() -> None:
     normals, offsets = random_planes(15, 2)
     for mine, reference in zip(intersect(normals, offsets), intersect.py_func(normals, offsets), strict=True):
