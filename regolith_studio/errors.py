@@ -12,6 +12,11 @@ The message of each is one plain sentence: what is wrong, with which value, and 
 right. Wrong use by a programmer stays a ``ValueError`` or ``TypeError``.
 """
 
+import json
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any
+
 
 class RegolithError(Exception):
     """Base of everything that reaches the user as one sentence."""
@@ -45,3 +50,90 @@ def of_the_system(error: OSError) -> str:
     """What the operating system has refused, a full disk say, in a sentence."""
     place = error.filename or "the files"
     return f"The system does not let the program go on with {place} ({error.strerror or error})."
+
+
+_MUST = {
+    "missing": "is missing",
+    "extra_forbidden": "is not known here",
+    "string_type": "must be text",
+    "int_type": "must be a whole number",
+    "int_parsing": "must be a whole number",
+    "int_parsing_size": "must be a smaller whole number",
+    "int_from_float": "must be a whole number",
+    "float_type": "must be a number",
+    "float_parsing": "must be a number",
+    "finite_number": "must be a finite number",
+    "bool_type": "must be true or false",
+    "bool_parsing": "must be true or false",
+    "list_type": "must be a list in [ ]",
+    "tuple_type": "must be a list in [ ]",
+    "dict_type": "must be named values in {{ }}",
+    "model_type": "must be named values in {{ }}",
+    "model_attributes_type": "must be named values in {{ }}",
+    "none_required": "must be left out or null",
+    "literal_error": "must be {expected}",
+    "enum": "must be {expected}",
+    "greater_than": "must be more than {gt:g}",
+    "greater_than_equal": "must be at least {ge:g}",
+    "less_than": "must be less than {lt:g}",
+    "less_than_equal": "must be at most {le:g}",
+    "too_short": "is too short: it has {actual_length} of at least {min_length} entries",
+    "too_long": "is too long: it has {actual_length} entries, and at most {max_length} are allowed",
+    "string_too_short": "must have {min_length} letters or more",
+    "string_too_long": "must have {max_length} letters or fewer",
+    "string_pattern_mismatch": "has letters or a form that are not allowed there",
+    "value_error": "{error}",
+}
+"""Plain words for pydantic's kinds of error, by their names."""
+
+_SHOW_NO_VALUE = ("missing", "extra_forbidden", "too_short", "too_long", "value_error")
+_KIND_OF_A_UNION = re.compile(r"(str|int|float|bool|list|dict|tuple|none)$|.*[\[(]|[A-Z]")
+_LONGEST_VALUE = 40
+
+
+def of_the_entry(problems: Sequence[Mapping[str, Any]]) -> str:
+    """Words for the entry of a document that pydantic refuses: where it stands, and what it must be.
+
+    Parameters
+    ----------
+    problems
+        What its ``ValidationError.errors()`` returns. Where an entry may be of several kinds, the kind
+        whose inner entries are complained of is taken for the one that was meant.
+    """
+    first = problems[0]
+    near = [each for each in problems if each["loc"][:2] == first["loc"][:2]]
+    problem = max(near, key=lambda each: len(each["loc"]))
+    kind, given = str(problem["type"]), problem.get("ctx", {})
+    if kind == "json_invalid":
+        return _where_json_ends(str(given.get("error", "")))
+    place = _place(problem["loc"])
+    words = _MUST.get(kind, f"cannot be used ({problem['msg']})").format_map({"expected": "", **given})
+    if kind == "value_error":
+        return words if not place else f"{place}: {words[:1].lower()}{words[1:]}"
+    value = "" if kind in _SHOW_NO_VALUE else f", not {_shown(problem.get('input'))}"
+    return f"{place or 'the whole of it'} {words}{value}"
+
+
+def _where_json_ends(said: str) -> str:
+    """Where a parser stopped; `said` ends in ``at line 3 column 5``."""
+    found = re.search(r"line (\d+) column (\d+)", said)
+    if found is None or found.groups() in (("1", "0"), ("0", "0")):
+        return "it is empty, or no JSON"
+    return f"it is no proper JSON from line {found[1]}, sign {found[2]} on"
+
+
+def _place(parts: Sequence[str | int]) -> str:
+    """``inputs[0].unit``; which kind of a union was tried is left out."""
+    place = ""
+    for number, part in enumerate(parts):
+        if isinstance(part, int):
+            place += f"[{part}]"
+        elif number == 0 or not _KIND_OF_A_UNION.match(part):
+            place += f".{part}" if place else part
+    return place
+
+
+def _shown(value: Any) -> str:
+    text = json.dumps(value, ensure_ascii=False, default=str)
+    text = "".join(sign if sign.isprintable() else "?" for sign in text)
+    return text if len(text) <= _LONGEST_VALUE else f"{text[: _LONGEST_VALUE - 1]}…"

@@ -19,7 +19,7 @@ from regolith_studio.dataset.migrations import migrated
 from regolith_studio.dataset.schema import FORMAT, SCHEMA_VERSION, DatasetDocument, RepresentativeRecord
 from regolith_studio.dataset.size_distribution import Weighting
 from regolith_studio.dataset.strict_json import strict_json, tidy_json
-from regolith_studio.errors import DatasetError, RegolithError
+from regolith_studio.errors import DatasetError, RegolithError, of_the_entry
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.particle import Source
@@ -99,7 +99,9 @@ def parsed_document(text: str, where: str) -> DatasetDocument:
     try:
         return DatasetDocument.model_validate_json(text)
     except ValidationError as error:
-        raise DatasetError(f"{where} breaks the schema: {_first(error)}.") from error
+        raise DatasetError(
+            f"{where} breaks the schema: {of_the_entry(error.errors(include_url=False))}."
+        ) from error
 
 
 def dataset_of(document: DatasetDocument, where: str) -> Dataset:
@@ -216,12 +218,3 @@ def _plain(fields: dict[str, Any]) -> dict[str, Any]:
 
 def _number(value: Any) -> Any:
     return value.item() if isinstance(value, np.generic) else value
-
-
-def _first(error: ValidationError) -> str:
-    """Place and reason of the first of a validation's errors."""
-    first = error.errors(include_url=False)[0]
-    place = ""
-    for part in first["loc"]:
-        place += f"[{part}]" if isinstance(part, int) else f".{part}" if place else part
-    return f"{place or 'the whole'}: {first['msg']}"

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from regolith_studio.errors import FileError, InputError
+from regolith_studio.errors import FileError
 from regolith_studio.harmonics.coefficients import CONVENTION
 from regolith_studio.model.models import MODELS
 from regolith_studio.model.protocol import FittedModel
@@ -69,7 +69,5 @@ def model_from(document: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]], 
         if key not in MODELS:
             raise FileError(f"There is no model called {key!r}, only {', '.join(MODELS)}.")
         return MODELS[key].restored(values, arrays)
-    except FileError:
-        raise
-    except (KeyError, TypeError, ValueError, AttributeError, InputError) as error:
-        raise FileError(f"The model is broken: {error}.") from error
+    except (KeyError, TypeError, ValueError, AttributeError, LookupError) as error:
+        raise FileError("The numbers in it make no model of its kind; fit it again.") from error

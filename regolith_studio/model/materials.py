@@ -15,7 +15,7 @@ from typing import Annotated, Self
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from regolith_studio.errors import FileError, InputError
+from regolith_studio.errors import FileError, InputError, of_the_entry
 from regolith_studio.model.models.log_field import LogField, LogFieldModel, LogFieldSettings
 from regolith_studio.model.sample import Sample
 from regolith_studio.model.size_law import LogNormalSizes
@@ -74,7 +74,9 @@ class MaterialCard(BaseModel):
                 ),
             )
         except ValidationError as error:
-            raise InputError(f"The sample makes no card: {_first(error)}.") from error
+            raise InputError(
+                f"The sample makes no card: {of_the_entry(error.errors(include_url=False))}."
+            ) from error
 
     def model(self, l_max: int = 10) -> LogField:
         """The field in ln r of the material.
@@ -131,7 +133,9 @@ def card_from(content: bytes, name: str) -> MaterialCard:
     try:
         return MaterialCard.model_validate_json(content)
     except ValidationError as error:
-        raise FileError(f"{name} is no material card: {_first(error)}.") from error
+        raise FileError(
+            f"{name} is no material card: {of_the_entry(error.errors(include_url=False))}."
+        ) from error
 
 
 def write_card(card: MaterialCard, path: Path) -> Path:
@@ -143,9 +147,3 @@ def write_card(card: MaterialCard, path: Path) -> Path:
 
 def _rounded(value: float) -> float:
     return float(f"{value:.3g}")
-
-
-def _first(error: ValidationError) -> str:
-    first = error.errors()[0]
-    place = ".".join(str(part) for part in first["loc"]) or "the file"
-    return f"{place}: {first['msg']}"

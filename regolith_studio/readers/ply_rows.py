@@ -203,7 +203,7 @@ def _take_list(
     end = place + 1 + count
     if count < 0 or end > len(words):
         raise FileError(
-            f"is not a proper PLY: row {len(sizes):,} of “{element.name}” promises “{p.name}” with "
+            f"is not a proper PLY: row {len(sizes):,} of “{element.name}” promises “{p.name[:30]}” with "
             f"{count:,} values, and the file ends before."
         )
     values += [float(word) for word in words[place + 1 : end]]

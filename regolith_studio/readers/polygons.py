@@ -5,6 +5,8 @@ from numpy.typing import NDArray
 
 LARGEST_EARED = 2000
 """Concave polygons with more corners are cut fan-wise: ear clipping takes quadratic time."""
+MOST_TRIALS = 20_000
+"""Corners of one polygon that are looked at; the ears of simple ones are found long before."""
 
 
 def triangulated(
@@ -58,14 +60,24 @@ def _concave(points: NDArray[np.float64]) -> NDArray[np.bool_]:
 
 
 def _ears(points: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Ear clipping of one polygon, shape (size, 3), in the plane of its Newell normal."""
+    """Ear clipping of one polygon, shape (size, 3), in the plane of its Newell normal.
+
+    Each search begins where the last ear was. A polygon without ears crosses itself; the rest of it is cut
+    fan-wise.
+    """
     flat = _in_its_plane(points)
     ring, triangles = list(range(len(flat))), []
-    while len(ring) > 3:
-        ear = next((place for place in range(len(ring)) if _is_ear(flat, ring, place)), 0)
-        triangles.append((ring[ear - 1], ring[ear], ring[(ear + 1) % len(ring)]))
-        del ring[ear]
-    return np.array([*triangles, tuple(ring)], dtype=np.int64)
+    place = misses = trials = 0
+    while len(ring) > 3 and misses < len(ring) and trials < MOST_TRIALS:
+        place, trials = place % len(ring), trials + 1
+        if not _is_ear(flat, ring, place):
+            place, misses = place + 1, misses + 1
+            continue
+        triangles.append((ring[place - 1], ring[place], ring[(place + 1) % len(ring)]))
+        del ring[place]
+        misses = 0
+    rest = [(ring[0], ring[i], ring[i + 1]) for i in range(1, len(ring) - 1)]
+    return np.array(triangles + rest, dtype=np.int64)
 
 
 def _in_its_plane(points: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError, InputError
 from regolith_studio.harmonics import files as fit_files
@@ -22,11 +21,16 @@ from regolith_studio.model.sample import Sample
 from regolith_studio.model.sphere_grid import sphere_grid
 from regolith_studio.readers.npz import read_bytes, read_npz
 from regolith_studio.readers.sentences import sentence_about
+from regolith_studio.readers.shape_documents import FitDocument, ModelDocument, check_document
 from regolith_studio.readers.units import unit_factor
 
 LARGEST_TEXT = 512 * 1024**2
 REFERENCE_DEGREE = 60
 """Degree of the grid on which a radius is put together that was expanded over an ellipsoid's."""
+
+_NO_SOURCE = (
+    "is no fit, no model of shapes and no material card; “regolith-studio fit” makes a fit of meshes."
+)
 
 
 @dataclass(frozen=True)
@@ -78,18 +82,16 @@ def read_shape_source(text: str) -> ShapeSource:
     kind = document.get("format")
     try:
         if kind == fit_files.FORMAT:
-            arrays, _ = read_npz(path.with_suffix(".npz"))
-            return _sample(path, document, arrays, found)
+            return _sample(path, document, found)
         if kind == model_files.FORMAT:
-            arrays, digest = read_npz(path.with_suffix(".npz"))
-            return ShapeSource(model_files.model_from(document, arrays, digest), path.stem, found)
+            return ShapeSource(_model(path, document), path.stem, found)
         if "relative_amplitudes" in document:
             return ShapeSource(_in_micrometres(card_from(content, path.name)), path.stem, found)
     except FileError:
         raise
     except InputError as error:
-        raise FileError(sentence_about(path, f"cannot be used: {error}")) from None
-    raise FileError(sentence_about(path, "is no fit, no model of shapes and no material card."))
+        raise FileError(sentence_about(path, f"cannot be used: {_lower(str(error))}")) from None
+    raise FileError(sentence_about(path, _NO_SOURCE))
 
 
 def radius_of(fit: HarmonicFit) -> ShCoefficients:
@@ -107,30 +109,61 @@ def _text_file(path: Path) -> Path:
 
 
 def _document(path: Path, content: bytes) -> Mapping[str, Any]:
+    if not content:
+        raise FileError(sentence_about(path, "is empty: it has no bytes at all."))
     try:
         document = json.loads(content)
+    except json.JSONDecodeError as error:
+        place = f"line {error.lineno}, sign {error.colno}"
+        raise FileError(
+            sentence_about(path, f"is not JSON, or is cut short: it breaks in {place}.")
+        ) from None
     except (ValueError, RecursionError):
         raise FileError(sentence_about(path, "is not JSON.")) from None
     if not isinstance(document, dict):
-        raise FileError(sentence_about(path, "is no fit, no model of shapes and no material card."))
+        raise FileError(sentence_about(path, _NO_SOURCE))
     return document
 
 
-def _sample(
-    path: Path, document: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]], digest: str
-) -> ShapeSource:
+def _sample(path: Path, document: Mapping[str, Any], digest: str) -> ShapeSource:
+    check_document(FitDocument, document, path, "fit")
+    arrays, _ = read_npz(path.with_suffix(".npz"))
+    if not {"coefficients", "star_points"} <= arrays.keys():
+        raise FileError(
+            sentence_about(path, "is a broken fit: its NPZ file holds other arrays than a fit's.")
+        )
     try:
         fits = fit_files.fits_from(document, arrays)
-        unit = str(document["unit"])
-        factor = unit_factor(unit)
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
-        raise FileError(sentence_about(path, f"is a broken fit: {error!r}.")) from None
+    except (KeyError, TypeError, ValueError):
+        said = "is a broken fit: the arrays in its NPZ file are not of the shape or type that a fit has."
+        raise FileError(sentence_about(path, said)) from None
     if not fits:
-        raise FileError(sentence_about(path, "holds no particle."))
-    rows = np.stack([radius_of(fit).values for fit in fits.values()]) * factor
+        raise FileError(sentence_about(path, "is a fit without a particle."))
+    reached, stated = next(iter(fits.values())).l_max, document["l_max"]
+    if reached != stated:
+        said = (
+            f"is a broken fit: it says l_max = {stated}, and its NPZ file has coefficients up to {reached}."
+        )
+        raise FileError(sentence_about(path, said))
+    rows = np.stack([radius_of(fit).values for fit in fits.values()]) * unit_factor(document["unit"])
     expanded = sum(fit.reference is not None for fit in fits.values())
     note = f"{expanded} of {len(fits)} fits are over an ellipsoid; their radii were expanded again."
     return ShapeSource(Sample(rows, tuple(fits)), path.stem, digest, (note,) if expanded else ())
+
+
+def _model(path: Path, document: Mapping[str, Any]) -> FittedModel:
+    check_document(ModelDocument, document, path, "model")
+    arrays, digest = read_npz(path.with_suffix(".npz"))
+    try:
+        model = model_files.model_from(document, arrays, digest)
+        unit_factor(model.unit)
+    except InputError as error:
+        raise FileError(sentence_about(path, f"is a broken model: {_lower(str(error))}")) from None
+    return model
+
+
+def _lower(sentence: str) -> str:
+    return sentence[0].lower() + sentence[1:]
 
 
 def _in_micrometres(card: MaterialCard) -> MaterialCard:

@@ -1,5 +1,6 @@
 """The child's part of reading volumes: opens one at a time, keeps it open, hands over its slices."""
 
+import math
 from pathlib import Path
 from typing import Any
 
@@ -11,11 +12,20 @@ from regolith_studio.readers.formats import mesh_suffixes
 from regolith_studio.readers.plain_voxels import PlainVoxels
 from regolith_studio.readers.protocol import Message
 from regolith_studio.readers.sentences import printable, sentence_about
-from regolith_studio.readers.volume_format import OpenVolume, VolumeFormat, checked_header
+from regolith_studio.readers.units import UNITS
+from regolith_studio.readers.volume_format import (
+    OpenVolume,
+    Sizes,
+    VolumeFormat,
+    VoxelHeader,
+    checked_header,
+)
 from regolith_studio.readers.volume_formats import volume_formats, volume_suffixes
 
 WITH_AXES = ("npy", "hdf5")
 """Formats whose axes may be stated: they keep arrays and need not say which index is which."""
+SMALLEST_EDGE, LARGEST_EDGE, MOST_SLENDER = 1e-5, 1e6, 1e4
+"""Micrometres that the edge of a voxel can have, from atoms to a metre, and how far two may differ."""
 _HEAD = 1024
 _opened: dict[str, tuple[OpenVolume, VolumeFormat]] = {}
 """At most one volume, by the request that opened it."""
@@ -132,21 +142,40 @@ def _open_one(request: dict[str, Any]) -> tuple[OpenVolume, VolumeFormat]:
 
 def _as_json(volume: OpenVolume, row: VolumeFormat, notes: tuple[str, ...]) -> dict[str, Any]:
     header = volume.header
+    size, doubts = _believable(header)
     return {
         "format": row.key,
         "label": row.label,
         "shape": header.shape,
         "dtype": header.dtype.str,
-        "voxel_size": header.voxel_size,
+        "voxel_size": size,
         "unit": header.unit,
         "kind": header.kind,
-        "notes": notes + header.notes,
+        "notes": notes + header.notes + doubts,
         "datasets": [(entry.name, entry.shape, entry.dtype) for entry in header.datasets],
         "dataset": header.dataset,
         "plain": volume.plain() if isinstance(volume, PlainVoxels) else None,
         "in_order": bool(getattr(volume, "in_order", False)),
         "layer": int(getattr(volume, "layer", 1)),
     }
+
+
+def _believable(header: VoxelHeader) -> tuple[Sizes | None, tuple[str, ...]]:
+    """The stated edges of a voxel, unless no scan can have them; then a sentence says so."""
+    size, unit = header.voxel_size, header.unit
+    if size is None:
+        return None, ()
+    factor = UNITS.get(unit or "", math.nan)
+    slim = max(size) > MOST_SLENDER * min(size)
+    if not slim and not any(
+        not SMALLEST_EDGE <= edge * factor <= LARGEST_EDGE for edge in size if factor > 0
+    ):
+        return size, ()
+    shown = " × ".join(f"{edge:.3g}" for edge in size)
+    return None, (
+        f"The file says that a voxel is {shown} {unit or ''}".rstrip()
+        + ", which no scan has; give the size of a voxel.",
+    )
 
 
 def _little(voxels: NDArray[Any]) -> NDArray[Any]:

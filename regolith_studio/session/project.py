@@ -7,7 +7,7 @@ from typing import Any, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from regolith_studio.errors import FileError
+from regolith_studio.errors import FileError, of_the_entry
 from regolith_studio.model.protocol import FittedModel
 from regolith_studio.session.outputs.staging import write_bytes
 from regolith_studio.session.portrait import Portrait
@@ -93,8 +93,8 @@ def read_project(path: Path) -> Project:
     except OSError as error:
         raise FileError(f"The project {path} cannot be read ({error.strerror}).") from error
     except ValidationError as error:
-        where = ".".join(str(part) for part in error.errors(include_url=False)[0]["loc"]) or "the file"
-        raise FileError(f"{path} is not a project of this program; look at {where}.") from error
+        reason = of_the_entry(error.errors(include_url=False))
+        raise FileError(f"{path} is not a project of this program: {reason}.") from error
 
 
 def inputs_of(session: Session) -> list[str]:

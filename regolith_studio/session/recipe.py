@@ -8,7 +8,7 @@ from pydantic import Field, ValidationError, model_validator
 
 from regolith_studio.coarsening.coarsen import DEFAULT_METHOD, DEFAULT_PRESET
 from regolith_studio.coarsening.weights import LossWeights
-from regolith_studio.errors import FileError, InputError
+from regolith_studio.errors import FileError, InputError, of_the_entry
 from regolith_studio.harmonics.expansion import USUAL
 from regolith_studio.session.choices import Choices, Scalar
 from regolith_studio.session.recipe_dataset import Exports, Representatives
@@ -173,7 +173,9 @@ def read_recipe(path: Path) -> Recipe:
     except OSError as error:
         raise FileError(f"The recipe {path} cannot be read ({error.strerror}).") from error
     except ValidationError as error:
-        raise FileError(f"{path} is not a recipe of this program: {_first_problem(error)}.") from error
+        raise FileError(
+            f"{path} is not a recipe of this program: {of_the_entry(error.errors(include_url=False))}."
+        ) from error
 
 
 def recipe_schema() -> dict[str, Any]:
@@ -195,11 +197,4 @@ def recipe_of(**entries: Any) -> Recipe:
     try:
         return Recipe(**entries)
     except ValidationError as error:
-        raise InputError(f"This is not a recipe: {_first_problem(error)}.") from error
-
-
-def _first_problem(error: ValidationError) -> str:
-    first = error.errors(include_url=False)[0]
-    where = ".".join(str(part) for part in first["loc"]) or "the file"
-    said = first["msg"].removeprefix("Value error, ")
-    return f"{where}: {said[:1].lower()}{said[1:]}"
+        raise InputError(f"This is not a recipe: {of_the_entry(error.errors(include_url=False))}.") from error

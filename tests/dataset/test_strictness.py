@@ -62,8 +62,8 @@ def set_at(*path):
 FIRST = ("representatives", 0)
 
 BROKEN = {
-    "unknown field": (set_at(*FIRST, "colour", "red"), "representatives[0].colour: Extra inputs"),
-    "unknown field at the top": (set_at("extra", 1), "extra: Extra inputs"),
+    "unknown field": (set_at(*FIRST, "colour", "red"), "representatives[0].colour is not known here"),
+    "unknown field at the top": (set_at("extra", 1), "extra is not known here"),
     "weights": (set_at(*FIRST, "weight", 0.6), "weights must add up to 1"),
     "negative weight": (set_at(*FIRST, "weight", -0.5), "representatives[0].weight"),
     "weight as text": (set_at(*FIRST, "weight", "0.5"), "representatives[0].weight"),

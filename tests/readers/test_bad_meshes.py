@@ -211,7 +211,7 @@ def offs(cube: Any) -> Iterator[Bad]:
             "face 0 promises|whole numbers",
         )
     for kind in ("nOFF", "4nOFF", "CnOFF"):
-        yield f"kind-{kind}.off", text.replace("OFF", kind), "file of any dimension"
+        yield f"kind-{kind}.off", text.replace("OFF", kind), rf"file of any dimension \({kind}\)"
     yield "binary.off", "OFF BINARY\n" + text, "is a binary OFF"
     yield "cloud.off", text.replace("8 6 0", "8 0 0"), "is a point cloud"
     yield "none.off", "OFF\n0 0 0\n", "holds an empty mesh"
@@ -255,7 +255,7 @@ def glb(document: str, version: int = 2, length: int | None = None, kind: bytes 
 def gltfs(_cube: Any) -> Iterator[Bad]:
     whole = glb(json.dumps(GLTF))
     yield from cut("a.glb", whole, "is cut short|is not a|is no ")
-    yield from strangers(".gltf", "is not a proper glTF: its description is broken|is not a glTF")
+    yield from strangers(".gltf", "its JSON breaks in line (1|301), sign 1|its JSON is no text|is not a glTF")
     for field in ("asset", "nodes", "meshes", "accessors", "bufferViews", "buffers"):
         yield (
             f"without-{field}.gltf",
@@ -328,23 +328,27 @@ def three_mfs(_cube: Any) -> Iterator[Bad]:
     laughs = '<!DOCTYPE a [<!ENTITY b "ha">]>' + MODEL
     yield "laughs.3mf", archive(laughs), "its XML defines entities"
     for number, word in enumerate(WORDS):
-        yield f"word-{number}.3mf", archive(MODEL.replace('x="1"', f'x="{word}"')), "its model lacks a number"
+        yield (
+            f"word-{number}.3mf",
+            archive(MODEL.replace('x="1"', f'x="{word}"')),
+            "its model has “.*” where a number",
+        )
         yield (
             f"index-{number}.3mf",
             archive(MODEL.replace('v1="1"', f'v1="{word}"')),
-            "its model lacks a number",
+            "its model has “.*” where a number belongs",
         )
     for number, index in enumerate(("4", "-1", "99", "9" * 30)):
         yield (
             f"beyond-{number}.3mf",
             archive(MODEL.replace('v1="1"', f'v1="{index}"')),
-            "beyond the 4 vertices|lacks",
+            "beyond the 4 vertices|a number or a matrix",
         )
     for name in (' x="1"', ' v1="1"'):
         yield (
             f"without-{name[1:3]}.3mf",
             archive(MODEL.replace(name, "")),
-            "its model lacks a number or a name",
+            "its model lacks the attribute “",
         )
     for number, key in enumerate(("2", "", "one")):
         yield (
@@ -364,7 +368,7 @@ def three_mfs(_cube: Any) -> Iterator[Bad]:
         yield (
             f"matrix-{number}.3mf",
             archive(MODEL.replace('"1"/></build', f'"1" transform="{matrix}"/></build')),
-            "lacks",
+            "is not what it should be|has “a” where a number belongs",
         )
     flat = MODEL.replace('z="1"', 'z="0"')
     yield "flat.3mf", archive(flat), "holds no particle"

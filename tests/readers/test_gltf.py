@@ -96,8 +96,8 @@ BAD = {
     "a header alone": (b"glTF\2\0\0\0", "is cut short"),
     "version 1": (glb().replace(b"glTF\2", b"glTF\1"), "of version 1"),
     "no JSON": (glb().replace(b"JSON", b"JSOM"), "no JSON chunk"),
-    "broken JSON": (glb().replace(b'{"asset"', b'{{asset"'), "its description is broken"),
-    "deep JSON": (b"[" * 200_000, "its description is broken"),
+    "broken JSON": (glb().replace(b'{"asset"', b'{{asset"'), "its JSON breaks in line 1, sign 2"),
+    "deep JSON": (b"[" * 200_000, "its JSON nests too deeply"),
     "JSON of something else": (b'{"a": 1}', "has no “asset”"),
     "no nodes": (glb(changed(nodes=[], scenes=[{"nodes": []}])), "without triangles"),
     "points only": (
@@ -121,7 +121,10 @@ BAD = {
     "an address": (gltf(uri="http://example.org/cube.bin"), "only files in its own folder"),
     "a file that is not there": (gltf(uri="cube.bin"), "needs the file cube.bin"),
     "base64 that is none": (gltf(uri="data:;base64,****"), "is not base64"),
-    "a matrix of nine numbers": (glb(changed(nodes=[{"mesh": 0, "matrix": [1] * 9}])), "is broken"),
+    "a matrix of nine numbers": (
+        glb(changed(nodes=[{"mesh": 0, "matrix": [1] * 9}])),
+        "an entry of its description is of a wrong type or length",
+    ),
 }
 
 

@@ -134,10 +134,3 @@ def test_that_mutated_cubes_are_repaired_or_refused(name, cube):
         assert result.health_after.sound
         repaired += 1
     assert repaired > 5
-
-
-@pytest.mark.parametrize(
-    "path", sorted(Path(__file__).with_name("crashes").iterdir()), ids=lambda path: path.name
-)
-def test_that_files_that_once_broke_a_parser_give_triangles_or_a_sentence(path):
-    survives(path.name, path.read_bytes())

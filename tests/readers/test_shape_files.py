@@ -98,14 +98,14 @@ def test_that_files_of_different_models_are_not_mixed(folder: Path, tmp_path: Pa
 @pytest.mark.parametrize(
     ("content", "words"),
     [
-        ("", "is not JSON"),
+        ("", "is empty"),
         ("[1]", "is no fit, no model"),
         ("{}", "is no fit, no model"),
-        ('{"format": "regolith-studio model"}', "is broken"),
+        ('{"format": "regolith-studio model"}', "is a broken model: version is missing"),
         ('{"format": "regolith-studio fit", "particles": 3}', "is a broken fit"),
         ('{"relative_amplitudes": []}', "is no material card"),
         ("[" * 100_000, "is not JSON"),
-        ('{"format": "regolith-studio model", "model": "x", "arrays": 3, "values": 1}', "is broken"),
+        ('{"format": "regolith-studio model", "model": "x", "arrays": 3, "values": 1}', "is a broken model"),
     ],
 )
 def test_that_a_file_that_is_no_source_is_refused_in_one_sentence(

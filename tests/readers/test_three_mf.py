@@ -61,14 +61,20 @@ BAD = {
     "nothing built": (archive(model("")), "builds no triangles"),
     "an object that is not there": (archive(model('<item objectid="9"/>')), "object “9”, which is not there"),
     "components in a circle": (archive(model(resources=CIRCLE)), "go round in circles"),
-    "a part that unpacks to 512 MiB": (BOMB, "unpacks to more than 512 MiB"),
+    "a part that unpacks to 512 MiB": (BOMB, "unpacks to 537 MB, 100 times its size or more"),
     "entities": (archive('<?xml version="1.0"?><!DOCTYPE m [<!ENTITY a "b">]><model/>'), "defines entities"),
-    "a word for a number": (archive(model().replace('x="1"', 'x="one"', 1)), "lacks a number or a name"),
-    "no third corner": (archive(model().replace('v3="3"', "", 1)), "lacks a number or a name"),
+    "a word for a number": (
+        archive(model().replace('x="1"', 'x="one"', 1)),
+        "its model has “one” where a number belongs",
+    ),
+    "no third corner": (
+        archive(model().replace('v3="3"', "", 1)),
+        "lacks the attribute “v3” of a vertex or triangle",
+    ),
     "an index too high": (archive(model().replace('v3="3"', 'v3="8"', 1)), "points beyond the 8 vertices"),
     "a transformation of five numbers": (
         archive(model('<item objectid="1" transform="1 2 3 4 5"/>')),
-        "lacks a number or a name",
+        "a number or a matrix in its model is not what it should be",
     ),
 }
 

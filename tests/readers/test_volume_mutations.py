@@ -194,16 +194,3 @@ def test_that_forty_thousand_mutations_of_a_library_format_give_voxels_or_a_sent
     """Five kinds of TIFF and two of HDF5 share 40,000 each; few files may end the child that reads them."""
     count = 40_000 // sum(Path(other).suffix == Path(name).suffix for other in LIBRARIES)
     assert run_guarded(name, count, 24, folder / name) <= count // 500
-
-
-CRASHES = sorted(Path(__file__).with_name("crashes_volumes").iterdir())
-"""Found by atheris and by the mutations above."""
-
-
-@pytest.mark.parametrize("path", CRASHES, ids=lambda path: path.name)
-def test_that_files_that_once_broke_a_parser_give_voxels_or_a_sentence(path) -> None:
-    guard = Guard()
-    check_sentence(guarded_answer_of(path, guard))
-    if path.suffix not in (".h5", ".tif"):
-        check_sentence(answer_of(path))
-    guard.close()

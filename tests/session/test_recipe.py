@@ -60,8 +60,11 @@ def test_that_an_empty_recipe_means_the_defaults(tmp_path: Path) -> None:
         ('{"inputs": [], "volumes": []}', "inputs"),
         ('{"population": {"sources": [], "n": 3}}', "population.sources"),
         ('{"population": {"sources": ["ma165"], "n": 0}}', "population.n"),
-        ('{"volumes": [{"file": "a.tif", "voxel": 2}]}', "volumes.0.voxel"),
-        ('{"volumes": [{"file": "a.tif", "kind": "gray"}]}', "volumes.0.kind"),
+        ('{"volumes": [{"file": "a.tif", "voxel": 2}]}', r"volumes\[0\]\.voxel is not known here"),
+        (
+            '{"volumes": [{"file": "a.tif", "kind": "gray"}]}',
+            r"volumes\[0\]\.kind must be 'labels' or 'grey'",
+        ),
         ('{"volumes": [{"file": "a.tif", "recipe": "e.json", "extraction": {"min_voxels": 9}}]}', "not both"),
         ('{"weights": {"volume": NaN}}', "not a recipe"),
     ],

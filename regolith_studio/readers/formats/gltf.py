@@ -50,10 +50,9 @@ def parse(data: bytes, path: Path) -> ParsedMesh:
     """
     try:
         document = _document(data, path)
-        placed = [_placed(primitive, matrix, document) for primitive, matrix in _instances(document)]
+        parts = _parts(document)
     except (KeyError, TypeError, ValueError, OverflowError, RecursionError, AttributeError) as error:
-        raise FileError(f"is not a proper glTF: its description is broken ({_short(error)}).") from None
-    parts = [part for part in placed if part is not None]
+        raise FileError(f"is not a proper glTF: {_fault(error)}; export it again.") from None
     if not parts:
         raise FileError("is a glTF without triangles.")
     offsets = np.cumsum([0, *(len(points) for points, _ in parts)])
@@ -63,8 +62,32 @@ def parse(data: bytes, path: Path) -> ParsedMesh:
     )
 
 
-def _short(error: Exception) -> str:
-    return f"{type(error).__name__}: {error}"[:80].replace("\n", " ")
+def _parts(document: _Document) -> list[tuple[NDArray[np.float64], NDArray[np.int64]]]:
+    """Vertices and faces of all primitives that are surfaces, each as often as the scene shows it."""
+    parts = []
+    total = 0
+    for primitive, matrix in _instances(document):
+        placed = _placed(primitive, matrix, document)
+        if placed is not None:
+            parts.append(placed)
+            total += max(len(placed[0]) // 3, len(placed[1]))
+        if total > MOST_FACES:
+            raise FileError(f"has more than {MOST_FACES:,} faces, which is more than can be read.")
+    return parts
+
+
+def _fault(error: Exception) -> str:
+    """What is wrong with the description, in words."""
+    match error:
+        case json.JSONDecodeError(lineno=line, colno=sign):
+            return f"its JSON breaks in line {line}, sign {sign}"
+        case UnicodeDecodeError():
+            return "its JSON is no text"
+        case KeyError():
+            return f"an entry of its description lacks its “{error.args[0]}”"
+        case RecursionError():
+            return "its JSON nests too deeply"
+    return "an entry of its description is of a wrong type or length"
 
 
 def _document(data: bytes, path: Path) -> _Document:

@@ -27,7 +27,7 @@ def parse(data: bytes, _path: Path) -> ParsedMesh:
     keyword = _KEYWORD.match(text)
     kind = keyword[1].decode() if keyword else "OFF"
     if "n" in kind:
-        raise FileError(f"is an {kind} file of any dimension; only OFF in three dimensions is read.")
+        raise FileError(f"is an OFF file of any dimension ({kind}); only OFF in three dimensions is read.")
     rows = [
         row for row in (line.split() for line in text[keyword.end() if keyword else 0 :].splitlines()) if row
     ]
@@ -101,7 +101,7 @@ def _polygons(
         try:
             size = int(words[0])
             while len(words) <= size and line < len(rows):
-                words, line = words + rows[line], line + 1
+                words, line = words.__iadd__(rows[line]), line + 1
             indices = [int(word) for word in words[1 : size + 1]]
         except ValueError:
             raise FileError(f"is not a proper OFF: face {face:,} is not made of whole numbers.") from None

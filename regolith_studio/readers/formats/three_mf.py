@@ -1,6 +1,7 @@
 """3MF: the objects of a print job with their components and placements."""
 
 import io
+import re
 import zipfile
 import zlib
 from collections.abc import Iterator
@@ -13,9 +14,13 @@ from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
 from regolith_studio.readers.mesh_format import MeshFormat, ParsedMesh
+from regolith_studio.readers.sentences import printable
 
 LARGEST_PART = 1 << 29
 """Bytes of one unpacked part; a part that unpacks to more is refused."""
+
+SUSPICIOUS_PART, MOST_PACKED = 1 << 25, 100
+"""XML of real meshes packs to a fifth or a twentieth; a part above 32 MiB that packs far better is a trap."""
 
 MOST_PLACEMENTS = 10_000
 MOST_FACES = 20_000_000
@@ -41,9 +46,24 @@ def parse(data: bytes, _path: Path) -> ParsedMesh:
         raise FileError("is not a proper 3MF: its archive is damaged; export it again.") from None
     except ElementTree.ParseError:
         raise FileError("is not a proper 3MF: the XML of its model is broken.") from None
-    except (ValueError, KeyError, OverflowError, UnicodeError) as error:
-        kind = type(error).__name__
-        raise FileError(f"is not a proper 3MF: its model lacks a number or a name ({kind}).") from None
+    except KeyError as error:
+        raise FileError(f"is not a proper 3MF: its model lacks {_lacking(error)}; export it again.") from None
+    except (ValueError, OverflowError) as error:
+        raise FileError(f"is not a proper 3MF: {_no_number(error)}; export it again.") from None
+
+
+def _lacking(error: KeyError) -> str:
+    """The attribute of a vertex or triangle, or the part of the archive, that is not there."""
+    key = str(error.args[0])
+    return f"the attribute “{key}” of a vertex or triangle" if len(key) <= 2 else "a part that it refers to"
+
+
+def _no_number(error: Exception) -> str:
+    """What stands in the model where a number belongs, if that is the reason."""
+    found = re.search(r"(?:to float|with base 10): '(.*)'$", str(error))
+    if found:
+        return f"its model has “{found[1][:24]}” where a number belongs"
+    return "a number or a matrix in its model is not what it should be"
 
 
 class _Package:
@@ -52,7 +72,9 @@ class _Package:
     def __init__(self, archive: zipfile.ZipFile) -> None:
         self._archive = archive
         self._models: dict[str, Element] = {}
+        self._objects: dict[str, dict[str | None, Element]] = {}
         self.root_part = self._find_root()
+        self.placements = 0
 
     def model(self, part: str) -> Element:
         """The root element of a model part."""
@@ -62,11 +84,17 @@ class _Package:
 
     def object(self, part: str, key: str) -> Element:
         """The object of a model part that has this id."""
-        for found in _children(self.model(part), "resources"):
-            for candidate in _children(found, "object"):
-                if candidate.get("id") == key:
-                    return candidate
-        raise FileError(f"is not a proper 3MF: it builds the object “{key[:20]}”, which is not there.")
+        if part not in self._objects:
+            found = [
+                (candidate.get("id"), candidate)
+                for resources in _children(self.model(part), "resources")
+                for candidate in _children(resources, "object")
+            ]
+            self._objects[part] = dict(reversed(found))
+        if key not in self._objects[part]:
+            shown = printable(key)[:20]
+            raise FileError(f"is not a proper 3MF: it builds the object “{shown}”, which is not there.")
+        return self._objects[part][key]
 
     def _find_root(self) -> str:
         if "_rels/.rels" in self._archive.namelist():
@@ -79,8 +107,12 @@ class _Package:
         return min(models)
 
     def _read(self, part: str) -> bytes:
-        if self._archive.getinfo(part).compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+        entry = self._archive.getinfo(part)
+        if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
             raise FileError("is not a proper 3MF: a part is compressed in another way than deflate.")
+        if entry.file_size > SUSPICIOUS_PART and entry.file_size > MOST_PACKED * entry.compress_size:
+            size = entry.file_size / 1e6
+            raise FileError(f"unpacks to {size:,.0f} MB, {MOST_PACKED} times its size or more: no mesh does.")
         with self._archive.open(part) as file:
             data = file.read(LARGEST_PART + 1)
         if len(data) > LARGEST_PART:
@@ -124,7 +156,8 @@ def _place(
     depth: int,
 ) -> None:
     """Add the triangles of the object that `use` (an item or a component) refers to."""
-    if depth > 50 or len(parts) > MOST_PLACEMENTS:
+    package.placements += 1
+    if depth > 50 or package.placements > MOST_PLACEMENTS:
         raise FileError("is not a proper 3MF: its components go round in circles, or are far too many.")
     elsewhere = next((value for key, value in use.attrib.items() if key.rpartition("}")[2] == "path"), None)
     part = elsewhere.lstrip("/") if elsewhere else part

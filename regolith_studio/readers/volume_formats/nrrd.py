@@ -90,8 +90,9 @@ def _opened(
         if skip == -1:
             raise FileError("counts its bytes from the end of a compressed stream, which cannot be.")
         return DeflatedVoxels(source, start, skip, header, stored)
-    shown = printable(encoding)[:20] or "no encoding"
-    raise FileError(f"is an NRRD in {shown}; those in raw and gzip are read.")
+    if not encoding:
+        raise FileError("is a broken NRRD: it does not say which encoding it has, raw or gzip.")
+    raise FileError(f"is an NRRD in the encoding “{printable(encoding)[:20]}”; raw and gzip are read.")
 
 
 def _fields(head: bytes) -> tuple[dict[str, str], int | None]:

@@ -38,7 +38,12 @@ class TiffPages:
         _, ny, nx = self.header.shape
         out = np.empty((z1 - z0, ny, nx), self.header.dtype)
         for place, page in enumerate(self._pages[z0:z1]):
-            out[place] = self._decoded(page, z0 + place).reshape(ny, nx)
+            decoded = self._decoded(page, z0 + place)
+            if decoded.size != ny * nx:
+                raise FileError(
+                    f"is damaged: page {z0 + place + 1:,} has {decoded.size:,} pixels, not {nx:,} × {ny:,}."
+                )
+            out[place] = decoded.reshape(ny, nx)
         return out
 
     def _decoded(self, page: Any, number: int) -> NDArray[Any]:
