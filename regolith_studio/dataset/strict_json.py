@@ -1,6 +1,7 @@
-"""JSON without loopholes: duplicate keys, NaN and infinities are refused, and the place is named."""
+"""JSON without loopholes: duplicate keys, NaN and infinities (1e999 too) are refused by their place."""
 
 import json
+from math import isfinite
 from typing import Any
 
 from regolith_studio.errors import DatasetError
@@ -41,7 +42,7 @@ def strict_json(text: str, where: str) -> Any:
 
 
 def _strict(value: Any, where: str, place: str) -> Any:
-    if isinstance(value, _Nonfinite):
+    if isinstance(value, _Nonfinite) or (isinstance(value, float) and not isfinite(value)):
         raise DatasetError(f"{where} holds {value} at {place or 'its top'}; only finite numbers are allowed.")
     if isinstance(value, _Pairs):
         result: dict[str, Any] = {}

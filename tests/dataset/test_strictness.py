@@ -134,6 +134,10 @@ TEXTS = {
         lambda text: text.replace('"weight": 0.5', '"weight": NaN', 1),
         "NaN at representatives[0].weight",
     ),
+    "too large": (
+        lambda text: text.replace('"weight": 0.5', '"weight": 1e999', 1),
+        "inf at representatives[0].weight",
+    ),
     "infinity": (lambda text: text.replace('"weight": 0.5', '"weight": -Infinity', 1), "-Infinity at"),
     "overflow": (
         lambda text: text.replace('"weight": 0.5', '"weight": 1e999', 1),

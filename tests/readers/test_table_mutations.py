@@ -1,4 +1,4 @@
-"""Tables of coefficients, fits, models, cards, archives and slices with bytes changed at random.
+"""Tables, fits, models, cards, recipes, projects, datasets, archives and slices with bytes changed at random.
 
 Every reader gives values or one sentence, nothing else; all are asked in this process, so that nothing
 but the error of a bad file passes for an answer.
@@ -16,7 +16,8 @@ import imageio.v3 as imageio
 import numpy as np
 import pytest
 
-from regolith_studio.errors import FileError
+from regolith_studio.dataset.reading import read_document
+from regolith_studio.errors import DatasetError, FileError
 from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.harmonics.files import write_fits
@@ -30,6 +31,10 @@ from regolith_studio.readers.npz import read_npz
 from regolith_studio.readers.position_task import read_number_rows
 from regolith_studio.readers.shape_files import read_shape_source
 from regolith_studio.readers.volume_task import checked_slices, opened_volume
+from regolith_studio.session.project import Project, read_project
+from regolith_studio.session.recipe import Recipe, read_recipe
+
+OLD_DATASET = Path(__file__).parents[1] / "dataset" / "old_versions" / "1" / "dataset.json"
 
 HURTS = [b"", b"\0", b"\xff\xff\xff\xff", b"-1", b"1e999", b"NaN", b"9" * 12, b"\n", b" ", b",", b'"', b"{"]
 HURTS += [b"[", b"null", b"true", b"l_max", b"PK\x03\x04", b"<U9999999", b"(99999999,)"]
@@ -68,6 +73,10 @@ def detached(path: Path) -> Any:
         volume.close()
 
 
+def dataset(path: Path) -> Any:
+    return read_document(path.parent)
+
+
 CASES: dict[str, Reader] = {
     "complex/grain.anm": table,
     "shtools/grain.shc": table,
@@ -77,6 +86,9 @@ CASES: dict[str, Reader] = {
     "model/model.npz": source,
     "card/card.json": source,
     "arrays/arrays.npz": read_npz,
+    "recipe/recipe.json": read_recipe,
+    "project/a.regolith": read_project,
+    "dataset/dataset.json": dataset,
     "png/slice_1.png": slices,
     "bmp/slice_1.bmp": slices,
     "nhdr/voxels.nhdr": detached,
@@ -104,6 +116,10 @@ def write_all(place: Path) -> None:
     model = MODELS["gaussian_field"]
     write_model(place / "model/model", model.fit(sample, model.Settings(3)))
     write_card(materials()["ma165"], place / "card/card.json")
+    recipe = Recipe.model_validate({"volumes": [{"file": "a.tif"}], "population": {"sources": ["x"], "n": 5}})
+    (place / "recipe/recipe.json").write_text(recipe.to_json())
+    (place / "project/a.regolith").write_text(Project(recipe=recipe).model_dump_json(indent=1))
+    shutil.copy(OLD_DATASET, place / "dataset/dataset.json")
     np.savez_compressed(place / "arrays/arrays.npz", a=np.arange(12).reshape(3, 4), b=np.array(["x", "yz"]))
     voxels = np.random.default_rng(1).integers(0, 9, (4, 5, 6)).astype(np.uint8)
     for suffix in ("png", "bmp"):
@@ -158,7 +174,7 @@ def survive(name: str, count: int, seed: int, folder: Path) -> SimpleNamespace:
         try:
             read(path)
             said.read += 1
-        except FileError as error:
+        except (FileError, DatasetError) as error:
             sentence = str(error)
             said.refused += 1
             assert sentence.endswith("."), sentence
