@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QApplication
 from regolith_studio.errors import RegolithError
 from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.runners.thread import ThreadRunner
-from regolith_studio.jobs.thrift import pack_loaded_kernels
+from regolith_studio.jobs.thrift import give_back, pack_loaded_kernels
 from regolith_studio.jobs.warming import warm_up
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.session.session import Session
@@ -23,6 +23,9 @@ from regolith_studio.ui.tour import TOUR_SEEN
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.factory import best_kind
 from regolith_studio.ui.views.loading import load_pyvista
+
+REST = 3_000
+"""Milliseconds without work after which memory is handed back."""
 
 
 def welcome(window: MainWindow) -> None:
@@ -52,6 +55,7 @@ def open_window(
     if found:
         QTimer.singleShot(0, window, lambda: window.commands.open_paths(found, unit))
     _warm_up_later(session, runner)
+    _give_back_at_rest(window)
     return window
 
 
@@ -64,6 +68,13 @@ def _warm_up_later(session: Session, runner: ThreadRunner) -> None:
             runner.submit(Job(warm_up, (1,)), lambda _event: None, "warm-up")
 
     cut = session.topics.coarsening.connect(begin)
+
+
+def _give_back_at_rest(window: MainWindow) -> None:
+    """Hand memory back when nothing has been computed for a while."""
+    timer = QTimer(window, singleShot=True, interval=REST)
+    timer.timeout.connect(give_back)
+    window.wiring.hear("tasks", lambda *_: timer.stop() if window.session.tasks else timer.start())
 
 
 Hook = Callable[[type[BaseException], BaseException, TracebackType | None], Any]

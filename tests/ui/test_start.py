@@ -25,7 +25,14 @@ import linecache
 read = {name.split(".")[0] for name, module in sys.modules.items()
         if getattr(module, "__file__", None) in linecache.cache}
 assert not read & {"pyvista", "pyqtgraph", "matplotlib"}, f"sources are kept in memory: {read}"
-assert "mypy" not in sys.modules
+assert not {"mypy", "matplotlib.figure", "matplotlib.pyplot"} & set(sys.modules)
+from matplotlib.figure import Figure
+from pyvista import Chart2D, ChartMPL
+from pyvista.plotting.colors import get_cycler
+assert len(get_cycler("matplotlib")) == 10
+figure = Figure()
+figure.add_subplot().plot([1, 2], [3, 4])
+assert ChartMPL(figure).size == (1, 1) and Chart2D().line([1, 2], [3, 4]).x.tolist() == [1, 2]
 sys.exit(code)
 """
 

@@ -238,6 +238,19 @@ def test_that_the_window_follows_dark_and_light(window):
     window.menus.by_name["theme_system"].trigger()
 
 
+def test_that_memory_is_handed_back_when_work_has_ended(monkeypatch, shown, preferences, wait):
+    busy = []
+    monkeypatch.setattr("regolith_studio.ui.app.REST", 20)
+    monkeypatch.setattr("regolith_studio.ui.app.give_back", lambda: busy.append(len(window.session.tasks)))
+    window = open_window(views="image", preferences=preferences)
+    shown(window)
+    wait(lambda: window.session.results.coarsened is not None and bool(busy), SECONDS)
+    busy.clear()
+    window.session.choose(l_max=5)
+    wait(lambda: bool(busy), SECONDS)
+    assert set(busy) == {0}
+
+
 def test_that_every_command_has_its_place_and_a_tip(window):
     for name, action in window.menus.by_name.items():
         assert action.toolTip(), name
