@@ -7,8 +7,15 @@ import pytest
 from scipy.spatial import ConvexHull, HalfspaceIntersection
 
 from regolith_studio.coarsening.coarsen import coarsen
-from regolith_studio.coarsening.exact.growth import stages, with_waiting
+from regolith_studio.coarsening.exact.growth import (
+    more_surface_than_hull,
+    numbers_to_grow_from,
+    stages,
+    with_waiting,
+)
 from regolith_studio.coarsening.result import Coarsened
+from regolith_studio.coarsening.target import Target
+from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
 from tests.coarsening.conftest import bumpy
@@ -46,6 +53,44 @@ def test_that_scipy_finds_the_same_facets_and_volume(rough: Coarsened) -> None:
 def test_that_the_same_seed_gives_the_same_hundred_facets() -> None:
     one, two = (coarsen(bumpy(5, roughness=0.3), 100, "exact", seed=3) for _ in range(2))
     assert np.array_equal(one.half_spaces.equations, two.half_spaces.equations)
+
+
+def test_that_medium_numbers_of_facets_are_met_and_cost_no_overlap() -> None:
+    overlap = {n_faces: 0.0 for n_faces in (20, 30, 50)}
+    for seed in range(6):
+        target = Target.of(bumpy(seed, roughness=0.3))
+        for n_faces in overlap:
+            found = coarsen(target, n_faces, "exact")
+            assert found.reason is None
+            assert found.n_faces == n_faces
+            overlap[n_faces] += found.jaccard_distance / 6
+    assert max(overlap[30], overlap[50]) < overlap[20] + 0.002
+
+
+def test_that_a_convex_particle_has_no_more_surface_than_its_hull() -> None:
+    egg = Mesh(icosphere(3).vertices * (1.0, 0.8, 0.6), icosphere(3).faces)
+    assert more_surface_than_hull(Target.of(egg)) == pytest.approx(0.0, abs=1e-8)
+
+
+def test_that_surface_beyond_the_hull_is_that_of_volume_and_area_by_scipy() -> None:
+    mesh = bumpy(2, roughness=0.3)
+    hull = ConvexHull(mesh.vertices)
+    expected = np.log(mesh.surface_area / mesh.volume ** (2 / 3) * hull.volume ** (2 / 3) / hull.area)
+    assert more_surface_than_hull(Target.of(mesh)) == pytest.approx(expected, rel=1e-6)
+
+
+def test_that_the_number_asked_for_is_always_among_those_to_start_with() -> None:
+    rough, round_ball = Target.of(bumpy(2, roughness=0.3)), Target.of(icosphere(3))
+    for n_faces in (5, 20, 24, 26, 50, 63, 200):
+        for keeps_sphericity in (False, True):
+            numbers = numbers_to_grow_from(rough, n_faces, keeps_sphericity)
+            assert n_faces in numbers
+            assert len(set(numbers)) == len(numbers)
+            assert max(numbers) == n_faces
+    assert numbers_to_grow_from(rough, 20, True) == (20,)
+    assert numbers_to_grow_from(rough, 100, True)[0] < 100
+    assert numbers_to_grow_from(rough, 100, False)[0] == 100
+    assert numbers_to_grow_from(round_ball, 100, True) == (100,)
 
 
 @pytest.mark.parametrize(("few", "many"), [(20, 51), (20, 100), (50, 100), (20, 300)])

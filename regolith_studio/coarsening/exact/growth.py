@@ -1,14 +1,16 @@
 """Many facets from few: a polyhedron that meets all conditions gets further facets as small cuts.
 
-A start with many half-spaces on a rough particle often ends where no step meets all conditions: facets are
-lost on the way and with them their freedoms. Half as many facets are met as a rule, and a cut across a corner
-changes the volume with the cube of its depth, so what the cuts take away is polished back by little.
+A particle has more surface than its convex hull as a rule. A convex polyhedron that is to have as much must
+be edgy, which few facets are by themselves; started with many, facets are lost on the way to it and with
+them the freedom to meet the conditions. So few facets are solved first. A cut across a corner changes the
+volume with the cube of its depth, so that what cuts take away is polished back by little.
 """
 
 from collections.abc import Iterator
 
 import numpy as np
 
+from regolith_studio.coarsening.bounds import greatest_sphericity
 from regolith_studio.coarsening.core.planes import tangents_of
 from regolith_studio.coarsening.exact.course import NOWHERE, Attempt, attempt, course, mended, start_planes
 from regolith_studio.coarsening.exact.polish import measured
@@ -17,40 +19,68 @@ from regolith_studio.coarsening.target import Target
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.directions import fibonacci_directions
 
-SAFE_FACES = 50
-"""Up to so many facets a start is met as a rule, and nothing is grown."""
-FEW_FACES = (20, 50)
-"""Facets of polyhedra that are grown, start by start in turns."""
+FEW_FACES = ((0.085, (20, 30, 50)), (0.055, (30, 20, 50)), (-np.inf, (50, 30, 20)))
+"""Facets to grow from, best first, by how much more surface a particle has than its hull (in logarithms)."""
+ALIKE = 1.25
+"""Where fewer than this many times as many are asked for, all start at once."""
 FACTOR = 2.5
 """Facets after and before each stage of cuts."""
 BEYOND = 6.0
 """Where half-spaces wait for their cut, in units of the largest offset."""
 
 
+def numbers_to_grow_from(target: Target, n_faces: int, keeps_sphericity: bool) -> tuple[int, ...]:
+    """Facets of the polyhedra that are solved before there are `n_faces`, the most promising first.
+
+    `n_faces` itself stands for a start with all of them; it is always among them. Numbers whose Goldberg
+    bound is below the particle's sphericity are not.
+    """
+    surplus = more_surface_than_hull(target) if keeps_sphericity else -np.inf
+    order = next(few for least, few in FEW_FACES if surplus >= least)
+    wanted = target.descriptors["sphericity"] if keeps_sphericity else 0.0
+    numbers = [
+        few if ALIKE * few < n_faces else n_faces for few in order if greatest_sphericity(few) > wanted
+    ]
+    if not keeps_sphericity:
+        numbers.insert(0, n_faces)
+    return tuple(dict.fromkeys([*numbers, n_faces]))
+
+
+def more_surface_than_hull(target: Target) -> float:
+    """Logarithm of the particle's surface over that of its convex hull, at the same volume."""
+    hull = target.mesh.hull
+    of_hull = np.cbrt(36.0 * np.pi * hull.volume**2) / hull.surface_area
+    return float(np.log(of_hull / target.descriptors["sphericity"]))
+
+
 def grown(
     target: Target,
     free: Problem,
     full: Problem,
-    planes: tuple[FloatArray, FloatArray],
+    n_faces: int,
     few_faces: int,
+    starts: int,
     rng: np.random.Generator,
     free_steps: int,
     bound_steps: int,
 ) -> Iterator[Attempt]:
-    """As many half-spaces as `planes`, cut out of a polyhedron with `few_faces` that meets all conditions.
+    """`n_faces` half-spaces, cut out of the best of `starts` polyhedra with `few_faces`.
 
-    Where already the few miss a condition (round particles need more): the course from `planes`. Parameters
-    as of :func:`regolith_studio.coarsening.exact.course.course`; `rng` chooses the start of the few.
+    Where none of them meets all conditions, the nearest comes, with half-spaces that bound nothing. Other
+    parameters as of :func:`regolith_studio.coarsening.exact.course.course`; `rng` chooses the starts.
     """
-    start = start_planes(target, few_faces, rng)
     few: Attempt | None = None
-    for found in course(target, free, full, start, free_steps, bound_steps):
-        if found.better_than(few):
-            few = found
-    if few is not None and few.exact:
-        yield from with_more_facets(target, full, few, len(planes[1]), bound_steps)
+    for _ in range(starts):
+        start = start_planes(target, few_faces, rng)
+        for found in course(target, free, full, start, free_steps, bound_steps):
+            if found.better_than(few):
+                few = found
+    if few is None:
+        return
+    if few.exact:
+        yield from with_more_facets(target, full, few, n_faces, bound_steps)
     else:
-        yield from course(target, free, full, planes, free_steps, bound_steps)
+        yield waiting(full, few, n_faces)
 
 
 def with_more_facets(
@@ -75,8 +105,13 @@ def with_more_facets(
         few = more
     else:
         return
+    yield waiting(problem, few, n_faces)
+
+
+def waiting(problem: Problem, few: Attempt, n_faces: int) -> Attempt:
+    """The same polyhedron with half-spaces that bound nothing, `n_faces` in all."""
     normals, offsets = with_waiting(few.normals, few.offsets, n_faces)
-    yield attempt(problem, measured(problem, normals, offsets, tangents_of(normals), NOWHERE))
+    return attempt(problem, measured(problem, normals, offsets, tangents_of(normals), NOWHERE))
 
 
 def stages(few_faces: int, n_faces: int) -> Iterator[int]:

@@ -10,7 +10,7 @@ from regolith_studio.coarsening.core.box_search import DENSE_ANGLE, FINE_ANGLE, 
 from regolith_studio.coarsening.core.cuts import SMALLEST_FACET
 from regolith_studio.coarsening.evaluation import LossFunction
 from regolith_studio.coarsening.exact.course import Attempt, compromise, course, densely_checked, start_planes
-from regolith_studio.coarsening.exact.growth import FEW_FACES, SAFE_FACES, grown
+from regolith_studio.coarsening.exact.growth import grown, numbers_to_grow_from
 from regolith_studio.coarsening.exact.problem import Problem
 from regolith_studio.coarsening.exact.request import CONDITION_KEYS, EXACT, Request, reason_for
 from regolith_studio.coarsening.polyhedra import facet_areas, polyhedron_of
@@ -27,9 +27,10 @@ from regolith_studio.geometry.half_spaces import HalfSpaces
 
 @dataclass(frozen=True)
 class Level:
-    """Effort: starts, steps of the free and of the bound descent."""
+    """Effort: starts, polyhedra with few facets at each to grow many from, steps of both descents."""
 
     starts: int
+    few_starts: int
     free_steps: int
     bound_steps: int
 
@@ -37,7 +38,7 @@ class Level:
 COMPROMISE_STEPS = 64
 STARTS_FOR_FACETS = 3
 """Further starts where all conditions are met, but a half-space bounds no facet."""
-LEVELS = {"fast": Level(1, 12, 16), "best": Level(3, 20, 40)}
+LEVELS = {"fast": Level(1, 2, 12, 16), "best": Level(3, 3, 20, 40)}
 
 
 @dataclass(frozen=True)
@@ -99,6 +100,7 @@ class ExactMethod:
         hopeless = (
             request.asked[1] and sphericity_reason(target.descriptors["sphericity"], n_faces) is not None
         )
+        numbers = (n_faces,) if hopeless else numbers_to_grow_from(target, n_faces, request.asked[1])
         total = 2 if hopeless else level.starts + settings.retries
         best: Attempt | None = None
         history: list[float] = []
@@ -108,9 +110,9 @@ class ExactMethod:
             if tried == 1:
                 yield MethodStep(0, total, judge.value(*planes, SAMPLE_ANGLE), HalfSpaces(*planes))
             steps = (level.free_steps, level.bound_steps)
-            if n_faces > SAFE_FACES and not hopeless:
-                few = FEW_FACES[(tried - 1) % len(FEW_FACES)]
-                attempts = grown(target, free, full, planes, few, rng, *steps)
+            few = numbers[(tried - 1) % len(numbers)]
+            if few < n_faces:
+                attempts = grown(target, free, full, n_faces, few, level.few_starts, rng, *steps)
             else:
                 attempts = course(target, free, full, planes, *steps)
             for found in attempts:
