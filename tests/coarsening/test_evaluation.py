@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from regolith_studio.coarsening.core.box import Solid, box_on_facets
+from regolith_studio.coarsening.core.box import Solid
+from regolith_studio.coarsening.core.box_flush import box_on_facets
 from regolith_studio.coarsening.core.intersection import edges_of, intersect
 from regolith_studio.coarsening.core.measures import facets_of
 from regolith_studio.coarsening.evaluation import LossFunction
@@ -50,9 +51,10 @@ def test_that_half_spaces_that_bound_nothing_have_an_infinite_loss() -> None:
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_that_the_quick_box_is_the_least_with_a_side_on_a_facet(seed: int) -> None:
+@pytest.mark.parametrize("n_faces", [6, 20, 60])
+def test_that_the_quick_box_is_the_least_with_a_side_on_a_facet(n_faces: int, seed: int) -> None:
     target = Target.of(rough_stone(seed))
-    planes = planes_of(target, 20)
+    planes = planes_of(target, n_faces)
     normals, offsets = np.array(planes.normals), np.array(planes.offsets)
     _, vertices, triples = intersect(normals, offsets)
     edges = edges_of(triples, len(offsets))

@@ -120,28 +120,6 @@ def box_at(axis: Vector, solid: Solid, limit: float, scratch: Scratch, touch: To
     return float(least * height)
 
 
-@kernel
-def box_on_facets(solid: Solid) -> FloatArray:
-    """Edges of the least box with a side on a facet, shape (3,): quick, and about 1 % above the least."""
-    touch, extents = empty_touch(), np.empty(3)
-    least_on_facets(solid, scratch_for(solid), touch, extents)
-    return extents
-
-
-@leaf
-def least_on_facets(solid: Solid, scratch: Scratch, touch: Touch, extents: FloatArray) -> float:
-    """Volume of the least box with a side on a facet; fills `extents`."""
-    best = np.inf
-    for f in range(len(solid.normals)):
-        if solid.areas[f] > 0.0:
-            volume = box_at(row(solid.normals, f), solid, best, scratch, touch)
-            if volume < best:
-                best = volume
-                for k in range(3):
-                    extents[k] = touch.extents[k]
-    return best
-
-
 @leaf
 def height_and_shadow(axis: Vector, solid: Solid, side: FloatArray) -> tuple[float, float, int, int]:
     """Extent along `axis`, area of the shadow, top and bottom vertex; `side` takes <axis, n_f>."""

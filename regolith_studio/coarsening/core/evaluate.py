@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from regolith_studio.coarsening.core.box import Solid, box_on_facets
+from regolith_studio.coarsening.core.box import Solid
+from regolith_studio.coarsening.core.box_flush import box_on_facets
 from regolith_studio.coarsening.core.box_search import local_boxes
 from regolith_studio.coarsening.core.intersection import DEGENERATE, FINE, edges_of, intersect
 from regolith_studio.coarsening.core.measures import facets_of, volume_of
