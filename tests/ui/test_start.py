@@ -20,6 +20,8 @@ def welcome(window):
     window.close()
 app.welcome = welcome
 code = start.run()
+import gc
+assert gc.isenabled() and gc.get_freeze_count() > 100_000, gc.get_freeze_count()
 assert seen == [True], seen
 import linecache
 read = {name.split(".")[0] for name, module in sys.modules.items()

@@ -1,5 +1,6 @@
 """Loads pyvista without what comes along and draws nothing."""
 
+import gc
 import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -20,6 +21,7 @@ def load_pyvista() -> None:
         return
     with _in_place({"mypy": None, _PYPLOT: _Later(_PYPLOT), _AGG: _Later(_AGG, "FigureCanvasAgg")}):
         import pyvista.plotting  # noqa: F401
+    gc.freeze()
 
 
 class _Later(ModuleType):
