@@ -12,6 +12,7 @@ The message of each is one plain sentence: what is wrong, with which value, and 
 right. Wrong use by a programmer stays a ``ValueError`` or ``TypeError``.
 """
 
+import errno
 import json
 import re
 from collections.abc import Mapping, Sequence
@@ -49,7 +50,27 @@ class Cancelled(RegolithError):
 def of_the_system(error: OSError) -> str:
     """What the operating system has refused, a full disk say, in a sentence."""
     place = error.filename or "the files"
-    return f"The system does not let the program go on with {place} ({error.strerror or error})."
+    return f"The system does not let the program go on with {place} ({reason_of(error)})."
+
+
+_REASONS = {
+    errno.ENOENT: "there is no such file",
+    errno.EACCES: "you are not allowed to",
+    errno.EPERM: "you are not allowed to",
+    errno.EISDIR: "it is a folder",
+    errno.ENOTDIR: "a part of its path is no folder",
+    errno.ENAMETOOLONG: "its name is too long",
+    errno.ELOOP: "its links go round in circles",
+    errno.EIO: "the disk fails",
+    errno.ENOSPC: "the disk is full",
+    errno.EROFS: "the disk cannot be written to",
+    errno.EMFILE: "too many files are open",
+}
+
+
+def reason_of(error: OSError) -> str:
+    """Why the operating system refuses a file, in words; its own where there are none here."""
+    return _REASONS.get(error.errno or 0, error.strerror or str(error))
 
 
 _MUST = {
@@ -82,11 +103,13 @@ _MUST = {
     "string_too_short": "must have {min_length} letters or more",
     "string_too_long": "must have {max_length} letters or fewer",
     "string_pattern_mismatch": "has letters or a form that are not allowed there",
+    "union_tag_invalid": "must have a {discriminator} that is one of {expected_tags}",
+    "union_tag_not_found": "has no {discriminator}",
     "value_error": "{error}",
 }
 """Plain words for pydantic's kinds of error, by their names."""
 
-_SHOW_NO_VALUE = ("missing", "extra_forbidden", "too_short", "too_long", "value_error")
+_SHOW_NO_VALUE = ("missing", "extra_forbidden", "too_short", "too_long", "union_tag_not_found", "value_error")
 _KIND_OF_A_UNION = re.compile(r"(str|int|float|bool|list|dict|tuple|none)$|.*[\[(]|[A-Z]")
 _LONGEST_VALUE = 40
 
@@ -107,7 +130,7 @@ def of_the_entry(problems: Sequence[Mapping[str, Any]]) -> str:
     if kind == "json_invalid":
         return _where_json_ends(str(given.get("error", "")))
     place = _place(problem["loc"])
-    words = _MUST.get(kind, f"cannot be used ({problem['msg']})").format_map({"expected": "", **given})
+    words = _MUST[kind].format(**given) if kind in _MUST else "cannot be used"
     if kind == "value_error":
         return words if not place else f"{place}: {words[:1].lower()}{words[1:]}"
     value = "" if kind in _SHOW_NO_VALUE else f", not {_shown(problem.get('input'))}"

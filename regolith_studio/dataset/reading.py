@@ -5,7 +5,7 @@ from pathlib import Path
 
 from regolith_studio.dataset.document import parsed_document
 from regolith_studio.dataset.schema import DatasetDocument
-from regolith_studio.errors import DatasetError
+from regolith_studio.errors import DatasetError, reason_of
 
 DOCUMENT, README = "dataset.json", "README.txt"
 UNASKED = {".DS_Store", "Thumbs.db", "desktop.ini"}
@@ -71,4 +71,4 @@ def _read(path: Path, largest: int) -> bytes:
             raise DatasetError(f"{path} is larger than {largest // 1_000_000} MB.")
         return path.read_bytes()
     except OSError as error:
-        raise DatasetError(f"{path} cannot be read: {error.strerror or error}.") from error
+        raise DatasetError(f"{path} cannot be read: {reason_of(error)}.") from error

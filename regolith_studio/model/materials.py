@@ -15,7 +15,7 @@ from typing import Annotated, Self
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from regolith_studio.errors import FileError, InputError, of_the_entry
+from regolith_studio.errors import FileError, InputError, of_the_entry, reason_of
 from regolith_studio.model.models.log_field import LogField, LogFieldModel, LogFieldSettings
 from regolith_studio.model.sample import Sample
 from regolith_studio.model.size_law import LogNormalSizes
@@ -117,7 +117,7 @@ def read_card(path: Path) -> MaterialCard:
     try:
         return card_from(path.read_bytes(), path.name)
     except OSError as error:
-        raise FileError(f"{path.name} cannot be read: {error.strerror}.") from error
+        raise FileError(f"{path.name} cannot be read: {reason_of(error)}.") from error
 
 
 def card_from(content: bytes, name: str) -> MaterialCard:

@@ -17,7 +17,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, cast
 
-from regolith_studio.errors import RegolithError
+from regolith_studio.errors import RegolithError, reason_of
 from regolith_studio.readers.mesh_file import parse_mesh
 from regolith_studio.readers.protocol import Message, receive, send
 from regolith_studio.readers.sentences import sentence_about
@@ -85,7 +85,7 @@ def answer(request: dict[str, Any]) -> Message:
     except MemoryError:
         return Message({"status": "memory"})
     except OSError as error:
-        sentence = sentence_about(path, f"cannot be opened: {error.strerror or error}.")
+        sentence = sentence_about(path, f"cannot be opened: {reason_of(error)}.")
         return Message({"status": "refused", "sentence": sentence})
     except Exception as error:  # noqa: BLE001 (whatever a parser trips over is the file's fault)
         sentence = sentence_about(path, "is damaged in a way that its reader does not know; export it again.")

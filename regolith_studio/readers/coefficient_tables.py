@@ -12,7 +12,7 @@ from regolith_studio.harmonics.coefficient_tables import from_complex_rows, from
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.readers.guard import Guard, shared_guard
 from regolith_studio.readers.hashing import sha256_of
-from regolith_studio.readers.sentences import sentence_about
+from regolith_studio.readers.sentences import counted, sentence_about
 from regolith_studio.readers.units import unit_factor
 
 __all__ = ["CoefficientFile", "TableConvention", "read_coefficients"]
@@ -71,9 +71,8 @@ def read_coefficients(
     try:
         if rows.shape[1] < 4:
             points = " Points alone enclose no particle." if rows.shape[1] == 3 else ""
-            raise InputError(
-                f"has {rows.shape[1]} columns; a table of coefficients has four: l m Re Im.{points}"
-            )
+            found = counted(rows.shape[1], "column")
+            raise InputError(f"has {found}; a table of coefficients has four: l m Re Im.{points}")
         notes: tuple[str, ...] = ()
         if convention == "auto":
             convention = _convention(rows, bool(answer.header["commas"]))

@@ -68,7 +68,9 @@ class InflatedStream:
             try:
                 piece = self._inflater.decompress(self._waiting, most)
             except zlib.error:
-                raise FileError("is damaged: its compressed voxels cannot be unpacked.") from None
+                raise FileError(
+                    "is damaged: its compressed voxels cannot be unpacked; copy it again."
+                ) from None
             ended = not self._waiting
             self._waiting = self._inflater.unconsumed_tail
             if piece:
@@ -79,13 +81,13 @@ class InflatedStream:
             if self._inflater.eof:
                 self._next_member()
             elif ended:
-                raise FileError("is cut short: its compressed voxels end too early.")
+                raise FileError("is cut short: its compressed voxels end too early; copy it again.")
 
     def _next_member(self) -> None:
         """Gzip allows several streams one after the other (as bgzip and pigz write them)."""
         self._waiting = self._inflater.unused_data or self._file.read(_CHUNK)
         if self._waiting[:2] != b"\x1f\x8b":
-            raise FileError("is cut short: its compressed voxels end too early.")
+            raise FileError("is cut short: its compressed voxels end too early; copy it again.")
         self._inflater = zlib.decompressobj(_GZIP_OR_ZLIB)
 
     def close(self) -> None:

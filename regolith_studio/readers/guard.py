@@ -11,7 +11,7 @@ import threading
 from pathlib import Path
 from typing import Any
 
-from regolith_studio.errors import EnvironmentProblem, FileError
+from regolith_studio.errors import EnvironmentProblem, FileError, reason_of
 from regolith_studio.readers.protocol import Message, receive, send
 from regolith_studio.readers.sentences import sentence_about
 
@@ -203,7 +203,7 @@ def checked_size(path: Path, largest: int | None = LARGEST_FILE) -> int:
     try:
         status = path.stat()
     except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
+        reason = reason_of(error) if isinstance(error, OSError) else "its name cannot be the name of a file"
         raise FileError(sentence_about(path, f"cannot be opened: {reason}.")) from None
     if stat.S_ISDIR(status.st_mode):
         raise FileError(sentence_about(path, "is a folder, not a file."))

@@ -83,7 +83,7 @@ def _checked(parsed: ParsedMesh) -> ParsedMesh:
         return parsed
     kept = np.asarray(good[faces].all(axis=1))
     if not kept.any():
-        raise FileError("has no face whose corners are all finite numbers.")
+        raise FileError("has no face whose corners are all finite numbers; export it again.")
     lost = len(faces) - np.count_nonzero(kept)
     notes = parsed.notes
     if lost:

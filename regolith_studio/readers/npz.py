@@ -11,7 +11,7 @@ from typing import IO, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from regolith_studio.errors import FileError
+from regolith_studio.errors import FileError, reason_of
 from regolith_studio.readers.guard import checked_size
 from regolith_studio.readers.sentences import sentence_about
 
@@ -40,7 +40,7 @@ def read_bytes(path: Path, largest: int | None = None) -> bytes:
     try:
         return path.read_bytes()
     except OSError as error:
-        raise FileError(sentence_about(path, f"cannot be read: {error.strerror}.")) from None
+        raise FileError(sentence_about(path, f"cannot be read: {reason_of(error)}.")) from None
 
 
 def read_npz(path: Path) -> tuple[dict[str, NDArray[Any]], str]:
@@ -59,8 +59,10 @@ def read_npz(path: Path) -> tuple[dict[str, NDArray[Any]], str]:
         raise FileError(sentence_about(path, str(error))) from None
     except MemoryError:
         raise FileError(sentence_about(path, "needs more memory than there is.")) from None
-    except _BROKEN as error:
-        raise FileError(sentence_about(path, f"is no NPZ archive of arrays: {error}.")) from None
+    except _BROKEN:
+        raise FileError(
+            sentence_about(path, "is no NPZ archive of arrays, or is damaged; save it again.")
+        ) from None
     return arrays, hashlib.sha256(packed).hexdigest()
 
 

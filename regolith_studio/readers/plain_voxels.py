@@ -47,7 +47,9 @@ class PlainVoxels:
         needed = self.offset + math.prod(self.header.shape) * self.stored.itemsize
         there = self.path.stat().st_size
         if there < needed:
-            raise FileError(f"is cut short: its voxels need {needed:,} bytes and it has {there:,}.")
+            raise FileError(
+                f"is cut short: its voxels need {needed:,} bytes and it has {there:,}; copy it again."
+            )
 
     def read(self, z0: int, z1: int) -> NDArray[Any]:
         """Slices z0 to z1 in the machine's byte order, shape (z1 - z0, ny, nx)."""

@@ -11,6 +11,11 @@ def printable(text: str) -> str:
     return "".join(sign if sign.isprintable() else "?" for sign in text)
 
 
+def counted(number: int, thing: str) -> str:
+    """``1 column``, ``2 columns``."""
+    return f"{number:,} {thing}{'' if number == 1 else 's'}"
+
+
 def shown_name(path: Path) -> str:
     """The file's name, without its middle where it is long."""
     name = printable(path.name or str(path))

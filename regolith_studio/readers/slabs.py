@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from regolith_studio.errors import FileError
+from regolith_studio.errors import FileError, reason_of
 from regolith_studio.readers.guard import START_SECONDS, WORKING_SECONDS, Guard, checked_size, volume_guard
 from regolith_studio.readers.plain_voxels import PlainVoxels, plain_voxels
 from regolith_studio.readers.sentences import sentence_about
@@ -99,7 +99,9 @@ class OpenedFile:
             try:
                 return self.straight.read(z0, z1)
             except (OSError, FileError) as error:
-                reason = str(error) if isinstance(error, FileError) else f"cannot be read: {error.strerror}."
+                reason = (
+                    str(error) if isinstance(error, FileError) else f"cannot be read: {reason_of(error)}."
+                )
                 raise FileError(sentence_about(self.path, reason)) from None
         size = (z1 - z0) * self.header.slice_bytes
         work = WORKING_SECONDS + size / BYTES_READ_A_SECOND + (z1 - z0) * SECONDS_A_SLICE

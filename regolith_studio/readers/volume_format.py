@@ -193,7 +193,8 @@ def checked_header(header: VoxelHeader) -> VoxelHeader:
     """
     if header.slice_bytes > LARGEST_SLICE:
         size = header.slice_bytes / 1024**3
-        raise FileError(f"has slices of {size:.3g} GiB; at most 1 GiB is read at a time.")
+        shown = f"{size:,.0f}" if size >= 100 else f"{size:.3g}"
+        raise FileError(f"has slices of {shown} GiB; at most 1 GiB is read at a time.")
     return header
 
 
@@ -208,8 +209,9 @@ def sizes_or_none(values: tuple[float, ...] | list[float]) -> Sizes | None:
 def shown_shape(shape: tuple[int, ...]) -> str:
     """``512 × 512 × 100``, cut short where it is long."""
     edges = [f"{edge}" for edge in shape[:6]]
-    return " × ".join(edges + (["…"] if len(shape) > 6 else [])) or "()"
+    return " × ".join(edges + (["…"] if len(shape) > 6 else [])) or "that of a single number"
 
 
 def _type_name(dtype: np.dtype[Any]) -> str:
-    return "structured" if dtype.names else str(dtype)[:40]
+    names = {"S": "text", "U": "text", "M": "dates", "m": "spans of time", "V": "unnamed bytes"}
+    return "structured" if dtype.names else f"“{names.get(dtype.kind, str(dtype)[:40])}”"

@@ -7,7 +7,7 @@ from typing import Any, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from regolith_studio.errors import FileError, of_the_entry
+from regolith_studio.errors import FileError, of_the_entry, reason_of
 from regolith_studio.model.protocol import FittedModel
 from regolith_studio.session.outputs.staging import write_bytes
 from regolith_studio.session.portrait import Portrait
@@ -91,7 +91,7 @@ def read_project(path: Path) -> Project:
     try:
         return Project.model_validate_json(path.read_bytes())
     except OSError as error:
-        raise FileError(f"The project {path} cannot be read ({error.strerror}).") from error
+        raise FileError(f"The project {path} cannot be read ({reason_of(error)}).") from error
     except ValidationError as error:
         reason = of_the_entry(error.errors(include_url=False))
         raise FileError(f"{path} is not a project of this program: {reason}.") from error

@@ -8,7 +8,7 @@ from pydantic import Field, ValidationError, model_validator
 
 from regolith_studio.coarsening.coarsen import DEFAULT_METHOD, DEFAULT_PRESET
 from regolith_studio.coarsening.weights import LossWeights
-from regolith_studio.errors import FileError, InputError, of_the_entry
+from regolith_studio.errors import FileError, InputError, of_the_entry, reason_of
 from regolith_studio.harmonics.expansion import USUAL
 from regolith_studio.session.choices import Choices, Scalar
 from regolith_studio.session.recipe_dataset import Exports, Representatives
@@ -171,7 +171,7 @@ def read_recipe(path: Path) -> Recipe:
     try:
         return Recipe.model_validate_json(path.read_bytes())
     except OSError as error:
-        raise FileError(f"The recipe {path} cannot be read ({error.strerror}).") from error
+        raise FileError(f"The recipe {path} cannot be read ({reason_of(error)}).") from error
     except ValidationError as error:
         raise FileError(
             f"{path} is not a recipe of this program: {of_the_entry(error.errors(include_url=False))}."

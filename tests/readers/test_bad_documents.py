@@ -189,6 +189,9 @@ def special(key: str, good: bytes) -> Iterator[Bad]:
         yield "short", changed(document, "relative_amplitudes", [0.1]), "it has 1 of at least 2 entries"
         yield "extra", changed(document, "colour", "grey"), "colour is not known here"
         yield "inch", changed(document, "unit", "inch"), "there is no unit “inch”"
+    if key == "dataset":
+        odd = changed(document, "representatives[1].sizes.type", "log-norm{al")
+        yield "sizes", odd, r"representatives\[1\]\.sizes must have a 'type' that is one of 'discrete', "
     if key in ("recipe", "project"):
         yield "format", changed(document, "format", "x"), rf"format must be 'regolith-studio {key}'"
         yield "version", changed(document, "version", 9), "version must be [12], not 9"

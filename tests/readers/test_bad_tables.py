@@ -303,7 +303,7 @@ def coefficients() -> Iterator[Bad]:
             "no positive mean radius",
         )
     for number, text in enumerate(("0 0 10\n1 0 1\n", "0 0\n", "0\n1\n")):
-        yield f"width-{number}.anm", text, "columns; a table of coefficients has four"
+        yield f"width-{number}.anm", text, "columns?; a table of coefficients has four"
     for number, text in enumerate(("0 0 10 0\n1 0 1 0\n", "0 0 10 0\n", "0 0 10 0\n1 0 1 0\n1 1 1 1\n")):
         yield f"convention-{number}.anm", text, "does not show its convention"
 

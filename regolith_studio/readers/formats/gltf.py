@@ -228,7 +228,7 @@ def _accessor(index: Any, document: _Document, kind: str) -> NDArray[np.float64]
         raise FileError("has sparse accessors, which are not read; export it as STL or PLY.")
     if row["type"] != kind or row["componentType"] not in _KINDS:
         raise FileError(
-            f"is not a proper glTF: accessor {index} is of type {str(row['type'])[:20]}, not {kind}."
+            f"is not a proper glTF: accessor {index} is of type “{str(row['type'])[:20]}”, not {kind}."
         )
     view = document.row("bufferViews", row["bufferView"])
     document.row("buffers", view["buffer"])

@@ -82,9 +82,10 @@ def _faces(tables: dict[str, Columns], vertices: NDArray[np.float64]) -> NDArray
 def _indices(values: NDArray[np.float64], n_vertices: int, allow_stop: bool) -> NDArray[np.int64]:
     good = (values >= (-1 if allow_stop else 0)) & (values < n_vertices) & (values == np.floor(values))
     if not good.all():
+        index = float(values[~good][0])
+        shown = f"{index:,.0f}" if index.is_integer() else f"{index:g}"
         raise FileError(
-            f"is not a proper PLY: a face points to vertex {values[~good][0]:g} of {n_vertices:,} "
-            "(counted from 0)."
+            f"is not a proper PLY: a face points to vertex {shown} of {n_vertices:,} (counted from 0)."
         )
     return values.astype(np.int64)
 

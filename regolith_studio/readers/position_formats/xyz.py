@@ -7,7 +7,7 @@ import numpy as np
 from regolith_studio.errors import FileError
 from regolith_studio.readers.number_rows import number_rows
 from regolith_studio.readers.position_format import NamedColumns, ParsedPositions, PositionFormat, sized
-from regolith_studio.readers.sentences import printable
+from regolith_studio.readers.sentences import counted, printable
 
 _PROPERTIES = re.compile(r'Properties="?([\w:]+)')
 _SIZES = {"radius": True, "diameter": False, "rad": True, "size": False}
@@ -46,7 +46,9 @@ def parse(data: bytes) -> ParsedPositions:
 def _table(data: bytes) -> ParsedPositions:
     numbers = number_rows(data).numbers
     if numbers.shape[1] not in (3, 4):
-        raise FileError(f"has {numbers.shape[1]} columns; x, y, z and perhaps a diameter are read.")
+        raise FileError(
+            f"has {counted(numbers.shape[1], 'column')}; x, y, z and perhaps a diameter are read."
+        )
     note = "The fourth column has no name; it was taken for the diameter."
     if numbers.shape[1] == 3:
         return ParsedPositions(numbers)

@@ -103,6 +103,8 @@ def _stored_type(fields: dict[str, str]) -> np.dtype[Any]:
     name = fields.get("elementtype", "").upper()
     if name.endswith("_ARRAY") or fields.get("elementnumberofchannels", "1") != "1":
         raise FileError("holds several channels; save one of them as greys.")
+    if not name:
+        raise FileError("is a broken MetaImage: its header has no field “ElementType”.")
     if name not in _TYPES:
         raise FileError(f"holds “{printable(name)[:30]}” values; voxels are whole numbers or floats.")
     if fields.get("binarydata", "true").lower() not in _TRUE:

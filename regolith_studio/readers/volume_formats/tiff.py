@@ -52,7 +52,9 @@ class TiffPages:
         except MemoryError:
             raise
         except Exception:  # noqa: BLE001 (each codec has errors of its own)
-            raise FileError(f"is damaged: the pixels of page {number + 1:,} cannot be decoded.") from None
+            raise FileError(
+                f"is damaged: the pixels of page {number + 1:,} cannot be decoded; export it again."
+            ) from None
         return decoded
 
     def close(self) -> None:
