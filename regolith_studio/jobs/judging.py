@@ -4,11 +4,9 @@ import io
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
 
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.mesh import Mesh
@@ -28,9 +26,11 @@ from regolith_studio.model.models import MODELS
 from regolith_studio.model.protocol import FittedModel
 from regolith_studio.model.sample import Sample
 from regolith_studio.readers.shape_files import ShapeSource
-from regolith_studio.studies import population_figures as figures
 from regolith_studio.studies.population import PopulationStudy, drawn_by_itself
 from regolith_studio.studies.population_distances import WEIGHTINGS
+
+if TYPE_CHECKING:  # matplotlib: the page is opened more often than models are judged on it
+    from matplotlib.figure import Figure
 
 N_EXAMPLES = 6
 LEVEL = 4
@@ -142,6 +142,8 @@ def judge_shapes(sample: Sample, models: Sequence[str] | None, **options: Any) -
 
 def judged(study: PopulationStudy, shown: Progress) -> Generator[Step, None, JudgedShapes]:
     """The study with its figures, drawn one by one; how far the work is stays as `shown`."""
+    from regolith_studio.studies import population_figures as figures
+
     drawings: dict[str, Callable[[], Figure | None]] = {
         **{name: partial(figures.density_figure, study, name, COLUMNS) for name in WEIGHTINGS},
         "pairs": partial(figures.pair_figure, study),
@@ -158,8 +160,10 @@ def judged(study: PopulationStudy, shown: Progress) -> Generator[Step, None, Jud
     return JudgedShapes(study, pictures)
 
 
-def png_of(figure: Figure) -> bytes:
+def png_of(figure: "Figure") -> bytes:
     """The figure as PNG."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
     FigureCanvasAgg(figure)
     stream = io.BytesIO()
     figure.savefig(stream, format="png", dpi=DOTS_PER_INCH)

@@ -20,7 +20,6 @@ from regolith_studio.dem.run_document import run_document
 from regolith_studio.dem.run_folder import claim_folder, save_ending, save_shapes, snapshot_files
 from regolith_studio.errors import EnvironmentProblem, RegolithError
 from regolith_studio.jobs.events import Partial, Progress, Started, Steps
-from regolith_studio.studies.repose_figures import write_section_figure
 
 PARTS = 1000
 """Of a run, in its progress."""
@@ -150,6 +149,8 @@ class _Record:
 def _concluded(record: _Record, ending: Ending, evaluation: EvaluationSettings) -> ReposeRun:
     measured = measured_or_refused(ending, evaluation)
     if isinstance(measured, ReposeMeasurement):
+        from regolith_studio.studies.repose_figures import write_section_figure  # matplotlib
+
         write_section_figure(ending.pile.points, ending.pile.diameters, measured, record.folder)
     document = record.save("finished", ending, measured)
     return ReposeRun(record.folder, document, ending, measured)

@@ -3,17 +3,14 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 from regolith_studio.studies.coarsening import rmsre_table as coarsening_table
-from regolith_studio.studies.coarsening_figures import write_coarsening_study
 from regolith_studio.studies.lmax import rmsre_table as lmax_table
-from regolith_studio.studies.lmax_figures import write_lmax_study
-from regolith_studio.studies.population_figures import write_population_study
 from regolith_studio.studies.population_tables import ranking_table
 from regolith_studio.studies.tables import Table
-from regolith_studio.studies.variation_figures import write_variation
 from regolith_studio.studies.variations import VARIATIONS
 
 
@@ -39,24 +36,36 @@ class StudyKind:
     table: Callable[[Any], Table]
 
 
+def _write(name: str, *given: Any) -> tuple[Path, ...]:
+    """Call a function of ``studies`` by ``module.function``; matplotlib is loaded when figures are wanted."""
+    module, _, function = name.partition(".")
+    written: tuple[Path, ...] = getattr(import_module(f"regolith_studio.studies.{module}"), function)(*given)
+    return written
+
+
 STUDIES: Mapping[str, StudyKind] = {
     "lmax_study": StudyKind(
-        "RMSRE of the descriptors against l_max (Fig. 3)", "lmax_rmsre.png", write_lmax_study, lmax_table
+        "RMSRE of the descriptors against l_max (Fig. 3)",
+        "lmax_rmsre.png",
+        partial(_write, "lmax_figures.write_lmax_study"),
+        lmax_table,
     ),
     "coarsening_study": StudyKind(
         "RMSRE of the descriptors for each set of loss weights (Fig. 8)",
         "coarsening_rmsre.png",
-        write_coarsening_study,
+        partial(_write, "coarsening_figures.write_coarsening_study"),
         coarsening_table,
     ),
     "population_study": StudyKind(
         "Drawn against measured particles (Figs. 4 to 6)",
         "population_number.png",
-        write_population_study,
+        partial(_write, "population_figures.write_population_study"),
         ranking_table,
     ),
     **{
-        f"{key}_study": StudyKind(each.title, f"{key}.png", partial(write_variation, key), each.table)
+        f"{key}_study": StudyKind(
+            each.title, f"{key}.png", partial(_write, "variation_figures.write_variation", key), each.table
+        )
         for key, each in VARIATIONS.items()
     },
 }

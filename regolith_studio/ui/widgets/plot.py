@@ -46,9 +46,8 @@ class Plot(QWidget):
         self.theme: Theme = current_theme()
         self._labels = (x, y)
         self._legend_entries: list[tuple[str, str]] = []
-        self.canvas = pg.PlotWidget(background=None)
+        self.canvas = pg.PlotWidget(background=None, enableMenu=False)
         self.canvas.setFrameShape(self.canvas.Shape.NoFrame)
-        self.canvas.setMenuEnabled(False)
         self.canvas.setMouseEnabled(x=False, y=False)
         self.canvas.hideButtons()
         self.canvas.setFocusPolicy(Qt.FocusPolicy.NoFocus)
