@@ -17,6 +17,7 @@ from regolith_studio.jobs.crew import Crew, hired
 from regolith_studio.jobs.events import Job, Progress, Started, Steps
 from regolith_studio.jobs.examining import Examined, examine
 from regolith_studio.jobs.fitting import FIT_DEGREE, FitOrder, fit_sample
+from regolith_studio.model.chunks import joined
 from regolith_studio.model.draws import Draws, virtual_mesh
 from regolith_studio.model.materials import MaterialCard
 from regolith_studio.model.models import DEFAULT_MODEL, MODELS
@@ -129,9 +130,11 @@ def fit_model(source: ShapeSource, order: GenerateOrder) -> Steps:
 def draw(model: FittedModel, order: GenerateOrder) -> Steps:
     """The particles of an order, chunk by chunk; returns :class:`Draws`."""
     yield Started("Drawing", order.n)
-    draws = model.draw(order.n, order.seed, order.size_range)
-    yield Progress(order.n, order.n)
-    return draws
+    parts: list[Draws] = []
+    for part in model.parts(order.n, order.seed, order.size_range):
+        parts.append(part)
+        yield Progress(sum(map(len, parts)), order.n)
+    return joined(parts)
 
 
 def _of_card(card: MaterialCard, order: GenerateOrder) -> FittedModel:

@@ -5,13 +5,16 @@ Particles are drawn in chunks of :data:`CHUNK`. Chunk i is drawn whole, by a gen
 draw are those of a shorter one, and chunks may be drawn anywhere, in any order.
 """
 
-from collections.abc import Callable, Iterator
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import BoolArray, FloatArray
 from regolith_studio.model.draws import Draws
+from regolith_studio.model.protocol import SizeRange
 
 CHUNK = 500
 MOST_ROUNDS = 200
@@ -33,20 +36,40 @@ def chunks(n: int, seed: int) -> Iterator[tuple[np.random.Generator, int]]:
         yield np.random.default_rng(sequence), min(CHUNK, n - first)
 
 
-def joined(parts: list[Draws], empty: Draws) -> Draws:
-    """The chunks as one; `empty` where there are none."""
-    if not parts:
-        return empty
+class DrawnByChunks(ABC):
+    """A fitted model that draws chunk by chunk: whoever draws many can tell how far it is, and stop."""
+
+    @abstractmethod
+    def parts(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Draws]:
+        """The chunks of :meth:`draw`, in order.
+
+        Raises
+        ------
+        InputError
+            If `n` is negative, the range is none, or hardly any draw is acceptable.
+        """
+
+    def draw(self, n: int, seed: int, size_range: SizeRange | None = None) -> Draws:
+        """`n` particles, in the range of equivalent radii if given.
+
+        Raises
+        ------
+        InputError
+            As :meth:`parts`.
+        """
+        found = list(self.parts(n, seed, size_range))
+        return joined(found) if found else replace(next(self.parts(1, seed)).chosen([]), rejected=0)
+
+
+def joined(parts: Sequence[Draws]) -> Draws:
+    """The chunks, at least one, as one."""
     first = parts[0]
-    return Draws(
-        np.concatenate([part.coefficients for part in parts]),
-        first.scale,
-        first.model,
-        first.seed,
-        first.unit,
-        sum(part.rejected for part in parts),
-        np.concatenate([part.parents for part in parts if part.parents is not None]),
-        np.concatenate([part.components for part in parts if part.components is not None]),
+    return replace(
+        first,
+        coefficients=np.concatenate([part.coefficients for part in parts]),
+        rejected=sum(part.rejected for part in parts),
+        parents=np.concatenate([np.asarray(part.parents) for part in parts]),
+        components=np.concatenate([np.asarray(part.components) for part in parts]),
     )
 
 

@@ -61,8 +61,9 @@ def _of_batch(coefficients: FloatArray) -> PrincipalAxes:
     ]
     squares, axes = np.linalg.eigh(second)
     axes[np.linalg.det(axes) < 0, :, 0] *= -1
-    heights = squared * squared * squared * grid.weights / 6
-    skews = np.stack([((u @ axes[:, :, i].T).T ** 3 * heights).sum(axis=1) for i in range(3)], axis=1)
+    cubes = (products[:, :, None] * u[:, None, :]).reshape(-1, 27)
+    third = ((squared * squared * squared * grid.weights) @ cubes / 6).reshape(-1, 3, 3, 3)
+    skews = np.einsum("nabc,nai,nbi,nci->ni", third, axes, axes, axes, optimize=True)
     return PrincipalAxes(axes, np.sqrt(np.maximum(squares, 1e-30)), skews / volumes[:, None], volumes)
 
 

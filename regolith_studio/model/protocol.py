@@ -1,6 +1,6 @@
 """What every model of particle shape offers: to be fitted, to draw, to be written down."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any, Protocol
 
 from numpy.typing import NDArray
@@ -29,6 +29,9 @@ class FittedModel(Protocol):
 
     def draw(self, n: int, seed: int, size_range: SizeRange | None = None) -> Draws:
         """`n` particles; the first of them do not depend on `n`, nor on how the work is shared out."""
+
+    def parts(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Draws]:
+        """The same particles some hundreds at a time."""
 
     def stored(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
         """Plain values for JSON, and arrays by name for NPZ."""

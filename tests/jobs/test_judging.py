@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from regolith_studio.jobs.events import Partial, Progress, Step
+from regolith_studio.jobs.events import Partial, Progress, Started, Step
+from regolith_studio.jobs.generating import GenerateOrder, draw
 from regolith_studio.jobs.judging import JudgedShapes, judge_shapes
 from regolith_studio.model.materials import materials
 from regolith_studio.model.sample import Sample
@@ -40,3 +41,18 @@ def test_that_it_can_be_stopped_between_figures_and_never_goes_back(
     partials = [step for step in steps if isinstance(step, Partial)]
     assert len(figures) == (5 + 4) * (len(partials) + 1)
     assert {step.done for step in figures} == {figures[0].total}
+
+
+def test_that_drawing_can_be_stopped_between_chunks_and_says_how_far_it_is() -> None:
+    model = materials()["ma165"].model(3)
+    steps = draw(model, GenerateOrder(n=1203, seed=2))
+    told = [next(steps) for _ in range(3)]
+    assert told == [Started("Drawing", 1203), Progress(500, 1203), Progress(1000, 1203)]
+    steps.close()
+    again, done = draw(model, GenerateOrder(n=1203, seed=2)), False
+    while not done:
+        try:
+            next(again)
+        except StopIteration as end:
+            draws, done = end.value, True
+    assert draws.coefficients.tobytes() == model.draw(1203, 2).coefficients.tobytes()

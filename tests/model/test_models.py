@@ -63,6 +63,24 @@ def test_that_every_particle_is_a_closed_solid_with_the_volume_of_its_series(
 
 
 @keys
+def test_that_parts_are_the_same_particles_some_hundreds_at_a_time(
+    key: str, fitted: dict[str, FittedModel]
+) -> None:
+    parts, whole = list(fitted[key].parts(1203, 4)), fitted[key].draw(1203, 4)
+    assert [len(part) for part in parts] == [500, 500, 203]
+    for name in ("coefficients", "parents", "components"):
+        joined = np.concatenate([getattr(part, name) for part in parts])
+        assert joined.tobytes() == getattr(whole, name).tobytes()
+    assert sum(part.rejected for part in parts) == whole.rejected
+
+
+@keys
+def test_that_no_particles_are_none(key: str, fitted: dict[str, FittedModel]) -> None:
+    none = fitted[key].draw(0, 1)
+    assert (len(none), none.l_max, none.rejected) == (0, fitted[key].l_max, 0)
+
+
+@keys
 def test_that_sizes_stay_in_the_range_asked_for(key: str, fitted: dict[str, FittedModel]) -> None:
     radii = fitted[key].draw(700, seed=1, size_range=(9.0, 11.0)).equivalent_radii()
     assert radii.min() >= 9.0 * (1 - 1e-5)

@@ -4,7 +4,7 @@ c_00 is N(mu, A_0), c_lm is N(0, A_l), all independent. Nothing keeps the radius
 radius is not are thrown away and counted, which the paper does not mention.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, ClassVar
@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, locked_floats
 from regolith_studio.harmonics.coefficients import degrees
-from regolith_studio.model.chunks import accepted, chunks, joined
+from regolith_studio.model.chunks import DrawnByChunks, accepted, chunks
 from regolith_studio.model.draws import Draws
 from regolith_studio.model.positive import acceptable
 from regolith_studio.model.protocol import SizeRange
@@ -37,7 +37,7 @@ class GaussianFieldSettings:
 
 
 @dataclass(frozen=True, eq=False)
-class GaussianField:
+class GaussianField(DrawnByChunks):
     """The field's numbers.
 
     Parameters
@@ -80,7 +80,7 @@ class GaussianField:
         """The field with another spectrum, edited by hand."""
         return replace(self, spectrum=np.asarray(spectrum, dtype=np.float64))
 
-    def draw(self, n: int, seed: int, size_range: SizeRange | None = None) -> Draws:
+    def parts(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Draws]:
         """`n` particles of the field with a positive radius, and in the range of equivalent radii if given.
 
         Raises
@@ -89,11 +89,9 @@ class GaussianField:
             If `n` is negative, the range is none, or hardly any draw is acceptable.
         """
         bounds = checked_bounds(size_range)
-        parts = []
         for rng, wanted in chunks(n, seed):
             rows, rejected = accepted(partial(self._propose, rng), partial(acceptable, bounds), wanted)
-            parts.append(Draws(rows, "radius", KEY, seed, self.unit, rejected))
-        return joined(parts, Draws(np.empty((0, (self.l_max + 1) ** 2)), "radius", KEY, seed, self.unit))
+            yield Draws(rows, "radius", KEY, seed, self.unit, rejected)
 
     def _propose(self, rng: np.random.Generator, n: int) -> FloatArray:
         length = (self.l_max + 1) ** 2

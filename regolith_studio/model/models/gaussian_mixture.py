@@ -5,7 +5,7 @@ N(0, A_lk). The number of parts is the one with the lowest information criterion
 is not positive are thrown away and counted; ``mixture_field`` is the same for ln r, where there are none.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, ClassVar
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray, locked_floats
 from regolith_studio.harmonics.coefficients import degrees
-from regolith_studio.model.chunks import accepted, chunks, joined
+from regolith_studio.model.chunks import DrawnByChunks, accepted, chunks
 from regolith_studio.model.draws import Draws
 from regolith_studio.model.mixture import MixtureSettings, NamedParts, chosen_mixture, part_names
 from regolith_studio.model.positive import acceptable
@@ -28,7 +28,7 @@ KEY = "gaussian_mixture"
 
 
 @dataclass(frozen=True, eq=False)
-class GaussianMixture(NamedParts):
+class GaussianMixture(NamedParts, DrawnByChunks):
     """The parts, the largest share first.
 
     Parameters
@@ -77,7 +77,7 @@ class GaussianMixture(NamedParts):
         fields = (self.weights, self.means, self.spectra, self.unit, self.bic, self.names, self.labels)
         return GaussianMixture, fields
 
-    def draw(self, n: int, seed: int, size_range: SizeRange | None = None) -> Draws:
+    def parts(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Draws]:
         """`n` particles with a positive radius, and in the range of equivalent radii if given.
 
         Raises
@@ -85,12 +85,11 @@ class GaussianMixture(NamedParts):
         InputError
             If `n` is negative, the range is none, or hardly any draw is acceptable.
         """
-        bounds, parts = checked_bounds(size_range), []
+        bounds = checked_bounds(size_range)
         for rng, wanted in chunks(n, seed):
             rows, rejected = accepted(partial(self._propose, rng), partial(_acceptable, bounds), wanted)
             component = rows[:, -1].astype(np.int64)
-            parts.append(Draws(rows[:, :-1], "radius", KEY, seed, self.unit, rejected, components=component))
-        return joined(parts, Draws(np.empty((0, (self.l_max + 1) ** 2)), "radius", KEY, seed, self.unit))
+            yield Draws(rows[:, :-1], "radius", KEY, seed, self.unit, rejected, components=component)
 
     def _propose(self, rng: np.random.Generator, n: int) -> FloatArray:
         """Coefficients, and the part of each in a last column."""

@@ -10,7 +10,7 @@ sample's extents, sphericities and shares. No measured particle is kept; sizes b
 shapes of its ends.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
 
@@ -20,7 +20,7 @@ from scipy.spatial.transform import Rotation
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, locked_floats
-from regolith_studio.model.chunks import CHUNK, chunks, joined
+from regolith_studio.model.chunks import CHUNK, DrawnByChunks, chunks
 from regolith_studio.model.copula import GaussianCopula
 from regolith_studio.model.draws import Draws
 from regolith_studio.model.forms import log_ellipsoids, with_forms
@@ -62,7 +62,7 @@ class HullFieldSettings:
 
 
 @dataclass(frozen=True, eq=False)
-class HullField:
+class HullField(DrawnByChunks):
     """The field's numbers.
 
     Parameters
@@ -108,7 +108,7 @@ class HullField:
         """Degree of ln r."""
         return len(self.spectrum) - 1
 
-    def draw(self, n: int, seed: int, size_range: SizeRange | None = None) -> Draws:
+    def parts(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Draws]:
         """`n` particles; their equivalent radii follow the law of sizes, cut to the range if given.
 
         Raises
@@ -116,12 +116,11 @@ class HullField:
         InputError
             If `n` is negative or the range is none.
         """
-        bounds, parts = checked_bounds(size_range), []
+        bounds = checked_bounds(size_range)
         for rng, wanted in chunks(n, seed):
             radii, _ = self.sizes.draw(CHUNK, rng, bounds)
             shapes = self._shapes(self.numbers.draw(np.log(radii), rng), rng)
-            parts.append(Draws(sized(shapes, radii)[:wanted], "log_radius", KEY, seed, self.unit))
-        return joined(parts, Draws(np.empty((0, (self.l_max + 1) ** 2)), "log_radius", KEY, seed, self.unit))
+            yield Draws(sized(shapes, radii)[:wanted], "log_radius", KEY, seed, self.unit)
 
     def _shapes(self, numbers: FloatArray, rng: np.random.Generator) -> FloatArray:
         """Coefficients of ln r, up to size, of particles that come out with these numbers (n, d)."""

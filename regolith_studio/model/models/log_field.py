@@ -5,7 +5,7 @@ nothing is thrown away, and size and shape extrapolate apart. The exponential co
 brings the elongated particles that an isotropic field in r cannot make.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
 
@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
 from regolith_studio.harmonics.coefficients import degrees
-from regolith_studio.model.chunks import CHUNK, chunks, joined
+from regolith_studio.model.chunks import CHUNK, DrawnByChunks, chunks
 from regolith_studio.model.draws import Draws
 from regolith_studio.model.log_shapes import directed, log_shapes, sized
 from regolith_studio.model.protocol import SizeRange
@@ -52,7 +52,7 @@ class LogFieldSettings:
 
 
 @dataclass(frozen=True, eq=False)
-class LogField:
+class LogField(DrawnByChunks):
     """The field's numbers.
 
     Parameters
@@ -114,7 +114,7 @@ class LogField:
         """The field with one spectrum for all particles, edited by hand."""
         return replace(self, spectrum=np.asarray(spectrum, dtype=np.float64), powers=None, radii=None)
 
-    def draw(self, n: int, seed: int, size_range: SizeRange | None = None) -> Draws:
+    def parts(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Draws]:
         """`n` particles; their equivalent radii follow the law of sizes, cut to the range if given.
 
         Raises
@@ -122,13 +122,12 @@ class LogField:
         InputError
             If `n` is negative or the range is none.
         """
-        bounds, parts = checked_bounds(size_range), []
+        bounds = checked_bounds(size_range)
         for rng, wanted in chunks(n, seed):
             radii, _ = self.sizes.draw(CHUNK, rng, bounds)
             shapes, parents = self._shapes(radii, rng)
             rows = sized(shapes, radii)[:wanted]
-            parts.append(Draws(rows, "log_radius", KEY, seed, self.unit, parents=parents[:wanted]))
-        return joined(parts, Draws(np.empty((0, (self.l_max + 1) ** 2)), "log_radius", KEY, seed, self.unit))
+            yield Draws(rows, "log_radius", KEY, seed, self.unit, parents=parents[:wanted])
 
     def _shapes(self, radii: FloatArray, rng: np.random.Generator) -> tuple[FloatArray, IntArray]:
         """Coefficients of ln r up to size, and the measured particles that lent their spectra."""

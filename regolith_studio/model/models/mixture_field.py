@@ -5,7 +5,7 @@ or size classes of different shape. In ln r, so that no draw has a negative radi
 one with the lowest information criterion of Bayes.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
 from regolith_studio.harmonics.coefficients import degrees
-from regolith_studio.model.chunks import CHUNK, chunks, joined
+from regolith_studio.model.chunks import CHUNK, DrawnByChunks, chunks
 from regolith_studio.model.draws import Draws
 from regolith_studio.model.log_shapes import log_shapes, sized
 from regolith_studio.model.mixture import MixtureSettings, NamedParts, chosen_mixture, part_names
@@ -27,7 +27,7 @@ KEY = "mixture_field"
 
 
 @dataclass(frozen=True, eq=False)
-class MixtureField(NamedParts):
+class MixtureField(NamedParts, DrawnByChunks):
     """The parts, the largest share first.
 
     Parameters
@@ -66,7 +66,7 @@ class MixtureField(NamedParts):
         fields = (self.sizes, self.spectra, self.unit, self.bic, self.names, self.labels)
         return MixtureField, fields
 
-    def draw(self, n: int, seed: int, size_range: SizeRange | None = None) -> Draws:
+    def parts(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Draws]:
         """`n` particles; `components` of the draws tells the part of each.
 
         Raises
@@ -74,14 +74,13 @@ class MixtureField(NamedParts):
         InputError
             If `n` is negative or the range is none.
         """
-        bounds, parts = checked_bounds(size_range), []
+        bounds = checked_bounds(size_range)
         length = (self.l_max + 1) ** 2
         for rng, wanted in chunks(n, seed):
             radii, component = self.sizes.draw(CHUNK, rng, bounds)
             scales = np.sqrt(self.spectra[component])[:, degrees(length)]
             rows = sized(rng.standard_normal((CHUNK, length)) * scales, radii)[:wanted]
-            parts.append(Draws(rows, "log_radius", KEY, seed, self.unit, components=component[:wanted]))
-        return joined(parts, Draws(np.empty((0, length)), "log_radius", KEY, seed, self.unit))
+            yield Draws(rows, "log_radius", KEY, seed, self.unit, components=component[:wanted])
 
     def stored(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
         """Plain values for JSON; the labels of the measured particles."""

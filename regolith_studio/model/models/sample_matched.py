@@ -12,7 +12,7 @@ It is a smoothed bootstrap: it makes no size and no form that was not measured i
 beyond the sample, take ``log_field``.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, ClassVar
@@ -25,7 +25,7 @@ from scipy.spatial.transform import Rotation
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
 from regolith_studio.harmonics.coefficients import degrees
-from regolith_studio.model.chunks import CHUNK, chunks, joined
+from regolith_studio.model.chunks import CHUNK, DrawnByChunks, chunks
 from regolith_studio.model.draws import Draws
 from regolith_studio.model.linear_maps import Tables, mapped_radii, radius_tables
 from regolith_studio.model.positive import positive_rows
@@ -52,7 +52,9 @@ class SampleMatchedSettings:
     l_max
         Degree of the particles drawn.
     turn
-        Mean angle of the rotation, radians; angles are even between 0.6 and 1.4 times as much.
+        Mean angle of the rotation of a round particle, radians; angles are even between 0.6 and 1.4 times as
+        much, and smaller by short over long axis: on a long particle the same angle changes more, and more
+        turning makes it rougher than the measured one.
     n_neighbours
         The ellipsoid comes from one of so many particles nearest in elongation and flatness, itself among
         them.
@@ -62,8 +64,14 @@ class SampleMatchedSettings:
 
     l_max: int = 10
     turn: float = field(
-        default=0.35,
-        metadata={"label": "Turn [rad]", "maximum": 2.0, "step": 0.1, "decimals": 2, "tip": "Mean rotation."},
+        default=0.45,
+        metadata={
+            "label": "Turn [rad]",
+            "maximum": 2.0,
+            "step": 0.1,
+            "decimals": 2,
+            "tip": "Mean rotation of a round particle; long ones are turned less.",
+        },
     )
     n_neighbours: int = field(
         default=20,
@@ -81,7 +89,7 @@ class SampleMatchedSettings:
 
 
 @dataclass(frozen=True, eq=False)
-class SampleMatched:
+class SampleMatched(DrawnByChunks):
     """The measured particles and how far to leave them.
 
     Parameters
@@ -147,7 +155,7 @@ class SampleMatched:
         mutual = (found[found] == own[:, :, None]).any(axis=2)
         return np.asarray(np.where(mutual, found, own), dtype=np.int64)
 
-    def draw(self, n: int, seed: int, size_range: SizeRange | None = None) -> Draws:
+    def parts(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Draws]:
         """`n` particles; their equivalent radii are the measured ones blurred, cut to the range if given.
 
         Where nothing was measured in the range, sizes are even in ln r and shapes those nearest in size.
@@ -157,14 +165,19 @@ class SampleMatched:
         InputError
             If `n` is negative or the range is none.
         """
-        bounds, parts = checked_bounds(size_range), []
+        bounds = checked_bounds(size_range)
         for rng, wanted in chunks(n, seed):
             radii, parents = self.sizes.draw(CHUNK, rng, bounds)
             column = rng.integers(self._neighbours.shape[1], size=CHUNK)
-            spins = _spins(rng, self.settings.turn)
-            rows = _sized(self._turned(parents, self._neighbours[parents, column], spins), radii)
-            parts.append(Draws(rows[:wanted], "radius", KEY, seed, self.unit, parents=parents[:wanted]))
-        return joined(parts, Draws(np.empty((0, (self.l_max + 1) ** 2)), "radius", KEY, seed, self.unit))
+            forms = self._neighbours[parents, column]
+            spins = _spins(rng, self.settings.turn) * self._roundness(parents, forms)[:, None]
+            rows = _sized(self._turned(parents, forms, spins), radii)
+            yield Draws(rows[:wanted], "radius", KEY, seed, self.unit, parents=parents[:wanted])
+
+    def _roundness(self, parents: IntArray, forms: IntArray) -> FloatArray:
+        """Short over long axis of whichever ellipsoid is the longer one, shape (n,)."""
+        shares = np.exp(self._axes.log_ratios[:, 0] - self._axes.log_ratios[:, 2])
+        return np.asarray(np.minimum(shares[parents], shares[forms]))
 
     def _turned(self, parents: IntArray, forms: IntArray, spins: FloatArray) -> FloatArray:
         """Coefficients of the particles `parents` on the ellipsoids of `forms`, turned by `spins` (n, 3)."""
