@@ -56,7 +56,7 @@ def test_that_the_same_seed_gives_the_same_hundred_facets() -> None:
 
 
 def test_that_medium_numbers_of_facets_are_met_and_cost_no_overlap() -> None:
-    overlap = {n_faces: 0.0 for n_faces in (20, 30, 50)}
+    overlap = dict.fromkeys((20, 30, 50), 0.0)
     for seed in range(6):
         target = Target.of(bumpy(seed, roughness=0.3))
         for n_faces in overlap:

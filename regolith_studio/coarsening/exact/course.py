@@ -1,7 +1,7 @@
 """One course of the exact method from one start: free descent, polish, descent along the conditions."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -12,8 +12,6 @@ from regolith_studio.coarsening.core.planes import tangents_of
 from regolith_studio.coarsening.exact.descent import (
     OVERLAP,
     REACH,
-    ROUGHER,
-    SMOOTHER,
     TOLERANCE,
     State,
     descended,
@@ -23,7 +21,7 @@ from regolith_studio.coarsening.exact.descent import (
     steady_metric,
 )
 from regolith_studio.coarsening.exact.polish import Polished, measured, polished, verified
-from regolith_studio.coarsening.exact.problem import SPHERICITY, Problem, log_sphericity
+from regolith_studio.coarsening.exact.problem import Problem
 from regolith_studio.coarsening.exact.starts import grouped_planes
 from regolith_studio.coarsening.target import Target
 from regolith_studio.geometry.arrays import FloatArray
@@ -139,39 +137,6 @@ def course(
         state = later
         yield attempt(full, state.point)
     yield from mended(target, full, state.point, bound_steps // 2)
-
-
-def compromise(
-    full: Problem, rest: Problem, planes: tuple[FloatArray, FloatArray], steps: int
-) -> Iterator[Attempt]:
-    """Polyhedra that meet all conditions but the sphericity, ever nearer to it.
-
-    Parameters
-    ----------
-    full, rest
-        The problem with and without the sphericity.
-    planes
-        To start from.
-    """
-    point = measured(rest, planes[0], planes[1], tangents_of(planes[0]), NOWHERE)
-    point = verified(rest, point, first_metric(point.shape), LONG_POLISH, TOLERANCE, reach(point))
-    if point.worst > TOLERANCE:
-        return
-    goal = SMOOTHER if sphericity_residual(full, point) < 0.0 else ROUGHER
-    state = started(rest, point, goal, reach(point) / 2)
-    for _ in range(0, steps, CHUNK):
-        state = descended(rest, state, goal, CHUNK, POLISH_STEPS)
-        residual = sphericity_residual(full, state.point)
-        if (residual > 0.0) == (goal == SMOOTHER):
-            return
-        yield replace(attempt(rest, state.point), worst=abs(residual))
-        if state.done:
-            return
-
-
-def sphericity_residual(problem: Problem, point: Polished) -> float:
-    """Logarithm of the sphericity over the wanted one."""
-    return log_sphericity(point.shape.volume, point.shape.surface) - float(problem.wanted[SPHERICITY])
 
 
 def steps_down(problem: Problem, state: State, steps: int) -> Iterator[State]:

@@ -1,5 +1,6 @@
 """From weights to conditions: which descriptors are kept exactly, and why some cannot be."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,6 +9,7 @@ from regolith_studio.coarsening.bounds import hull_gives_way, sphericity_reason
 from regolith_studio.coarsening.exact.problem import Problem
 from regolith_studio.coarsening.target import RayTable, Target
 from regolith_studio.coarsening.weights import LossWeights
+from regolith_studio.descriptors.comparison import relative_errors
 
 CONDITION_KEYS = ("volume", "sphericity", "min_diameter", "max_diameter", "aspect_ratio")
 """Descriptors in the order of :mod:`regolith_studio.coarsening.exact.problem`."""
@@ -15,6 +17,11 @@ CONDITION_KEYS = ("volume", "sphericity", "min_diameter", "max_diameter", "aspec
 
 EXACT = 1e-6
 """Relative errors up to this count as none."""
+
+
+ADVICE = "more faces or a weight of 0 would free it."
+ROUGH_ADVICE = "a convex shape with the other descriptors has less surface, so a weight of 0 would free it."
+"""More faces do not help where a particle has more surface than they can."""
 
 
 @dataclass(frozen=True)
@@ -77,24 +84,25 @@ class Request:
 
 
 def reason_for(
-    target: Target, request: Request, n_faces: int, n_real: int, errors: dict[str, float]
+    target: Target, request: Request, n_faces: int, n_real: int, found: Mapping[str, float]
 ) -> str | None:
     """One sentence about the condition that is missed by most, else about facets that are missing.
 
-    ``None`` where all conditions are met to 1e-6 with `n_real` = `n_faces` facets.
+    ``None`` where the descriptors `found` meet all conditions to 1e-6 with `n_real` = `n_faces` facets.
     """
+    errors = relative_errors(target.descriptors, found)
     missed = {key: errors[_reported(key, request)] for key in request.keys}
     worst = max(missed, key=lambda key: missed[key], default=None)
     if worst is None or missed[worst] <= EXACT:
         return None if n_real == n_faces else facets_reason(n_real, n_faces)
-    if "sphericity" in missed:
-        bound = sphericity_reason(target.descriptors["sphericity"], n_faces)
-        if bound is not None:
-            return bound
-    name = _reported(worst, request).replace("_", " ")
+    wanted = target.descriptors["sphericity"]
+    if "sphericity" in missed and (bound := sphericity_reason(wanted, n_faces)) is not None:
+        return bound
+    rough = worst == "sphericity" and found[worst] > wanted
     return (
         f"No polyhedron with {n_faces} faces was found that meets all descriptors:"
-        f" {name} is off by {100 * missed[worst]:.2g} %; more faces or a weight of 0 would free it."
+        f" {_reported(worst, request).replace('_', ' ')} is off by {100 * missed[worst]:.2g} %;"
+        f" {ROUGH_ADVICE if rough else ADVICE}"
     )
 
 

@@ -9,9 +9,11 @@ from regolith_studio.coarsening.bounds import sphericity_reason
 from regolith_studio.coarsening.core.box_search import DENSE_ANGLE, FINE_ANGLE, SAMPLE_ANGLE
 from regolith_studio.coarsening.core.cuts import SMALLEST_FACET
 from regolith_studio.coarsening.evaluation import LossFunction
-from regolith_studio.coarsening.exact.course import Attempt, compromise, course, densely_checked, start_planes
+from regolith_studio.coarsening.exact.compromise import compromise, with_facets_back
+from regolith_studio.coarsening.exact.course import Attempt, course, densely_checked, start_planes
 from regolith_studio.coarsening.exact.growth import grown, numbers_to_grow_from
 from regolith_studio.coarsening.exact.problem import Problem
+from regolith_studio.coarsening.exact.record import Record
 from regolith_studio.coarsening.exact.request import CONDITION_KEYS, EXACT, Request, reason_for
 from regolith_studio.coarsening.polyhedra import facet_areas, polyhedron_of
 from regolith_studio.coarsening.progress import MethodStep
@@ -19,7 +21,6 @@ from regolith_studio.coarsening.result import MethodResult
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
-from regolith_studio.descriptors.comparison import relative_errors
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.errors import GeometryError, InputError
 from regolith_studio.geometry.half_spaces import HalfSpaces
@@ -35,7 +36,10 @@ class Level:
     bound_steps: int
 
 
-COMPROMISE_STEPS = 64
+ROUND_STARTS = 2
+"""Starts from which polyhedra as round as can be are sought where the particle is rounder than the first."""
+OUT_OF_REACH = 4e-3
+"""Where they miss the sphericity by more (in logarithms, added up), no further start is tried."""
 STARTS_FOR_FACETS = 3
 """Further starts where all conditions are met, but a half-space bounds no facet."""
 LEVELS = {"fast": Level(1, 2, 12, 16), "best": Level(3, 3, 20, 40)}
@@ -94,53 +98,46 @@ class ExactMethod:
         request, level = Request.of(target, weights), LEVELS[settings.level]
         free = request.problem(target.rays, SAMPLE_ANGLE, only_volume=True)
         full = request.problem(target.rays, SAMPLE_ANGLE)
-        fine = request.problem(target.rays, FINE_ANGLE)
-        dense = request.problem(target.rays, DENSE_ANGLE)
+        rest = request.problem(target.rays, SAMPLE_ANGLE, sphericity=False)
+        checks = tuple(request.problem(target.rays, angle) for angle in (FINE_ANGLE, DENSE_ANGLE))
         judge = LossFunction(target, weights, everything=True)
-        hopeless = (
-            request.asked[1] and sphericity_reason(target.descriptors["sphericity"], n_faces) is not None
-        )
-        numbers = (n_faces,) if hopeless else numbers_to_grow_from(target, n_faces, request.asked[1])
-        total = 2 if hopeless else level.starts + settings.retries
-        best: Attempt | None = None
-        history: list[float] = []
-        tried = 0
+        round_asked = request.asked[1]
+        hopeless = round_asked and sphericity_reason(target.descriptors["sphericity"], n_faces) is not None
+        numbers = (n_faces,) if hopeless else numbers_to_grow_from(target, n_faces, round_asked)
+        total = ROUND_STARTS if hopeless else level.starts + settings.retries
+        record, steps, misses = Record(judge, total), (level.free_steps, level.bound_steps), []
         for tried in range(1, total + 1):
             planes = start_planes(target, n_faces, rng)
             if tried == 1:
                 yield MethodStep(0, total, judge.value(*planes, SAMPLE_ANGLE), HalfSpaces(*planes))
-            steps = (level.free_steps, level.bound_steps)
             few = numbers[(tried - 1) % len(numbers)]
             if few < n_faces:
                 attempts = grown(target, free, full, n_faces, few, level.few_starts, rng, *steps)
-            else:
-                attempts = course(target, free, full, planes, *steps)
-            for found in attempts:
-                if not found.better_than(best):
-                    continue
-                best = found
-                history.append(judge.of(best.values))
-                yield MethodStep(tried, total, history[-1], HalfSpaces(best.normals, best.offsets))
-            if tried >= level.starts and best is not None and best.exact:
-                best = confirmed(request, (fine, dense), best)
+                yield from record.told(tried, attempts)
+            elif not hopeless:
+                yield from record.told(tried, course(target, free, full, planes, *steps))
+            if round_asked and not record.met and tried <= ROUND_STARTS:
+                rounder = list(compromise(target, full, rest, planes, level.bound_steps, True))
+                yield from record.told(tried, rounder)
+                misses += [rounder[-1].worst] if rounder else []
+            if record.best is None:
+                yield from record.told(tried, course(target, free, full, planes, *steps))
+            if tried >= level.starts and record.best is not None and record.best.exact:
+                best = record.best = confirmed(request, checks, record.best)
                 if best.exact and (best.n_facets == n_faces or tried >= level.starts + STARTS_FOR_FACETS):
                     break
-        if best is None:
+            if sum(misses) > OUT_OF_REACH:
+                break
+        if record.best is None or record.outcome is None:
             raise GeometryError("No start of the exact method bounds a polyhedron.")
-        if not best.exact and request.asked[1]:
-            rest = request.problem(target.rays, SAMPLE_ANGLE, sphericity=False)
-            for begun in (planes, (best.normals, best.offsets)):
-                for found in compromise(full, rest, begun, COMPROMISE_STEPS):
-                    value = judge.of(found.values)
-                    if value < min(history[-1:], default=np.inf):
-                        best = found
-                        history.append(value)
-                        yield MethodStep(total, total, value, HalfSpaces(best.normals, best.offsets))
-        planes_kept = real_planes(best)
-        errors = relative_errors(target.descriptors, describe(polyhedron_of(planes_kept), LOSS_KEYS))
-        reason = reason_for(target, request, n_faces, len(planes_kept), errors)
-        counts = {"starts": float(tried), "exact": float(best.exact)}
-        return MethodResult(planes_kept, tuple(history), reason, counts)
+        if round_asked and not record.met and not misses:
+            for begun in (planes, (record.best.normals, record.best.offsets)):
+                yield from record.told(total, compromise(target, full, rest, begun, level.bound_steps))
+        planes_kept = real_planes(with_facets_back(target, full, record.outcome))
+        found = describe(polyhedron_of(planes_kept), LOSS_KEYS)
+        reason = reason_for(target, request, n_faces, len(planes_kept), found)
+        counts = {"starts": float(tried), "exact": float(record.met)}
+        return MethodResult(planes_kept, tuple(record.history), reason, counts)
 
 
 def confirmed(request: Request, problems: tuple[Problem, ...], found: Attempt) -> Attempt:

@@ -1,0 +1,140 @@
+"""Where the sphericity is hard to meet: the other conditions are kept, and it goes as far as it goes."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from regolith_studio.coarsening.core.planes import tangents_of
+from regolith_studio.coarsening.exact.course import (
+    CHUNK,
+    LONG_POLISH,
+    NOWHERE,
+    POLISH_STEPS,
+    Attempt,
+    attempt,
+    mended,
+    reach,
+    steps_down,
+)
+from regolith_studio.coarsening.exact.descent import (
+    OVERLAP,
+    ROUGHER,
+    SMOOTHER,
+    TOLERANCE,
+    State,
+    descended,
+    first_metric,
+    started,
+)
+from regolith_studio.coarsening.exact.polish import Polished, measured, verified
+from regolith_studio.coarsening.exact.problem import SPHERICITY, Problem, log_sphericity
+from regolith_studio.coarsening.target import Target
+from regolith_studio.geometry.arrays import FloatArray
+
+STEPS = 64
+STALLED = 0.02
+"""Where a chunk of steps brings the sphericity nearer by less than this share, it ends."""
+
+
+def compromise(
+    target: Target,
+    full: Problem,
+    rest: Problem,
+    planes: tuple[FloatArray, FloatArray],
+    bound_steps: int,
+    only_rounder: bool = False,
+) -> Iterator[Attempt]:
+    """Polyhedra that meet all conditions but the sphericity, ever nearer to it.
+
+    Where it is reached, polyhedra that meet all conditions follow, with ever better overlap. Where it is not,
+    the last ones overlap better at the sphericity that was reached.
+
+    Parameters
+    ----------
+    full, rest
+        The problem with and without the sphericity.
+    planes
+        To start from.
+    bound_steps
+        Of the descent of the Jaccard distance at the end.
+    only_rounder
+        Whether to do nothing where a rougher polyhedron is wanted.
+    """
+    point = measured(rest, planes[0], planes[1], tangents_of(planes[0]), NOWHERE)
+    point = verified(rest, point, first_metric(point.shape), LONG_POLISH, TOLERANCE, reach(point))
+    if point.worst > TOLERANCE:
+        return
+    goal = SMOOTHER if sphericity_residual(full, point) < 0.0 else ROUGHER
+    if only_rounder and goal == ROUGHER:
+        return
+    state = started(rest, point, goal, reach(point) / 2)
+    missing = np.inf
+    for _ in range(0, STEPS, CHUNK):
+        state = descended(rest, state, goal, CHUNK, POLISH_STEPS)
+        residual = sphericity_residual(full, state.point)
+        if (residual > 0.0) == (goal == SMOOTHER):
+            yield from from_beyond(target, full, state, bound_steps)
+            return
+        yield missing_by(residual, attempt(rest, state.point))
+        if state.done or missing - abs(residual) < STALLED * abs(residual):
+            break
+        missing = abs(residual)
+    yield from with_sphericity_held(full, state, bound_steps)
+
+
+def from_beyond(target: Target, full: Problem, state: State, bound_steps: int) -> Iterator[Attempt]:
+    """From a polyhedron that went past the wanted sphericity back to it."""
+    point = measured(full, state.point.shape.normals, state.point.shape.offsets, state.point.frames, NOWHERE)
+    point = verified(full, point, first_metric(point.shape), LONG_POLISH, TOLERANCE, reach(point))
+    yield attempt(full, point)
+    if point.worst > TOLERANCE:
+        return
+    for later in steps_down(full, started(full, point, OVERLAP, reach(point) / 2), bound_steps):
+        point = later.point
+        yield attempt(full, point)
+    yield from mended(target, full, point, 0)
+
+
+def with_sphericity_held(full: Problem, state: State, bound_steps: int) -> Iterator[Attempt]:
+    """Descent of the Jaccard distance at the sphericity of a polyhedron that misses the wanted one."""
+    residual = sphericity_residual(full, state.point)
+    held, point = as_it_is(full, state.point.shape.normals, state.point.shape.offsets)
+    if point.worst > TOLERANCE:
+        return
+    for later in steps_down(held, started(held, point, OVERLAP, reach(point) / 2), bound_steps):
+        yield missing_by(residual, attempt(held, later.point))
+
+
+def with_facets_back(target: Target, full: Problem, found: Attempt) -> Attempt:
+    """A polyhedron that misses a condition with all its facets, at the descriptors that it has."""
+    if found.exact or found.n_facets == len(found.offsets):
+        return found
+    held, point = as_it_is(full, found.normals, found.offsets)
+    if point.worst > TOLERANCE:
+        return found
+    best = found
+    for more in mended(target, held, point, 0):
+        if more.exact and more.n_facets > best.n_facets:
+            best = replace(more, worst=found.worst)
+    return best
+
+
+def as_it_is(full: Problem, normals: FloatArray, offsets: FloatArray) -> tuple[Problem, Polished]:
+    """The problem that asks for the descriptors that a polyhedron has, and the polyhedron."""
+    point = measured(full, normals, offsets, tangents_of(normals), NOWHERE)
+    wanted = full.wanted.copy()
+    if np.isfinite(point.worst):
+        wanted[full.asked] += point.conditions.residual
+    held = full._replace(wanted=wanted)
+    return held, measured(held, normals, offsets, tangents_of(normals), NOWHERE)
+
+
+def missing_by(residual: float, found: Attempt) -> Attempt:
+    """The polyhedron, as far from the conditions as its sphericity."""
+    return replace(found, worst=abs(residual))
+
+
+def sphericity_residual(problem: Problem, point: Polished) -> float:
+    """Logarithm of the sphericity over the wanted one."""
+    return log_sphericity(point.shape.volume, point.shape.surface) - float(problem.wanted[SPHERICITY])

@@ -1,0 +1,58 @@
+"""What the exact method has found so far."""
+
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+
+from regolith_studio.coarsening.evaluation import LossFunction
+from regolith_studio.coarsening.exact.course import Attempt
+from regolith_studio.coarsening.progress import MethodStep
+from regolith_studio.geometry.half_spaces import HalfSpaces
+
+AS_GOOD_AS_MET = 1e-5
+"""Polyhedra whose conditions hold to this come before those with less loss."""
+
+
+class Record:
+    """The best polyhedron, and the one with the least loss of those that miss a condition.
+
+    Parameters
+    ----------
+    judge
+        Eq. 9.
+    steps
+        Number of steps that are announced.
+    """
+
+    def __init__(self, judge: LossFunction, steps: int) -> None:
+        self.best: Attempt | None = None
+        self.history: list[float] = []
+        self._nearest: Attempt | None = None
+        self._least = np.inf
+        self._judge = judge
+        self._steps = steps
+
+    @property
+    def met(self) -> bool:
+        """Whether the best polyhedron meets all conditions."""
+        return self.best is not None and self.best.exact
+
+    @property
+    def outcome(self) -> Attempt | None:
+        """The best where it meets all conditions or nearly so, else the one with the least loss."""
+        if self.best is None or self.best.worst < AS_GOOD_AS_MET:
+            return self.best
+        return self._nearest or self.best
+
+    def told(self, step: int, attempts: Iterable[Attempt]) -> Iterator[MethodStep]:
+        """Keep what is better, and tell of it as `step`."""
+        for found in attempts:
+            value = self._judge.of(found.values)
+            worth = found.better_than(self.best)
+            if worth:
+                self.best = found
+            if not found.exact and not self.met and value < self._least:
+                self._nearest, self._least, worth = found, value, True
+            if worth:
+                self.history.append(value)
+                yield MethodStep(step, self._steps, value, HalfSpaces(found.normals, found.offsets))
