@@ -266,3 +266,9 @@ def draw_field(material: str, amplitudes: FloatArray, seed: int, level: int = 4)
     relative = draws.coefficients[0].copy()
     relative[0] = 0.0
     return DrawnField(radii_on_icosphere(ShCoefficients(relative), level), icosphere(level), mesh)
+
+
+def first_field(degree: int = 10) -> DrawnField:
+    """The field of the first material: afterwards tables and kernels are there for all others."""
+    key, card = next(iter(materials().items()))
+    return draw_field(key, np.array(card.relative_amplitudes[:degree]), 0)

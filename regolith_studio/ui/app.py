@@ -19,6 +19,7 @@ from regolith_studio.session.preferences import Preferences
 from regolith_studio.session.session import Session
 from regolith_studio.ui.main_window import MainWindow
 from regolith_studio.ui.posting import Poster
+from regolith_studio.ui.preparing import Preparing
 from regolith_studio.ui.tour import TOUR_SEEN
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.factory import best_kind
@@ -56,6 +57,7 @@ def open_window(
         QTimer.singleShot(0, window, lambda: window.commands.open_paths(found, unit))
     _warm_up_later(session, runner)
     _give_back_at_rest(window)
+    Preparing(window.pages, runner)
     return window
 
 

@@ -1,7 +1,9 @@
 """What a page of the window is, and what it is given; see :mod:`regolith_studio.ui.pages`."""
 
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -148,6 +150,8 @@ class Page:
         Kinds of files that :meth:`PageWidget.open_path` of this page opens.
     actions
         Commands of the page, in menus and tool bar while it is seen, in the command palette always.
+    prepare
+        What else takes long at the first visit and touches no widget; called in another thread.
     """
 
     key: str
@@ -158,3 +162,11 @@ class Page:
     build: Callable[[PageContext], PageWidget]
     actions: tuple[ActionSpec, ...] = ()
     opens: tuple[FileKind, ...] = ()
+    prepare: Callable[[], object] | None = None
+
+    def load(self) -> None:
+        """Import the module that the page is in, if it is the usual one, and :attr:`prepare`."""
+        with suppress(ModuleNotFoundError):
+            import_module(f"{self.build.__module__}.page")
+        if self.prepare is not None:
+            self.prepare()

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from functools import partial
 
 from PySide6.QtCore import QSize, Qt, Signal
-from PySide6.QtGui import QKeySequence
+from PySide6.QtGui import QEnterEvent, QFocusEvent, QKeySequence
 from PySide6.QtWidgets import (
     QAbstractItemView,
     QButtonGroup,
@@ -39,6 +39,8 @@ class PageStack(QWidget):
 
     changed = Signal(str)
     built = Signal(str)
+    approached = Signal(str)
+    """The mouse, or the keyboard, has come to the button of a page."""
 
     def __init__(self, pages: tuple[Page, ...], context_of: Callable[[str], PageContext]) -> None:
         super().__init__()
@@ -130,7 +132,8 @@ class PageStack(QWidget):
         row.addWidget(self._stack, 1)
 
     def _button(self, page: Page, number: int) -> QToolButton:
-        button = QToolButton()
+        button = _PageButton()
+        button.approached.connect(partial(self.approached.emit, page.key))
         button.setObjectName(f"page_{page.key}")
         button.setText(tr(page.title))
         button.setAccessibleName(tr("Page {title}", title=tr(page.title)))
@@ -145,3 +148,17 @@ class PageStack(QWidget):
 
     def _clicked(self, key: str) -> None:
         self.go(key)
+
+
+class _PageButton(QToolButton):
+    """Says when the mouse or the keyboard comes to it: a moment before it is pressed."""
+
+    approached = Signal()
+
+    def enterEvent(self, event: QEnterEvent) -> None:
+        super().enterEvent(event)
+        self.approached.emit()
+
+    def focusInEvent(self, event: QFocusEvent) -> None:
+        super().focusInEvent(event)
+        self.approached.emit()

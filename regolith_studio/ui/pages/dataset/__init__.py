@@ -12,6 +12,13 @@ def build(context: PageContext) -> PageWidget:
     return DatasetPage(context)
 
 
+def prepare() -> None:
+    """Load the exporters."""
+    from regolith_studio.dataset.exporters import EXPORTERS
+
+    len(EXPORTERS)
+
+
 PAGE = Page(
     key="dataset",
     title="Dataset",
@@ -19,6 +26,7 @@ PAGE = Page(
     order=60,
     tip="Choose representative particles, build a dataset, export it to DEM programs",
     build=build,
+    prepare=prepare,
     opens=(FileKind.DATASET,),
     actions=(
         ActionSpec(PAGE_MENU, "find", "&Find representatives"),

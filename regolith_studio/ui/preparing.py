@@ -1,0 +1,54 @@
+"""Loads in the background what pages need: one when the mouse comes near its button, all when one is visited.
+
+Not at the start: many a visit ends on the page where it began, and what the others need is memory.
+"""
+
+from PySide6.QtCore import QObject
+
+from regolith_studio.jobs.events import Job, Progress, Started, Steps
+from regolith_studio.jobs.runners.protocol import Runner
+from regolith_studio.ui.page import Page
+from regolith_studio.ui.page_stack import PageStack
+
+LANE = "preparing pages"
+
+
+class Preparing(QObject):
+    """Hears from a stack of pages which one may be wanted next.
+
+    Parameters
+    ----------
+    stack
+        Of the window.
+    runner
+        Works in the background.
+    """
+
+    def __init__(self, stack: PageStack, runner: Runner) -> None:
+        super().__init__(stack)
+        self._stack, self._runner = stack, runner
+        self._ready: set[str] = set()
+        self._wanted: list[str] = []
+        stack.approached.connect(self.want)
+        stack.changed.connect(self._want_all)
+
+    def want(self, *keys: str) -> None:
+        """Prepare these pages before all others that are waiting."""
+        left = [key for key in (*keys, *self._wanted) if key not in self._ready | self._stack.widgets.keys()]
+        if (wanted := list(dict.fromkeys(left))) != self._wanted:
+            self._wanted = wanted
+            pages = tuple(self._stack.pages[key] for key in wanted)
+            self._runner.submit(Job(prepared, (pages, self._ready)), lambda _event: None, LANE)
+
+    def _want_all(self, _key: str) -> None:
+        self.want(*self._stack.pages)
+
+
+def prepared(pages: tuple[Page, ...], ready: set[str]) -> Steps:
+    """Load what these pages need, one after the other; `ready` takes the keys of those that are done."""
+    yield Started("Preparing pages", len(pages))
+    for number, page in enumerate(pages, start=1):
+        page.load()
+        ready.add(page.key)
+        yield Progress(number, len(pages))
+    return tuple(ready)

@@ -1,0 +1,56 @@
+"""Pages are prepared in the background: one when it may be wanted next, all when one has been visited."""
+
+from unittest.mock import Mock
+
+import pytest
+from PySide6.QtCore import QPointF
+from PySide6.QtGui import QEnterEvent
+from PySide6.QtWidgets import QApplication
+
+from regolith_studio.jobs.runners.inline import InlineRunner
+from regolith_studio.ui.page import Page, PageWidget
+from regolith_studio.ui.page_stack import PageStack
+from regolith_studio.ui.pages import pages
+from regolith_studio.ui.preparing import Preparing
+
+
+def build(_context):
+    return PageWidget()
+
+
+@pytest.fixture
+def prepared():
+    """Keys of pages, in the order in which they have been prepared."""
+    return []
+
+
+@pytest.fixture
+def stack(shown, prepared):
+    def page(key):
+        return Page(key, key, "sample", 1, key, build, prepare=lambda: prepared.append(key))
+
+    made = PageStack(tuple(page(key) for key in "abcd"), lambda _key: Mock())
+    made.go("a")
+    Preparing(made, InlineRunner())
+    return shown(made)
+
+
+def test_that_nothing_is_prepared_until_somebody_comes_near(stack, prepared):
+    assert prepared == []
+    place = QPointF(4, 4)
+    QApplication.sendEvent(stack.buttons["c"], QEnterEvent(place, place, place))
+    assert prepared == ["c"]
+
+
+def test_that_a_visit_prepares_the_others_once_and_none_that_is_built(stack, prepared):
+    stack.go("b")
+    assert prepared == ["c", "d"]
+    stack.approached.emit("d")
+    stack.go("a")
+    assert prepared == ["c", "d"]
+
+
+@pytest.mark.usefixtures("app")
+def test_that_every_page_can_be_prepared():
+    for page in pages():
+        page.load()
