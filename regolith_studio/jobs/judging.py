@@ -146,18 +146,24 @@ def judged(study: PopulationStudy, shown: Progress) -> Generator[Step, None, Jud
 
     drawings: dict[str, Callable[[], Figure | None]] = {
         **{name: partial(figures.density_figure, study, name, COLUMNS) for name in WEIGHTINGS},
-        "pairs": partial(figures.pair_figure, study),
         "quantiles": partial(figures.quantile_figure, study, COLUMNS),
         "components": partial(figures.components_figure, study),
     }
-    pictures: dict[str, bytes] = {}
+    at_figures, pictures = replace(shown, message="figures"), {}
     for name, draw_one in drawings.items():
         figure = draw_one()
-        yield replace(shown, message="figures")
+        yield at_figures
         if figure is not None:
             pictures[name] = png_of(figure)
-            yield replace(shown, message="figures")
-    return JudgedShapes(study, pictures)
+            yield at_figures
+    panels = figures.pair_panels(study)
+    while True:
+        try:
+            next(panels)
+        except StopIteration as end:
+            pictures["pairs"] = png_of(end.value)
+            return JudgedShapes(study, pictures)
+        yield at_figures
 
 
 def png_of(figure: "Figure") -> bytes:

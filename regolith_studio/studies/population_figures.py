@@ -1,5 +1,6 @@
 """Figs. 4, 5 and 6: densities of descriptors, measured and virtual."""
 
+from collections.abc import Generator
 from math import ceil
 from pathlib import Path
 
@@ -87,18 +88,39 @@ def pair_figure(study: PopulationStudy, keys: tuple[str, ...] | None = None) -> 
 
     Kernel densities with Scott's bandwidth n^(-1/6) times the covariance; the measured sample is filled.
     """
+    steps = pair_panels(study, keys)
+    while True:
+        try:
+            next(steps)
+        except StopIteration as end:
+            figure: Figure = end.value
+            return figure
+
+
+def pair_panels(study: PopulationStudy, keys: tuple[str, ...] | None = None) -> Generator[None, None, Figure]:
+    """:func:`pair_figure` panel by panel, for one who must not be kept waiting."""
     wanted = [key for key in keys or study.keys[:3] if key in study.keys]
     pairs = [
-        (study.keys.index(a), study.keys.index(b)) for i, a in enumerate(wanted) for b in wanted[i + 1 :]
+        [study.keys.index(a), study.keys.index(b)] for i, a in enumerate(wanted) for b in wanted[i + 1 :]
     ]
     rows = max(1, len(study.models))
     figure = Figure(figsize=(1 + 3.2 * len(pairs), 0.8 + 2.7 * rows), layout="constrained")
     axes = figure.subplots(rows, len(pairs), squeeze=False)
-    for row, model in enumerate(study.models):
-        for axis, (i, j) in zip(axes[row], pairs, strict=True):
-            _contours(axis, study.measured[:, [i, j]], model.table[:, [i, j]], COLOURS[row % len(COLOURS)])
-            axis.set_xlabel(_label(study, i))
-            axis.set_ylabel(_label(study, j))
+    for column, pair in enumerate(pairs):
+        tables = [study.measured[:, pair], *(model.table[:, pair] for model in study.models)]
+        x, y = _common_grid(tables)
+        measured = _density(tables[0], x, y)
+        yield
+        for row, drawn in enumerate(tables[1:]):
+            axis = axes[row, column]
+            values, levels = measured
+            ends = [*levels, max(values.max(), levels[-1]) * 1.01]
+            axis.contourf(x, y, values, levels=ends, colors=GREYS[: len(levels)])
+            values, levels = _density(drawn, x, y)
+            axis.contour(x, y, values, levels=levels, colors=COLOURS[row % len(COLOURS)], linewidths=1)
+            axis.set_xlabel(_label(study, pair[0]))
+            axis.set_ylabel(_label(study, pair[1]))
+            yield
     handles = [Line2D([], [], color=MEASURED, linewidth=6, label="measured")]
     handles += [
         Line2D([], [], color=colour, label=MODELS[model.key].label)
@@ -168,18 +190,18 @@ def size_column(study: PopulationStudy) -> int | None:
     return study.keys.index("equivalent_radius") if "equivalent_radius" in study.keys else None
 
 
-def _contours(axis: Axes, measured: FloatArray, drawn: FloatArray, colour: str) -> None:
-    low, high = np.percentile(np.concatenate([measured, drawn]), [0.5, 99.5], axis=0)
+def _common_grid(tables: list[FloatArray]) -> tuple[FloatArray, FloatArray]:
+    """Places along both axes that hold nearly all particles of all tables (n, 2), with a margin."""
+    ends = np.array([np.percentile(table, [0.5, 99.5], axis=0) for table in tables])
+    low, high = ends[:, 0].min(axis=0), ends[:, 1].max(axis=0)
     margin = 0.15 * (high - low)
     x, y = (np.linspace(low[i] - margin[i], high[i] + margin[i], GRID) for i in range(2))
-    places = np.stack(np.meshgrid(x, y)).reshape(2, -1)
-    for table, filled in ((measured, True), (drawn, False)):
-        density = gaussian_kde(table[:: max(1, len(table) // MOST_FOR_DENSITY)].T)
-        values = density(places).reshape(GRID, GRID)
-        own = density(table[:: max(1, len(table) // MOST_FOR_DENSITY)].T)
-        levels = np.unique(np.quantile(own, [1 - share for share in CONTAINED]))
-        if filled:
-            ends = [*levels, max(values.max(), levels[-1]) * 1.01]
-            axis.contourf(x, y, values, levels=ends, colors=GREYS[: len(levels)])
-        else:
-            axis.contour(x, y, values, levels=levels, colors=colour, linewidths=1)
+    return x, y
+
+
+def _density(table: FloatArray, x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Kernel density at the places, shape (GRID, GRID), and the levels whose contours hold the shares."""
+    few = table[:: max(1, len(table) // MOST_FOR_DENSITY)].T
+    density = gaussian_kde(few)
+    values = density(np.stack(np.meshgrid(x, y)).reshape(2, -1)).reshape(GRID, GRID)
+    return values, np.unique(np.quantile(density(few), [1 - share for share in CONTAINED]))

@@ -39,7 +39,8 @@ def test_that_it_can_be_stopped_between_figures_and_never_goes_back(
     assert [step.done for step in progress] == sorted(step.done for step in progress)
     figures = [step for step in progress if step.message == "figures"]
     partials = [step for step in steps if isinstance(step, Partial)]
-    assert len(figures) == (5 + 4) * (len(partials) + 1)
+    n_drawn, n_pictures, n_panels = 4, 3, 3 + 3
+    assert len(figures) == (n_drawn + n_pictures + n_panels) * (len(partials) + 1)
     assert {step.done for step in figures} == {figures[0].total}
 
 
