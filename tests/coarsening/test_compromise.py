@@ -1,12 +1,20 @@
-"""Particles rounder than any polyhedron with so many facets: the rest is kept, and said."""
+"""Particles rounder or rougher than any polyhedron with so many facets: the rest is kept, and said."""
 
+import numpy as np
 import pytest
+from regolith_studio.coarsening.exact.in_turn import met_in_turn
 
 from regolith_studio.coarsening.bounds import greatest_sphericity
 from regolith_studio.coarsening.coarsen import coarsen
+from regolith_studio.coarsening.core.box_search import SAMPLE_ANGLE
+from regolith_studio.coarsening.exact.request import Request
 from regolith_studio.coarsening.loss import loss
+from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import LossWeights
+from regolith_studio.descriptors.describe import describe
+from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.directions import icosphere
+from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
 
 REST = ("volume", "min_diameter", "max_diameter", "aspect_ratio")
@@ -14,6 +22,15 @@ REST = ("volume", "min_diameter", "max_diameter", "aspect_ratio")
 
 def egg(*axes: float) -> Mesh:
     return Mesh(icosphere(4).vertices * axes, icosphere(4).faces)
+
+
+def urchin() -> Mesh:
+    """A ball with 60 narrow spines: more than twice the surface of its hull, at the same volume."""
+    ball = icosphere(4)
+    spines = np.random.default_rng(4).normal(size=(60, 3))
+    spines /= np.linalg.norm(spines, axis=1)[:, None]
+    nearest = (ball.vertices @ spines.T).max(axis=1)
+    return Mesh(ball.vertices * (1.0 + 0.8 * np.exp(-400.0 * (1.0 - nearest)))[:, None], ball.faces)
 
 
 @pytest.mark.parametrize("n_faces", [12, 20, 50])
@@ -43,3 +60,36 @@ def test_that_what_cannot_be_met_ends_at_the_least_loss_that_was_shown() -> None
     found = coarsen(egg(1.0, 0.9, 0.8), 20, "exact", weights)
     assert found.loss == pytest.approx(loss(weights, found.errors, found.jaccard_distance))
     assert found.loss == pytest.approx(min(found.loss_history), abs=2e-3)
+
+
+@pytest.mark.parametrize("n_faces", [12, 30])
+def test_that_an_urchin_keeps_volume_and_length_and_more_faces_are_not_advised(n_faces: int) -> None:
+    mesh = urchin()
+    found = coarsen(mesh, n_faces, "exact")
+    assert found.achieved["surface_area"] < describe(mesh)["surface_area"]
+    assert max(found.errors[key] for key in ("volume", "max_diameter")) <= 1e-6
+    assert found.errors["min_diameter"] < 0.4
+    assert found.n_faces == n_faces
+    assert found.reason is not None
+    assert "less surface" in found.reason
+    assert "more faces" not in found.reason
+
+
+def test_that_conditions_are_met_in_turn_and_their_polyhedron_is_as_it_says() -> None:
+    target = Target.of(urchin())
+    request = Request.of(target, LossWeights.from_preset("all"))
+    rest = request.problem(target.rays, SAMPLE_ANGLE, sphericity=False)
+    rng = np.random.default_rng(0)
+    normals = rng.normal(size=(20, 3))
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    reached = met_in_turn(rest, (normals, np.ones(20)))
+    assert reached is not None
+    problem, point = reached
+    found = describe(ConvexPolyhedron.from_half_spaces(HalfSpaces(point.shape.normals, point.shape.offsets)))
+    keys = ("volume", "sphericity", "min_diameter", "max_diameter", "aspect_ratio")
+    for at, key in enumerate(keys):
+        if problem.asked[at]:
+            assert found[key] == pytest.approx(np.exp(problem.wanted[at]), rel=1e-6)
+    assert problem.asked[0]
+    assert problem.wanted[0] == rest.wanted[0]
+    assert not problem.asked[1]

@@ -87,7 +87,8 @@ def test_that_the_number_asked_for_is_always_among_those_to_start_with() -> None
             assert n_faces in numbers
             assert len(set(numbers)) == len(numbers)
             assert max(numbers) == n_faces
-    assert numbers_to_grow_from(rough, 20, True) == (20,)
+    assert numbers_to_grow_from(rough, 20, True)[0] == 20
+    assert numbers_to_grow_from(rough, 15, True) == (15,)
     assert numbers_to_grow_from(rough, 100, True)[0] < 100
     assert numbers_to_grow_from(rough, 100, False)[0] == 100
     assert numbers_to_grow_from(round_ball, 100, True) == (100,)

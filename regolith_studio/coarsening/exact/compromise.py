@@ -1,10 +1,11 @@
-"""Where the sphericity is hard to meet: the other conditions are kept, and it goes as far as it goes."""
+"""Where conditions are hard to meet: the sphericity gives way first, and goes as far as it goes."""
 
 from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
 
+from regolith_studio.coarsening.core.cuts import SMALLEST_FACET
 from regolith_studio.coarsening.core.planes import tangents_of
 from regolith_studio.coarsening.exact.course import (
     CHUNK,
@@ -27,10 +28,14 @@ from regolith_studio.coarsening.exact.descent import (
     first_metric,
     started,
 )
+from regolith_studio.coarsening.exact.growth import with_more_facets
+from regolith_studio.coarsening.exact.in_turn import met_in_turn
 from regolith_studio.coarsening.exact.polish import Polished, measured, verified
 from regolith_studio.coarsening.exact.problem import SPHERICITY, Problem, log_sphericity
+from regolith_studio.coarsening.polyhedra import facet_areas
 from regolith_studio.coarsening.target import Target
 from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.half_spaces import HalfSpaces
 
 STEPS = 64
 STALLED = 0.02
@@ -48,7 +53,8 @@ def compromise(
     """Polyhedra that meet all conditions but the sphericity, ever nearer to it.
 
     Where it is reached, polyhedra that meet all conditions follow, with ever better overlap. Where it is not,
-    the last ones overlap better at the sphericity that was reached.
+    the last ones overlap better at the sphericity that was reached. Where the other conditions are not met
+    together either, they are met in turn.
 
     Parameters
     ----------
@@ -63,8 +69,22 @@ def compromise(
     """
     point = measured(rest, planes[0], planes[1], tangents_of(planes[0]), NOWHERE)
     point = verified(rest, point, first_metric(point.shape), LONG_POLISH, TOLERANCE, reach(point))
+    apart = 0.0
     if point.worst > TOLERANCE:
-        return
+        nearest = None if only_rounder else met_in_turn(rest, planes)
+        if nearest is None:
+            return
+        rest, point = nearest
+        apart = float(np.abs(rest.wanted - full.wanted)[rest.asked].max())
+        full = full._replace(wanted=rest.wanted, asked=rest.asked | (np.arange(5) == SPHERICITY))
+    for found in nearer_sphericity(target, full, rest, point, bound_steps, only_rounder):
+        yield replace(found, worst=max(found.worst, apart))
+
+
+def nearer_sphericity(
+    target: Target, full: Problem, rest: Problem, point: Polished, bound_steps: int, only_rounder: bool
+) -> Iterator[Attempt]:
+    """From a polyhedron that meets the rest, ever nearer to the sphericity."""
     goal = SMOOTHER if sphericity_residual(full, point) < 0.0 else ROUGHER
     if only_rounder and goal == ROUGHER:
         return
@@ -110,11 +130,13 @@ def with_facets_back(target: Target, full: Problem, found: Attempt) -> Attempt:
     """A polyhedron that misses a condition with all its facets, at the descriptors that it has."""
     if found.exact or found.n_facets == len(found.offsets):
         return found
-    held, point = as_it_is(full, found.normals, found.offsets)
+    areas = facet_areas(HalfSpaces(found.normals, found.offsets))
+    real = areas >= SMALLEST_FACET
+    held, point = as_it_is(full, found.normals[real], found.offsets[real])
     if point.worst > TOLERANCE:
         return found
     best = found
-    for more in mended(target, held, point, 0):
+    for more in with_more_facets(target, held, attempt(held, point), len(found.offsets), 0):
         if more.exact and more.n_facets > best.n_facets:
             best = replace(more, worst=found.worst)
     return best

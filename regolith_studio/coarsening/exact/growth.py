@@ -19,7 +19,12 @@ from regolith_studio.coarsening.target import Target
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.directions import fibonacci_directions
 
-FEW_FACES = ((0.085, (20, 30, 50)), (0.055, (30, 20, 50)), (-np.inf, (50, 30, 20)))
+FEW_FACES = (
+    (0.15, (20, 12, 30, 50)),
+    (0.085, (20, 30, 50, 12)),
+    (0.055, (30, 20, 50, 12)),
+    (-np.inf, (50, 30, 20, 12)),
+)
 """Facets to grow from, best first, by how much more surface a particle has than its hull (in logarithms)."""
 ALIKE = 1.25
 """Where fewer than this many times as many are asked for, all start at once."""

@@ -11,7 +11,7 @@ from regolith_studio.coarsening.core.cuts import SMALLEST_FACET
 from regolith_studio.coarsening.evaluation import LossFunction
 from regolith_studio.coarsening.exact.compromise import compromise, with_facets_back
 from regolith_studio.coarsening.exact.course import Attempt, course, densely_checked, start_planes
-from regolith_studio.coarsening.exact.growth import grown, numbers_to_grow_from
+from regolith_studio.coarsening.exact.growth import grown, numbers_to_grow_from, with_waiting
 from regolith_studio.coarsening.exact.problem import Problem
 from regolith_studio.coarsening.exact.record import Record
 from regolith_studio.coarsening.exact.request import CONDITION_KEYS, EXACT, Request, reason_for
@@ -36,6 +36,8 @@ class Level:
     bound_steps: int
 
 
+COMPROMISES = (12, 20)
+"""Facets to start from, besides all, where conditions cannot be met together."""
 ROUND_STARTS = 2
 """Starts from which polyhedra as round as can be are sought where the particle is rounder than the first."""
 OUT_OF_REACH = 4e-3
@@ -131,7 +133,10 @@ class ExactMethod:
         if record.best is None or record.outcome is None:
             raise GeometryError("No start of the exact method bounds a polyhedron.")
         if round_asked and not record.met and not misses:
-            for begun in (planes, (record.best.normals, record.best.offsets)):
+            few_planes = [
+                with_waiting(*start_planes(target, few, rng), n_faces) for few in COMPROMISES if few < n_faces
+            ]
+            for begun in (planes, (record.best.normals, record.best.offsets), *few_planes):
                 yield from record.told(total, compromise(target, full, rest, begun, level.bound_steps))
         planes_kept = real_planes(with_facets_back(target, full, record.outcome))
         found = describe(polyhedron_of(planes_kept), LOSS_KEYS)
