@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from regolith_studio.coarsening.exact.in_turn import met_in_turn
 
 from regolith_studio.coarsening.bounds import greatest_sphericity
 from regolith_studio.coarsening.coarsen import coarsen
 from regolith_studio.coarsening.core.box_search import SAMPLE_ANGLE
+from regolith_studio.coarsening.exact.in_turn import met_in_turn
 from regolith_studio.coarsening.exact.request import Request
 from regolith_studio.coarsening.loss import loss
 from regolith_studio.coarsening.target import Target
