@@ -28,7 +28,7 @@ def read_inputs(paths: Sequence[Path], unit: str) -> "Loaded":
     with as_bad_use():
         unit_factor(unit)
     loaded: Loaded = follow(load_particles(tuple(paths), unit))
-    complain(f"{problem.path}: {problem.sentence}" for problem in loaded.problems)
+    complain(problem.with_path for problem in loaded.problems)
     return loaded
 
 

@@ -148,7 +148,8 @@ def _representative(record: RepresentativeRecord, where: str) -> Representative:
             source=None if record.source is None else Source(**record.source.model_dump()),
         )
     except (RegolithError, ValueError) as error:
-        raise DatasetError(f"{where}: the representative {record.name} cannot be used: {error}") from error
+        reason = str(error).rstrip(".")
+        raise DatasetError(f"{where}: the representative {record.name} cannot be used: {reason}.") from error
 
 
 def _provenance(document: DatasetDocument) -> Provenance:

@@ -12,7 +12,7 @@ from regolith_studio.dataset.exporting import RECORD
 from regolith_studio.dataset.reading import DOCUMENT, dataset_hash, read_document
 from regolith_studio.dataset.schema import DatasetDocument
 from regolith_studio.dataset.strict_json import strict_json
-from regolith_studio.errors import DatasetError, RegolithError
+from regolith_studio.errors import DatasetError, RegolithError, reason_of
 from regolith_studio.geometry.mesh import Mesh
 
 RESULT = "repose.json"
@@ -175,11 +175,13 @@ def _result(folder: Path) -> LibraryEntry:
 
 def _record(path: Path, format: str) -> dict[str, Any]:
     try:
+        if path.exists() and not path.is_file():
+            raise DatasetError(f"{path} is no regular file.")
         if path.stat().st_size > LARGEST_RECORD:
             raise DatasetError(f"{path} is larger than {LARGEST_RECORD // 1_000_000} MB.")
         content = strict_json(path.read_text(encoding="utf-8"), str(path))
     except OSError as error:
-        raise DatasetError(f"{path} cannot be read: {error.strerror or error}.") from error
+        raise DatasetError(f"{path} cannot be read: {reason_of(error)}.") from error
     if not isinstance(content, dict) or content.get("format") != format:
         raise DatasetError(f"{path} was not written by Regolith Studio.")
     return content

@@ -39,7 +39,7 @@ def migrated(document: Document, text: str, where: str) -> str:
     known = (*STEPS, SCHEMA_VERSION)
     if isinstance(version, bool) or version not in known:
         raise DatasetError(
-            f"{where} has schema version {version!r}; "
+            f"{where} has {'no schema version' if version is None else f'schema version {version!r}'}; "
             f"this program reads versions {min(known)} to {max(known)}."
         )
     if version == SCHEMA_VERSION:

@@ -67,6 +67,8 @@ def foreign_files(folder: Path, document: DatasetDocument) -> list[str]:
 
 def _read(path: Path, largest: int) -> bytes:
     try:
+        if path.exists() and not path.is_file():
+            raise DatasetError(f"{path} is no regular file.")
         if path.stat().st_size > largest:
             raise DatasetError(f"{path} is larger than {largest // 1_000_000} MB.")
         return path.read_bytes()

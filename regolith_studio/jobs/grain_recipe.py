@@ -14,6 +14,7 @@ from regolith_studio.imaging.segmentation.segment import SegmentationSettings
 from regolith_studio.imaging.segmentation.splitting import SplittingSettings
 from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
 from regolith_studio.imaging.segmentation.tiles import TileSettings
+from regolith_studio.readers.npz import read_bytes
 
 S = TypeVar("S")
 _LARGEST = 64 * 2**20
@@ -64,11 +65,7 @@ def read_grain_recipe(path: Path) -> GrainRecipe:
         As :meth:`GrainRecipe.from_document`.
     """
     try:
-        if path.stat().st_size > _LARGEST:
-            raise FileError(f"{path.name} is far too large for a recipe.")
-        document = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise FileError(f"The recipe {path} cannot be read ({error.strerror}).") from error
+        document = json.loads(read_bytes(path, _LARGEST))
     except (ValueError, RecursionError):
         raise FileError(f"{path.name} is no recipe: it holds no JSON.") from None
     if not isinstance(document, dict) or not {"segmentation", "extraction"} & set(document):

@@ -10,6 +10,7 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.events import Progress, Started, Steps
 from regolith_studio.readers.registry import MeshFile, mesh_files, read_file
 from regolith_studio.readers.sample import sample_particles
+from regolith_studio.readers.sentences import counted, shown_name
 
 
 @dataclass(frozen=True)
@@ -18,6 +19,14 @@ class Problem:
 
     path: str
     sentence: str
+
+    @property
+    def with_path(self) -> str:
+        """The sentence with the whole path in it, where the file's name alone may not tell which it is."""
+        name = shown_name(Path(self.path))
+        if self.sentence.startswith(f"{name} "):
+            return self.path + self.sentence.removeprefix(name)
+        return f"{self.path}: {self.sentence}"
 
 
 @dataclass(frozen=True)
@@ -55,7 +64,7 @@ def _nothing_read(problems: Sequence[Problem]) -> str:
     """The first file's sentence, and how many more there are."""
     if not problems:
         return "There is no file to read."
-    more = f" ({len(problems) - 1:,} more files could not be read either.)" if len(problems) > 1 else ""
+    more = f" ({counted(len(problems) - 1, 'more file')} could not be read either.)" if problems[1:] else ""
     return problems[0].sentence + more
 
 

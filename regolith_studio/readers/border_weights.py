@@ -17,7 +17,7 @@ def weights_in(folder: Path) -> dict[str, float]:
     path = folder / WEIGHTS_FILE
     found: dict[str, float] = {}
     try:
-        if path.stat().st_size > LARGEST_TABLE:
+        if not path.is_file() or path.stat().st_size > LARGEST_TABLE:
             return found
         with path.open(encoding="utf-8-sig", newline="") as file:
             rows = csv.DictReader(file)

@@ -15,7 +15,7 @@ from regolith_studio.geometry.welding import welded
 from regolith_studio.readers.border_weights import weights_in
 from regolith_studio.readers.formats import mesh_suffixes
 from regolith_studio.readers.guard import Guard, shared_guard
-from regolith_studio.readers.sentences import sentence_about, shown_name
+from regolith_studio.readers.sentences import counted, sentence_about, shown_name
 from regolith_studio.readers.table_particles import TABLE_SUFFIXES, TEXT_SUFFIXES, particle_of_table
 from regolith_studio.readers.units import UNITS, unit_factor
 
@@ -96,7 +96,9 @@ def read_particles(
             problems.append(str(error))
             tell(file.path, str(error))
     if not read:
-        more = f" ({len(problems) - 1:,} more files could not be read either.)" if len(problems) > 1 else ""
+        more = (
+            f" ({counted(len(problems) - 1, 'more file')} could not be read either.)" if problems[1:] else ""
+        )
         raise FileError((problems[0] if problems else "There is no file to read.") + more)
     return _uniquely_named(read)
 

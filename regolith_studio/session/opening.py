@@ -100,6 +100,8 @@ def _kind_of_folder(folder: Path) -> FileKind:
 
 
 def _kind_of_json(path: Path) -> FileKind:
+    if not path.is_file():
+        return FileKind.RECIPE  # a pipe would be waited for without end
     try:
         with path.open("rb") as file:
             content = file.read(_SNIFFED)

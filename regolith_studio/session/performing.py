@@ -240,7 +240,7 @@ def _assembled(done: Performed, batch: Batch) -> Part:
 def _tally(done: Performed, batch: Batch) -> None:
     for record in _records(done, batch):
         done.tally.add(record)
-    done.problems += [f"{problem.path}: {problem.sentence}" for problem in done.items.problems]
+    done.problems += [problem.with_path for problem in done.items.problems]
     done.problems += done.tally.unread + done.tally.problems
     if not done.tally.n_read:
         shutil.rmtree(batch.folder, ignore_errors=True)

@@ -7,11 +7,12 @@ from typing import Any, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from regolith_studio.errors import FileError, of_the_entry, reason_of
+from regolith_studio.errors import FileError, of_the_entry
 from regolith_studio.model.protocol import FittedModel
+from regolith_studio.readers.npz import read_bytes
 from regolith_studio.session.outputs.staging import write_bytes
 from regolith_studio.session.portrait import Portrait
-from regolith_studio.session.recipe import SAMPLE, Recipe
+from regolith_studio.session.recipe import LARGEST, SAMPLE, Recipe
 from regolith_studio.session.session import Session
 
 FORMAT: Literal["regolith-studio project"] = "regolith-studio project"
@@ -89,9 +90,7 @@ def read_project(path: Path) -> Project:
         If it cannot be read or is none.
     """
     try:
-        return Project.model_validate_json(path.read_bytes())
-    except OSError as error:
-        raise FileError(f"The project {path} cannot be read ({reason_of(error)}).") from error
+        return Project.model_validate_json(read_bytes(path, LARGEST))
     except ValidationError as error:
         reason = of_the_entry(error.errors(include_url=False))
         raise FileError(f"{path} is not a project of this program: {reason}.") from error

@@ -8,8 +8,9 @@ from pydantic import Field, ValidationError, model_validator
 
 from regolith_studio.coarsening.coarsen import DEFAULT_METHOD, DEFAULT_PRESET
 from regolith_studio.coarsening.weights import LossWeights
-from regolith_studio.errors import FileError, InputError, of_the_entry, reason_of
+from regolith_studio.errors import FileError, InputError, of_the_entry
 from regolith_studio.harmonics.expansion import USUAL
+from regolith_studio.readers.npz import read_bytes
 from regolith_studio.session.choices import Choices, Scalar
 from regolith_studio.session.recipe_dataset import Exports, Representatives
 from regolith_studio.session.recipe_inputs import Chosen, FilesEntry, Population, Strict, VolumeEntry
@@ -17,6 +18,8 @@ from regolith_studio.session.recipe_inputs import Chosen, FilesEntry, Population
 FORMAT: Literal["regolith-studio recipe"] = "regolith-studio recipe"
 VERSION: Literal[2] = 2
 """Version 1 knew material cards as the only population and no volumes; it is still read."""
+LARGEST = 256_000_000
+"""Bytes of a recipe or project that are read."""
 SAMPLE = "sample:all"
 """Stands among the inputs for the particles that ship with the program."""
 
@@ -169,9 +172,7 @@ def read_recipe(path: Path) -> Recipe:
         If it cannot be read or is no recipe; the sentence names the first entry that is wrong.
     """
     try:
-        return Recipe.model_validate_json(path.read_bytes())
-    except OSError as error:
-        raise FileError(f"The recipe {path} cannot be read ({reason_of(error)}).") from error
+        return Recipe.model_validate_json(read_bytes(path, LARGEST))
     except ValidationError as error:
         raise FileError(
             f"{path} is not a recipe of this program: {of_the_entry(error.errors(include_url=False))}."

@@ -126,7 +126,7 @@ def test_that_a_probability_map_of_an_hdf5_file_is_taken(command, tmp_path: Path
         (("--shape", "3x4"), "NX,NY,NZ"),
         (("--h-maxima", "-1"), "h-maxima"),
         (("--min-voxels", "-1"), "number of voxels"),
-        (("--recipe", "nowhere.json"), "cannot be read"),
+        (("--recipe", "nowhere.json"), "cannot be opened"),
     ],
 )
 def test_that_bad_options_are_bad_use(command, tmp_path: Path, options, sentence: str) -> None:

@@ -161,5 +161,5 @@ def test_that_a_bad_recipe_is_one_sentence(tmp_path: Path, text: str, sentence: 
 
 
 def test_that_a_missing_recipe_is_one_sentence(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="cannot be read"):
+    with pytest.raises(InputError, match="cannot be opened"):
         read_grain_recipe(tmp_path / "r.json")

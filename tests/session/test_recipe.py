@@ -106,7 +106,7 @@ def test_that_the_shipped_schema_is_that_of_recipes_and_takes_what_the_program_w
 
 
 def test_that_a_missing_recipe_is_a_sentence(tmp_path: Path) -> None:
-    with pytest.raises(FileError, match="cannot be read"):
+    with pytest.raises(FileError, match="cannot be opened"):
         read_recipe(tmp_path / "none.json")
 
 

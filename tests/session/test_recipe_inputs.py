@@ -153,7 +153,7 @@ def test_that_a_grain_is_kept_bit_for_bit(tmp_path: Path, scan: dict[str, Any]) 
         ({"segmentation": {"denoise": {"sigma_": 7}}}, r"denoise\.sigma_"),
         ({"extraction": {"min_voxels": "many"}}, "min_voxels"),
         ({"extraction": {"min_voxels": 10**9}}, "None of the grains"),
-        ({"recipe": "none.json"}, "cannot be read"),
+        ({"recipe": "none.json"}, "cannot be opened"),
     ],
 )
 def test_that_a_volume_that_gives_no_grains_is_a_sentence_and_leaves_nothing(

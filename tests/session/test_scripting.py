@@ -102,5 +102,5 @@ def test_that_what_is_no_project_is_refused_in_a_sentence(tmp_path: Path) -> Non
         path.write_text(text)
         with pytest.raises(Exception, match="is not a project"):
             read_project(path)
-    with pytest.raises(Exception, match="cannot be read"):
+    with pytest.raises(Exception, match="cannot be opened"):
         read_project(tmp_path / "nowhere.regolith")
