@@ -15,9 +15,10 @@ from regolith_studio.coarsening.core.evaluate import (
     SHORTEST,
     VOLUME,
     evaluate,
+    is_proper,
+    loss_of,
     weighted_loss,
 )
-from regolith_studio.coarsening.core.intersection import FINE
 from regolith_studio.coarsening.loss import loss
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import JACCARD, LossWeights
@@ -64,10 +65,12 @@ class LossFunction:
     ) -> None:
         self._target = target
         self._weights = weights
-        self._box = NO_BOX
+        measured = NO_BOX
         if everything or any(weights[key] for key in BOX_KEYS):
-            self._box = BOX_ON_FACETS if on_facets else LEAST_BOX
-        self._overlap = everything or bool(weights[JACCARD])
+            measured = BOX_ON_FACETS if on_facets else LEAST_BOX
+        self._what = measured, everything or bool(weights[JACCARD])
+        rays = target.rays
+        self._rays = rays.directions, rays.first, rays.distance, rays.sign, rays.weight
         self._wanted = np.array([target.descriptors[key] for key in LOSS_KEYS])
         self._alphas = np.array([weights[key] for key in (*LOSS_KEYS, JACCARD)])
 
@@ -75,36 +78,18 @@ class LossFunction:
         self, normals: FloatArray, offsets: FloatArray, sample_angle: float = FINE_ANGLE
     ) -> Evaluation | None:
         """Errors and loss, or ``None`` where the half-spaces bound no proper polyhedron."""
-        status, values = self._values(normals, offsets, sample_angle)
-        if status != FINE or values[SHORTEST] <= 0.0:
-            return None
-        return self._judged(values)
+        status, values = evaluate(
+            np.array(normals), np.array(offsets), *self._rays, *self._what, sample_angle
+        )
+        return self._judged(values) if is_proper(status, values) else None
 
     def value(self, normals: FloatArray, offsets: FloatArray, sample_angle: float = FINE_ANGLE) -> float:
         """The loss alone, infinite where the half-spaces bound no proper polyhedron: quicker."""
-        status, values = self._values(normals, offsets, sample_angle)
-        if status != FINE or values[SHORTEST] <= 0.0:
-            return float("inf")
-        return self.of(values)
+        return loss_of(normals, offsets, *self._rays, *self._what, sample_angle, self._wanted, self._alphas)
 
     def of(self, values: FloatArray) -> float:
         """The loss of values as from :func:`regolith_studio.coarsening.core.evaluate.evaluate`."""
         return weighted_loss(values, self._wanted, self._alphas)
-
-    def _values(self, normals: FloatArray, offsets: FloatArray, angle: float) -> tuple[int, FloatArray]:
-        rays = self._target.rays
-        return evaluate(
-            np.array(normals),
-            np.array(offsets),
-            rays.directions,
-            rays.first,
-            rays.distance,
-            rays.sign,
-            rays.weight,
-            self._box,
-            self._overlap,
-            angle,
-        )
 
     def _judged(self, values: FloatArray) -> Evaluation:
         volume, area, shared = float(values[VOLUME]), float(values[AREA]), float(values[SHARED])

@@ -21,6 +21,8 @@ LOW, HIGH, FAR = 2 * LANES, 3 * LANES, 4 * LANES
 """Places in the lanes, after those for DX and DY: how far the shadow reaches along each edge and across."""
 HEIGHT, BOUND = 3, 4
 """Rows of the facets, after those for the normals."""
+NUMBER = 4
+"""Row of the edges, after those for their ends and facets: the numbers of those of the shadow."""
 
 
 @kernel
@@ -28,8 +30,8 @@ def box_on_facets(solid: Solid) -> FloatArray:
     """Edges of the least box with a side on a facet, shape (3,): height, across and along the other edge."""
     n, most = len(solid.normals), len(solid.edges) + LANES
     extents, side = np.empty(3), np.empty((5 + n, n))
-    numbers, lanes = np.empty(most, np.uint32), np.zeros(5 * most + 5 * LANES)
-    least_on_facets(solid, side, numbers, lanes[: 5 * most].reshape(5, most), lanes[5 * most :], extents)
+    edges, lanes = np.empty((5, most), np.uint32), np.zeros(5 * most + 5 * LANES)
+    least_on_facets(solid, side, edges, lanes[: 5 * most].reshape(5, most), lanes[5 * most :], extents)
     return extents
 
 
@@ -37,13 +39,16 @@ def box_on_facets(solid: Solid) -> FloatArray:
 def least_on_facets(
     solid: Solid,
     facets: FloatArray,
-    numbers: NDArray[np.uint32],
+    edges: NDArray[np.uint32],
     rim: FloatArray,
     lanes: FloatArray,
     extents: FloatArray,
 ) -> float:
     """Volume of the least box; fills `extents`. What is least by a lower bound is looked at first."""
-    edges, n = solid.edges, len(solid.normals)
+    n = len(solid.normals)
+    for e in range(len(solid.edges)):
+        for k in range(4):
+            edges[k, e] = solid.edges[e, k]
     promising = bounded(solid, facets)
     least = np.inf
     for step in range(n + 1):
@@ -52,11 +57,11 @@ def least_on_facets(
             continue
         facets[BOUND, f] = np.inf
         count = np.uintp(0)
-        for e in range(len(edges)):
-            numbers[count] = e
-            up, other = facets[5 + f, np.uintp(edges[e, 2])] > 0.0, facets[5 + f, np.uintp(edges[e, 3])] > 0.0
+        for e in range(len(solid.edges)):
+            edges[NUMBER, count] = e
+            up, other = facets[5 + f, edges[2, e]] > 0.0, facets[5 + f, edges[3, e]] > 0.0
             count += np.uintp(up != other)
-        project(solid, f, facets, numbers, int(count), rim)
+        project(solid, f, facets, edges, int(count), rim)
         least = least_on_rim(int(count), rim, facets[HEIGHT, f], least, lanes, extents)
     return least
 
@@ -97,18 +102,18 @@ def bounded(solid: Solid, facets: FloatArray) -> int:
 
 @leaf
 def project(
-    solid: Solid, f: int, facets: FloatArray, numbers: NDArray[np.uint32], count: int, rim: FloatArray
+    solid: Solid, f: int, facets: FloatArray, edges: NDArray[np.uint32], count: int, rim: FloatArray
 ) -> None:
     """Edges of the shadow along the normal of facet f, counter-clockwise; `rim` is filled."""
-    vertices, normals, _, edges = solid
-    axis = row(normals, f)
+    vertices, axis = solid.vertices, row(solid.normals, f)
     first = (0.0, -axis[2], axis[1]) if abs(axis[0]) < 0.7 else (axis[2], 0.0, -axis[0])
     first = mixed(first, 1.0 / np.sqrt(dot(first, first)), first, 0.0)
     second = cross(axis, first)
     for k in range(count):
-        e = np.uintp(numbers[k])
-        way = 0 if facets[5 + f, np.uintp(edges[e, 2])] > 0.0 else 1
-        start, end = row(vertices, edges[e, way]), row(vertices, edges[e, 1 - way])
+        e = edges[NUMBER, k]
+        up = facets[5 + f, edges[2, e]] > 0.0
+        one, two = edges[0, e], edges[1, e]
+        start, end = row(vertices, one if up else two), row(vertices, two if up else one)
         run = mixed(end, 1.0, start, -1.0)
         rim[X, k], rim[Y, k] = dot(start, first), dot(start, second)
         rim[DX, k], rim[DY, k] = dot(run, first), dot(run, second)

@@ -41,8 +41,9 @@ def evaluate(
         return status, values
     edges = edges_of(triples, len(offsets))
     area, _ = facets_of(normals, offsets, vertices, edges)
-    values[VOLUME], values[AREA] = volume_of(offsets, area), np.sum(area)
-    values[FACETS] = np.sum(area > 0.0)
+    values[VOLUME], values[AREA], values[FACETS] = volume_of(offsets, area), np.sum(area), 0.0
+    for i in range(len(area)):
+        values[FACETS] += area[i] > 0.0
     solid = Solid(vertices, normals, area, edges)
     if box == BOX_ON_FACETS:
         extents = box_on_facets(solid)
@@ -57,6 +58,46 @@ def evaluate(
         exits(normals, offsets, directions, radius, plane)
         values[SHARED] = shared_volume(first, distance, sign, weight, radius)
     return status, values
+
+
+@kernel
+def loss_of(
+    normals: FloatArray,
+    offsets: FloatArray,
+    directions: FloatArray,
+    first: IntArray,
+    distance: FloatArray,
+    sign: FloatArray,
+    weight: float,
+    box: int,
+    with_overlap: bool,
+    sample_angle: float,
+    wanted: FloatArray,
+    weights: FloatArray,
+) -> float:
+    """:func:`weighted_loss` of :func:`evaluate`; infinite where the half-spaces bound no proper polyhedron.
+
+    The half-spaces may be locked arrays: only this function is compiled anew for them.
+    """
+    status, values = evaluate(
+        normals.copy(),
+        offsets.copy(),
+        directions,
+        first,
+        distance,
+        sign,
+        weight,
+        box,
+        with_overlap,
+        sample_angle,
+    )
+    return weighted_loss(values, wanted, weights) if is_proper(status, values) else np.inf
+
+
+@kernel
+def is_proper(status: int, values: FloatArray) -> bool:
+    """Whether an evaluation found a polyhedron with a box of some thickness."""
+    return bool(status == FINE and not values[SHORTEST] <= 0.0)
 
 
 @kernel

@@ -75,7 +75,7 @@ def intersect(normals: FloatArray, offsets: FloatArray) -> tuple[int, FloatArray
     )
     vertices, triples = np.empty((2 * n, 3)), np.empty((2 * n, 3), np.int64)
     status, count = cut_out(normals, offsets, REACH * offsets.max(), work, vertices, triples)
-    return status, vertices[:count].copy(), triples[:count].copy()
+    return status, vertices[:count], triples[:count]
 
 
 @leaf
