@@ -1,0 +1,73 @@
+"""Small jobs that every runner is tested against; workers import them by the name of this module."""
+
+import os
+import time
+
+from regolith_studio.errors import Cancelled, InputError
+from regolith_studio.jobs.events import Progress, Started, Steps
+
+
+def count_to(n: int) -> Steps:
+    yield Started("Counting", n)
+    for i in range(1, n + 1):
+        yield Progress(i, n)
+    return n
+
+
+def square(x: int) -> Steps:
+    yield Started("Squaring")
+    return x * x
+
+
+def refuse() -> Steps:
+    yield Started("Refusing")
+    raise InputError("The number is too green.")
+
+
+def stumble() -> Steps:
+    yield Started("Stumbling")
+    raise KeyError("oops")
+
+
+def give_up() -> Steps:
+    yield Started("Giving up")
+    raise Cancelled("enough")
+
+
+def die() -> Steps:
+    yield Started("Dying")
+    os._exit(3)
+
+
+def process_id() -> Steps:
+    yield Started("Asking")
+    return os.getpid()
+
+
+def wait_forever() -> Steps:
+    yield Started("Waiting")
+    while True:
+        time.sleep(0.005)
+        yield Progress(0, 0)
+
+
+def with_a_lambda() -> Steps:
+    yield Started("Hiding")
+    return lambda: None
+
+
+def hold(megabytes: int) -> Steps:
+    yield Started("Holding")
+    HELD.append(b"x" * (megabytes * 2**20))
+    return os.getpid()
+
+
+HELD: list[bytes] = []
+
+
+def wait_for(path: str) -> Steps:
+    yield Started("Waiting")
+    while not os.path.exists(path):  # noqa: PTH110
+        yield Progress(0, 0)
+        time.sleep(0.005)
+    return path

@@ -1,0 +1,204 @@
+"""The pool of processes and the crews hired from it: order, failures, deaths and stops."""
+
+import os
+import signal
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from regolith_studio.jobs.batch import in_order
+from regolith_studio.jobs.crew import Crew, hired
+from regolith_studio.jobs.events import Event, Failed, Finished, Job, Stopped
+from regolith_studio.jobs.runners.inline import InlineRunner
+from regolith_studio.jobs.runners.process_pool import ProcessPoolRunner
+
+from .small_jobs import (
+    die,
+    hold,
+    process_id,
+    refuse,
+    square,
+    stumble,
+    wait_for,
+    wait_forever,
+    with_a_lambda,
+)
+
+
+@pytest.fixture(scope="module")
+def pool() -> Iterator[ProcessPoolRunner]:
+    runner = ProcessPoolRunner(2)
+    yield runner
+    runner.close()
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_that_a_batch_answers_in_the_order_of_the_questions(workers: int) -> None:
+    with hired(workers) as crew:
+        endings = [e for e in crew.endings(Job(square, (x,)) for x in range(7)) if e]
+        again = list(crew.map(abs, [-1, 2, -3]))
+    assert endings == [Finished(x * x) for x in range(7)]
+    assert again == [1, 2, 3]
+
+
+def test_that_a_crew_that_was_lent_is_not_dismissed(pool: ProcessPoolRunner) -> None:
+    crew = Crew(2)
+    crew._runner = pool
+    with hired(crew) as lent:
+        assert lent is crew
+    assert list(crew.map(abs, [-5])) == [5]
+
+
+def test_that_one_worker_can_be_stopped_within_a_job() -> None:
+    endings = Crew(1).endings([Job(wait_forever)])
+    assert [next(endings) for _ in range(3)] == [None] * 3
+    endings.close()
+
+
+def test_that_a_batch_asks_for_no_more_than_its_window() -> None:
+    asked: list[int] = []
+
+    def jobs() -> Iterator[Job]:
+        for x in range(10):
+            asked.append(x)
+            yield Job(square, (x,))
+
+    answers = in_order(InlineRunner(), jobs(), window=3)
+    next(answers)
+    assert asked == [0, 1, 2]
+
+
+def test_that_one_failure_does_not_stop_a_batch(pool: ProcessPoolRunner) -> None:
+    jobs = [Job(square, (1,)), Job(refuse), Job(stumble), Job(square, (2,))]
+    first, second, third, fourth = [e for e in in_order(pool, jobs, window=4) if e]
+    assert first == Finished(1)
+    assert isinstance(second, Failed)
+    assert second.sentence == "The number is too green."
+    assert isinstance(third, Failed)
+    assert fourth == Finished(4)
+
+
+def test_that_the_processes_stay_warm(pool: ProcessPoolRunner) -> None:
+    ids = {e.value for e in in_order(pool, [Job(process_id)] * 12, 2) if isinstance(e, Finished)}
+    assert 1 <= len(ids) <= 2
+    assert os.getpid() not in ids
+
+
+def test_that_a_job_in_a_process_stops_between_two_yields(pool: ProcessPoolRunner) -> None:
+    heard: list[Event] = []
+    handle = pool.submit(Job(wait_forever), heard.append)
+    time.sleep(0.2)
+    handle.cancel()
+    end = time.monotonic() + 20
+    while not handle.done and time.monotonic() < end:
+        time.sleep(0.01)
+    assert heard == [Stopped()]
+
+
+def test_that_leaving_a_batch_early_stops_its_jobs(pool: ProcessPoolRunner) -> None:
+    batch = in_order(pool, [Job(square, (3,)), Job(wait_forever), Job(wait_forever)], window=3)
+    while next(batch) != Finished(9):
+        pass
+    batch.close()
+    answer = [e for e in in_order(pool, [Job(square, (4,))], window=1) if e]
+    assert answer == [Finished(16)]
+
+
+def test_that_a_worker_that_dies_costs_its_particle_and_no_other() -> None:
+    runner = ProcessPoolRunner(2)
+    try:
+        jobs = [Job(square, (1,)), Job(die), *(Job(square, (x,)) for x in range(2, 6))]
+        endings = [e for e in in_order(runner, jobs, window=3) if e]
+    finally:
+        runner.close()
+    assert isinstance(endings[1], Failed)
+    assert "died" in endings[1].sentence
+    assert [e for i, e in enumerate(endings) if i != 1] == [Finished(x * x) for x in (1, 2, 3, 4, 5)]
+
+
+def test_that_what_cannot_be_sent_or_answered_fails_with_a_sentence(pool: ProcessPoolRunner) -> None:
+    jobs = [Job(with_a_lambda), Job(square, (lambda: None,)), Job(square, (3,))]
+    sent, refused, good = [e for e in in_order(pool, jobs, 3) if e]
+    assert isinstance(sent, Failed)
+    assert isinstance(refused, Failed)
+    assert "cannot be sent" in refused.sentence
+    assert good == Finished(9)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="memory is told by POSIX systems")
+def test_that_a_process_that_holds_too_much_memory_is_replaced() -> None:
+    runner = ProcessPoolRunner(1, memory=200 * 2**20)
+    try:
+        first, second, third = [
+            e for e in in_order(runner, [Job(hold, (1,)), Job(hold, (300,)), Job(process_id)], 1) if e
+        ]
+    finally:
+        runner.close()
+    assert isinstance(first, Finished)
+    assert first == second
+    assert isinstance(third, Finished)
+    assert third.value != second.value
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals are a matter of POSIX")
+def test_that_a_process_killed_from_outside_is_replaced_and_its_job_done(tmp_path: Path) -> None:
+    runner = ProcessPoolRunner(2)
+    heard: list[Event] = []
+    other: list[Event] = []
+    try:
+        (first,) = [e for e in in_order(runner, [Job(process_id)], 1) if e]
+        runner.submit(Job(wait_for, (str(tmp_path / "go"),)), heard.append)
+        assert isinstance(first, Finished)
+        os.kill(first.value, signal.SIGKILL)
+        runner.submit(Job(square, (5,)), other.append)
+        (tmp_path / "go").write_text("")
+        end = time.monotonic() + 60
+        while not (heard and other) and time.monotonic() < end:
+            time.sleep(0.01)
+    finally:
+        runner.close()
+    assert heard == [Finished(str(tmp_path / "go"))]
+    assert other == [Finished(25)]
+
+
+def test_that_a_waiting_job_can_be_cancelled_while_all_processes_are_busy() -> None:
+    runner = ProcessPoolRunner(1)
+    busy: list[Event] = []
+    idle: list[Event] = []
+    try:
+        runner.submit(Job(wait_forever), busy.append)
+        runner.submit(Job(square, (2,)), idle.append).cancel()
+        end = time.monotonic() + 20
+        while not idle and time.monotonic() < end:
+            time.sleep(0.01)
+        assert idle == [Stopped()]
+        assert busy == []
+    finally:
+        runner.close()
+    assert busy == [Stopped()]
+
+
+def test_that_a_listener_that_stumbles_does_not_stop_the_pool(
+    pool: ProcessPoolRunner, caplog: pytest.LogCaptureFixture
+) -> None:
+    def stumbling(_event: Event) -> None:
+        raise KeyError("oops")
+
+    pool.submit(Job(square, (1,)), stumbling)
+    assert [e for e in in_order(pool, [Job(square, (2,))], 1) if e] == [Finished(4)]
+    assert "A listener" in caplog.text
+
+
+def test_that_a_process_that_cannot_start_is_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
+    runner = ProcessPoolRunner(1)
+
+    def refuse_to_start() -> None:
+        raise OSError(11, "Resource temporarily unavailable")
+
+    monkeypatch.setattr(runner, "_hire", refuse_to_start)
+    (ending,) = [e for e in in_order(runner, [Job(square, (2,))], 1) if e]
+    runner.close()
+    assert isinstance(ending, Failed)
+    assert "could not be started" in ending.sentence
