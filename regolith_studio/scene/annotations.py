@@ -168,23 +168,27 @@ def show_title(plotter: Any, title: str, surroundings: Surroundings = palette.PA
 def show_colour_scale(
     plotter: Any, mapper: Any, surroundings: Surroundings, numbers: str = "%.2g µm"
 ) -> None:
-    """The scale of a colour map at the right; of distances in micrometres, unless `numbers` says so."""
-    plotter.add_scalar_bar(
+    """The scale of a colour map at the right; of distances in micrometres, unless `numbers` says so.
+
+    Its numbers stand to the left of it, where they have room in a narrow view too.
+    """
+    bar = plotter.add_scalar_bar(
         title=" ",
         mapper=mapper,
         color=surroundings.ink,
         n_labels=3,
-        fmt=numbers,
+        fmt=f"{numbers}  ",
         vertical=True,
         width=0.045,
         height=0.34,
-        position_x=0.80,
+        position_x=0.92,
         position_y=0.04,
         label_font_size=11,
         title_font_size=11,
         unconstrained_font_size=True,
         render=False,
     )
+    bar.SetTextPositionToPrecedeScalarBar()
 
 
 def hide_colour_scale(plotter: Any) -> None:

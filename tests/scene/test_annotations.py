@@ -3,7 +3,8 @@
 import pytest
 import pyvista as pv
 
-from regolith_studio.scene.annotations import ScaleBar, bar_length, length_text
+from regolith_studio.scene import palette
+from regolith_studio.scene.annotations import ScaleBar, bar_length, length_text, show_colour_scale
 from regolith_studio.scene.cameras import CameraPose, apply_pose
 from regolith_studio.scene.stage import is_software
 
@@ -59,3 +60,18 @@ def test_that_there_is_no_bar_where_nothing_is_shown():
 def test_that_a_software_renderer_is_known_by_its_name():
     assert is_software("OpenGL renderer string:  llvmpipe (LLVM 15.0.6, 256 bits)")
     assert not is_software("OpenGL renderer string:  NVIDIA GeForce RTX 3060/PCIe/SSE2")
+
+
+def test_that_the_numbers_of_a_colour_scale_have_room_in_a_narrow_view():
+    plotter = pv.Plotter(off_screen=True, window_size=[180, 330])
+    ball = pv.Sphere(radius=1.0)
+    ball["distance"] = 15.0 * ball.points[:, 2]
+    actor = plotter.add_mesh(ball, scalars="distance", show_scalar_bar=False)
+    plotter.camera.zoom(0.1)
+    show_colour_scale(plotter, actor.mapper, palette.PAPER)
+    picture = plotter.screenshot(return_img=True).astype(int)
+    dark = (picture.sum(axis=2) < 300).nonzero()
+    plotter.close()
+    lower = dark[1][dark[0] > 200]
+    assert lower.min() < 150, "the numbers are there"
+    assert lower.max() < 176, "and nothing is cut by the edge"

@@ -97,6 +97,29 @@ def test_that_the_section_draws_and_measures_what_the_plane_cuts(window):
     switch(window, "section")
     assert actor(window, "fit", sectioning.CAP) is None
     assert panel.plot.is_empty()
+    assert window.page.plots.left.currentIndex() == 0, "what was in front before is in front again"
+
+
+def test_that_the_fit_says_its_size_again_when_the_distances_go(window):
+    frame = window.page.triptych.frames["fit"]
+    before = frame.detail.text()
+    assert before.startswith("121 coefficients")
+    switch(window, "heat")
+    assert frame.detail.text().startswith("at most")
+    switch(window, "heat")
+    assert frame.detail.text() == before
+
+
+def test_that_the_place_of_the_section_can_be_read_in_a_narrow_panel(window):
+    field = window.page.plots.section.place.field
+    line = field.lineEdit()
+    room = line.width() - line.textMargins().left() - line.textMargins().right()
+    assert line.fontMetrics().horizontalAdvance("-100.0 µm") <= room
+    switch(window, "section")
+    assert window.page.plots.section.width() < 400
+    assert window.page.plots.section.rect().contains(
+        field.mapTo(window.page.plots.section, field.rect().bottomRight())
+    )
 
 
 def test_that_the_frame_of_the_section_is_dragged_in_a_view(window):

@@ -17,10 +17,15 @@ from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.session.results import Results
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.labels import plain_symbol
+from regolith_studio.ui.widgets.number_text import short_number
 
 _UNITS = {0: "", 1: " [µm]", 2: " [µm²]", 3: " [µm³]", 5: " [µm⁵]"}
 COLUMNS = (mark("Particle"), mark("Fit"), mark("Polyhedron"))
+NARROW_COLUMNS = (mark("Particle"), mark("Fit"), mark("Solid"))
 _ROOM_FOR_LABELS = 440
+_RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
+DIGITS, NARROW_DIGITS = 4, 3
+"""Of the numbers; the tool tip of a cell has them all."""
 
 
 class DescriptorTablePanel(QWidget):
@@ -32,7 +37,6 @@ class DescriptorTablePanel(QWidget):
         self._keys = [key for key, row in CATALOGUE.items() if not row.costly and row.dimension in _UNITS]
         self.table = QTableWidget(len(self._keys), len(COLUMNS))
         self.table.setAccessibleName(tr("Descriptors"))
-        self.table.setHorizontalHeaderLabels([tr(each) for each in COLUMNS])
         self.table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
         self.table.setSelectionMode(QAbstractItemView.SelectionMode.NoSelection)
         self.table.setFocusPolicy(Qt.FocusPolicy.NoFocus)
@@ -40,36 +44,54 @@ class DescriptorTablePanel(QWidget):
         self.table.setFrameShape(self.table.Shape.NoFrame)
         header, rows = self.table.horizontalHeader(), self.table.verticalHeader()
         header.setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
-        header.setDefaultAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
-        rows.setDefaultSectionSize(self.table.fontMetrics().height() + 6)
+        header.setDefaultAlignment(_RIGHT)
+        rows.setDefaultSectionSize(self.table.fontMetrics().height() + 9)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(self.table)
+        self._values: tuple[Mapping[str, float] | None, ...] = (None,) * len(COLUMNS)
         self._name_rows()
 
     def show_results(self, results: Results) -> None:
         """Fill the table from these results."""
         done = results.coarsened
-        found = (results.particle_descriptors, results.fit_descriptors, done.achieved if done else None)
-        for column, values in enumerate(found):
-            for row, key in enumerate(self._keys):
-                self.table.setItem(row, column, _cell(values, key))
+        achieved = done.achieved if done else None
+        self._values = (results.particle_descriptors, results.fit_descriptors, achieved)
+        self._fill()
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
         self._name_rows()
+        self._fill()
+
+    @property
+    def _narrow(self) -> bool:
+        return self.width() <= _ROOM_FOR_LABELS
+
+    def _fill(self) -> None:
+        digits = NARROW_DIGITS if self._narrow else DIGITS
+        for column, values in enumerate(self._values):
+            for row, key in enumerate(self._keys):
+                self.table.setItem(row, column, _cell(values, key, digits))
 
     def _name_rows(self) -> None:
+        for column, name in enumerate(NARROW_COLUMNS if self._narrow else COLUMNS):
+            head = QTableWidgetItem(tr(name))
+            head.setToolTip(tr(COLUMNS[column]))
+            head.setTextAlignment(_RIGHT)
+            self.table.setHorizontalHeaderItem(column, head)
         for number, key in enumerate(self._keys):
             row = CATALOGUE[key]
             short = plain_symbol(row.symbol) + _UNITS[row.dimension]
-            item = QTableWidgetItem(f"{tr(row.label)} {short}" if self.width() > _ROOM_FOR_LABELS else short)
+            item = QTableWidgetItem(short if self._narrow else f"{tr(row.label)} {short}")
             item.setToolTip(f"{tr(row.label)}: {tr(row.formula)}")
             self.table.setVerticalHeaderItem(number, item)
 
 
-def _cell(values: Mapping[str, float] | None, key: str) -> QTableWidgetItem:
-    text = f"{values[key]:,.4g}" if values is not None and key in values else "–"
-    item = QTableWidgetItem(text)
-    item.setTextAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+def _cell(values: Mapping[str, float] | None, key: str, digits: int) -> QTableWidgetItem:
+    known = values is not None and key in values
+    item = QTableWidgetItem(short_number(values[key], digits) if values is not None and known else "–")
+    if values is not None and known:
+        item.setToolTip(f"{values[key]:.6g}")
+    item.setTextAlignment(_RIGHT)
     return item

@@ -21,11 +21,15 @@ from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.health_icons import health_pixmaps
 from regolith_studio.ui.widgets.labels import heading, remark
+from regolith_studio.ui.widgets.number_text import short_number
 from regolith_studio.ui.widgets.table import ListTable
 
 Index = QModelIndex | QPersistentModelIndex
 NOWHERE = QModelIndex()
 SORT_ROLE = Qt.ItemDataRole.UserRole + 1
+WORDS = 2
+"""Columns of words; those of numbers follow."""
+RIGHT = int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
 
 
 @dataclass(frozen=True)
@@ -50,12 +54,14 @@ class Column:
     text: Callable[[ParticleEntry], str]
 
 
-def _descriptor(key: str, form: str) -> tuple[Callable[[ParticleEntry], Any], Callable[[ParticleEntry], str]]:
+def _descriptor(
+    key: str, form: Callable[[float], str]
+) -> tuple[Callable[[ParticleEntry], Any], Callable[[ParticleEntry], str]]:
     def value(entry: ParticleEntry) -> float:
         return float(entry.descriptors[key]) if entry.descriptors else float("-inf")
 
     def text(entry: ParticleEntry) -> str:
-        return form.format(entry.descriptors[key]).replace("e+0", "e") if entry.descriptors else "…"
+        return form(entry.descriptors[key]) if entry.descriptors else "…"
 
     return value, text
 
@@ -68,9 +74,9 @@ COLUMNS = (
         lambda e: e.particle.group,
         lambda e: e.particle.group,
     ),
-    Column("V [µm³]", mark("Volume"), *_descriptor("volume", "{:.3g}")),
-    Column("S", mark("Sphericity, Eq. 1 (Wadell)"), *_descriptor("sphericity", "{:.3f}")),
-    Column("AR", mark("Aspect ratio, Eq. 2"), *_descriptor("aspect_ratio", "{:.2f}")),
+    Column("V [µm³]", mark("Volume"), *_descriptor("volume", lambda v: short_number(v, 3))),
+    Column("S", mark("Sphericity, Eq. 1 (Wadell)"), *_descriptor("sphericity", "{:.3f}".format)),
+    Column("AR", mark("Aspect ratio, Eq. 2"), *_descriptor("aspect_ratio", "{:.2f}".format)),
 )
 
 
@@ -98,8 +104,8 @@ class _Model(QAbstractTableModel):
                 return self.icons.get(health_word(entry))
             case Qt.ItemDataRole.ToolTipRole:
                 return "\n".join(map(tr, health_sentences(entry).split("\n")))
-            case Qt.ItemDataRole.TextAlignmentRole if index.column() >= 2:
-                return int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+            case Qt.ItemDataRole.TextAlignmentRole if index.column() >= WORDS:
+                return RIGHT
         return column.key(entry) if role == SORT_ROLE else None
 
     def headerData(
@@ -111,6 +117,8 @@ class _Model(QAbstractTableModel):
                     return tr(COLUMNS[section].title)
                 case Qt.ItemDataRole.ToolTipRole:
                     return tr(COLUMNS[section].tip)
+                case Qt.ItemDataRole.TextAlignmentRole if section >= WORDS:
+                    return RIGHT
         return None
 
 

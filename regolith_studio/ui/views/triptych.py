@@ -58,6 +58,7 @@ class Triptych(QSplitter):
         self.setSizes([1000, 1000, 1000])
         self._shapes: dict[str, Shape] = {}
         self._heat = False
+        self._size_of_fit = ""
         self._extras: dict[str, bool] = {}
         self._star_point: FloatArray | None = None
         self._hidden: BoolArray | None = None
@@ -101,9 +102,12 @@ class Triptych(QSplitter):
         self._shapes[FIT] = Shape(FIT, mesh)
         degree = f"l<sub>max</sub>&nbsp;=&nbsp;{l_max}"
         count = (l_max + 1) ** 2
+        self._size_of_fit = tr(
+            "{count:,} coefficients, {triangles:,} triangles", count=count, triangles=len(mesh.faces)
+        )
         self.frames[FIT].set_texts(
             tr("Spherical-harmonics fit, {degree}", degree=degree),
-            tr("{count:,} coefficients, {triangles:,} triangles", count=count, triangles=len(mesh.faces)),
+            self._size_of_fit,
             tr("Harmonics fit, {degree}", degree=degree),
             tr("Fit, {degree}", degree=degree),
         )
@@ -220,7 +224,9 @@ class Triptych(QSplitter):
         ink = self._theme.surroundings
         distances: FloatArray | None = signed_distances(mesh.vertices, particle) if self._heat else None
         self.views[FIT].draw(lambda plotter: surfaces.show_fit(plotter, mesh, distances, None, ink))
-        if distances is not None:
+        if distances is None:
+            self.frames[FIT].set_detail(self._size_of_fit)
+        else:
             reach = float(np.abs(distances).max(initial=0.0))
             self.frames[FIT].set_detail(tr("at most {reach:.3g} µm from the particle", reach=reach))
         self._draw_extras(FIT)

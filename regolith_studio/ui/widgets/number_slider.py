@@ -11,6 +11,10 @@ THROTTLE = 30
 """Milliseconds between two announcements while a slider is dragged: the first at once, the last always."""
 
 
+LEAST_ROOM = "0000.00"
+"""What a field has room for, whatever its range."""
+
+
 @dataclass(frozen=True)
 class NumberSpec:
     """What number is asked for; words are translated where they are shown.
@@ -119,7 +123,8 @@ class NumberSlider(QWidget):
         field.setKeyboardTracking(False)
         field.setAlignment(Qt.AlignmentFlag.AlignRight)
         field.setAccessibleName(tr(spec.name))
-        field.setFixedWidth(field.fontMetrics().horizontalAdvance("0000.00") + 28)
+        widest = max(LEAST_ROOM, f"-{limit:.{spec.decimals}f}{field.suffix()}", key=len)
+        field.setFixedWidth(field.fontMetrics().horizontalAdvance(widest) + 28)
         self.slider.setRange(self._ticks(spec.minimum), self._ticks(spec.maximum))
         self.slider.setPageStep(max(1, (self.slider.maximum() - self.slider.minimum()) // 10))
         self.slider.setAccessibleName(tr("{name}, slider", name=tr(spec.name)))

@@ -91,7 +91,7 @@ class ExplorePage(PageWidget):
         self.triptych.sections.set_shown(shown)
         if shown:
             self.triptych.cut_across(self.triptych.sections.direction)
-            self.plots.show_section()
+        self.plots.show_section(shown)
 
     def _whisper(self, words: str) -> None:
         window = self.window()

@@ -31,6 +31,7 @@ class PlotArea(QSplitter):
             [(self.error_bars, tr("Errors")), (self.table, tr("Descriptors")), (self.section, tr("Section"))],
         )
         self.right = tabs("plots_right", [(self.loss_curve, tr("Loss")), (self.spectrum, tr("Spectrum"))])
+        self._before = 0
         for number, group in enumerate((self.left, self.right)):
             self.addWidget(group)
             self.setStretchFactor(number, 1)
@@ -41,9 +42,13 @@ class PlotArea(QSplitter):
         for panel in (self.error_bars, self.loss_curve, self.spectrum, self.section):
             panel.set_theme(theme)
 
-    def show_section(self) -> None:
-        """Bring the drawing of the section to the front."""
-        self.left.setCurrentWidget(self.section)
+    def show_section(self, shown: bool) -> None:
+        """Bring the drawing of the section to the front, or what was there before."""
+        if shown:
+            self._before = self.left.currentIndex()
+            self.left.setCurrentWidget(self.section)
+        elif self.left.currentWidget() is self.section:
+            self.left.setCurrentIndex(self._before)
 
     def wire(self, session: Session, wiring: Wiring) -> None:
         """Show what the session computes, from now on."""

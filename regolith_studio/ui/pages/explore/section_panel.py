@@ -90,11 +90,15 @@ class SectionPanel(QWidget):
         row.setContentsMargins(8, 6, 8, 0)
         row.setSpacing(10)
         row.addWidget(self.direction)
-        row.addWidget(self.place, 1)
         row.addWidget(self.flipped)
+        row.addStretch(1)
+        below = QHBoxLayout()
+        below.setContentsMargins(8, 0, 8, 0)
+        below.addWidget(self.place)
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.addLayout(row)
+        column.addLayout(below)
         column.addWidget(self.plot, 1)
 
 
