@@ -2,13 +2,14 @@
 
 import io
 from collections.abc import Callable, Generator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from regolith_studio.errors import GeometryError
+from regolith_studio.errors import GeometryError, RegolithError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.surface import reconstruct
@@ -108,6 +109,8 @@ def fit_shapes(origin: Origin, order: GenerateOrder, half: bool = False) -> Step
         )
     model: FittedModel = yield from fit_model(seen, order)
     n_fitted = len(seen.content) if isinstance(seen.content, Sample) else 0
+    with suppress(RegolithError):  # the one that is shown first is then drawn without waiting for tables
+        live_mesh(model, order.seed)
     return FittedShapes(source, model, n_fitted, _measured_examples(sample, model.l_max) if sample else ())
 
 

@@ -81,7 +81,7 @@ class Monkey:
         self._known, self._pages = [], pages
 
     def act(self):
-        """One thing a user could do."""
+        """One thing a user could do; returns what and where, in a few words."""
         if self.done % LOOK_AROUND == 0:
             self._close_dialogs()
             self._known = self._widgets()
@@ -90,7 +90,8 @@ class Monkey:
             (self._click, self._press, self._drag, self._wheel, self._command, self._go, self._resize),
             (30, 25, 20, 12, 6, 2, 1),
         )[0]
-        action()
+        said = action()
+        return f"{action.__name__.strip('_')} {said or ''} on {self.window.pages.current}"
 
     def _widgets(self):
         return [
@@ -111,9 +112,11 @@ class Monkey:
     def _click(self):
         widget = self._some_widget()
         if self._is_dangerous(widget):
-            return
+            return ""
+        name = widget.objectName() or type(widget).__name__
         _mouse(widget, QEvent.Type.MouseButtonPress, self._place(widget))
         _mouse(widget, QEvent.Type.MouseButtonRelease, self._place(widget))
+        return name
 
     def _press(self):
         widget = self._some_widget()
@@ -154,6 +157,7 @@ class Monkey:
         action = self.window.menus.by_name[name]
         if "…" not in action.text() and not name.startswith("go.") and "page" not in name:
             action.trigger()
+        return name
 
     def _go(self):
         self.window.go(self.random.choice(self._pages))
@@ -223,13 +227,13 @@ def play(window, monkeypatch, app, count, seed, pages=PAGES, tell=lambda *_: Non
     """Let the monkey act; what goes wrong in a slot reaches sys.excepthook and fails the test.
 
     `tell` is told at each twentieth of the way how many events there were, how many megabytes are resident,
-    and how many seconds the longest event since the last time took.
+    and how many seconds the longest event since the last time took, and which action it was.
     """
     for name, answer in ANSWERS.items():
         monkeypatch.setattr(QFileDialog, name, lambda *_args, answer=answer, **_more: answer)
     monkeypatch.setattr(QMessageBox, "question", lambda *_: QMessageBox.StandardButton.No)
     monkeypatch.setattr(QDesktopServices, "openUrl", lambda *_: True)
-    wrong, problems, slowest = [], [], 0.0
+    wrong, problems, slowest = [], [], (0.0, "")
     monkeypatch.setattr(sys, "excepthook", lambda *error: wrong.append(error))
     window.toast.said.connect(lambda _mood, _sentence, details: problems.append(details))
     monkey = Monkey(window, seed, pages)
@@ -237,10 +241,10 @@ def play(window, monkeypatch, app, count, seed, pages=PAGES, tell=lambda *_: Non
         for number in range(count):
             if number % max(1, count // 20) == 0:
                 tell(number, round(psutil.Process().memory_info().rss / 1e6), slowest)
-                slowest = 0.0
+                slowest = (0.0, "")
             began = time.perf_counter()
-            monkey.act()
-            slowest = max(slowest, time.perf_counter() - began)
+            what = monkey.act()
+            slowest = max(slowest, (time.perf_counter() - began, what))
             if number % LOOK_AROUND == 0:
                 app.processEvents()
             story = "".join(traceback.format_exception(*wrong[0])) if wrong else ""
@@ -276,8 +280,10 @@ def test_that_a_long_visit_of_the_monkey_leaves_the_window_well(window, monkeypa
     count, pages = int(os.environ["REGOLITH_STUDIO_MONKEY"]), tuple(window.pages.pages)
 
     def tell(number, megabytes, slowest):
+        seconds, what = slowest
+        held = f"{megabytes} MB, {len(window.session.particles)} particles"
         with capsys.disabled():
-            sys.stdout.write(f"\n{number:,} events: {megabytes} MB, longest {slowest:.2f} s")
+            sys.stdout.write(f"\n{number:,} events: {held}, longest {seconds:.2f} s ({what})")
             sys.stdout.flush()
 
     play(window, monkeypatch, app, count, seed=2, pages=pages, tell=tell)
