@@ -6,7 +6,14 @@ from pathlib import Path
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.disk import recovered, replace_folder
 from regolith_studio.dataset.document import dataset_of, document_text, mesh_files
-from regolith_studio.dataset.reading import DOCUMENT, README, foreign_files, read_document, read_mesh_bytes
+from regolith_studio.dataset.reading import (
+    DOCUMENT,
+    README,
+    foreign_files,
+    read_document,
+    read_mesh_bytes,
+    real_path,
+)
 from regolith_studio.dataset.readme_text import readme_text
 from regolith_studio.dataset.validation import validate_dataset
 from regolith_studio.errors import DatasetError
@@ -61,7 +68,7 @@ def read_dataset(folder: Path | str) -> Dataset:
     DatasetError
         If the folder holds no dataset, or one that is broken, with the place named.
     """
-    target = recovered(Path(folder).resolve())
+    target = recovered(real_path(folder))
     document = read_document(target)
     for record in document.representatives:
         if hashlib.sha256(read_mesh_bytes(target, record.mesh.file)).hexdigest() != record.mesh.sha256:

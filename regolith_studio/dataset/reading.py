@@ -1,6 +1,7 @@
 """The files of a dataset folder on their way in: sizes, links and foreign files are looked at first."""
 
 import hashlib
+import os
 from pathlib import Path
 
 from regolith_studio.dataset.document import parsed_document
@@ -53,7 +54,7 @@ def read_mesh_bytes(folder: Path, file: str) -> bytes:
         If it is missing, too large, or leads out of the folder by a link.
     """
     path = folder.joinpath(*file.split("/"))
-    if not path.resolve().is_relative_to(folder.resolve()):
+    if not real_path(path).is_relative_to(real_path(folder)):
         raise DatasetError(f"{path} leads out of the dataset's folder.")
     return _read(path, LARGEST_MESH)
 
@@ -63,6 +64,11 @@ def foreign_files(folder: Path, document: DatasetDocument) -> list[str]:
     own = {DOCUMENT, README, "meshes", *(record.mesh.file for record in document.representatives)}
     found = {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.name not in UNASKED}
     return sorted(found - own)
+
+
+def real_path(path: Path | str) -> Path:
+    """The path without links; `Path.resolve` fails where they go round in circles, this leaves them."""
+    return Path(os.path.realpath(path))
 
 
 def _read(path: Path, largest: int) -> bytes:

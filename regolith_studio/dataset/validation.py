@@ -9,7 +9,14 @@ from regolith_studio.dataset.dataset import SHAPE_TOLERANCE
 from regolith_studio.dataset.disk import recovered
 from regolith_studio.dataset.document import dataset_of, shape_of
 from regolith_studio.dataset.mesh_file import mesh_of_stl
-from regolith_studio.dataset.reading import DOCUMENT, README, foreign_files, read_document, read_mesh_bytes
+from regolith_studio.dataset.reading import (
+    DOCUMENT,
+    README,
+    foreign_files,
+    read_document,
+    read_mesh_bytes,
+    real_path,
+)
 from regolith_studio.dataset.schema import RepresentativeRecord
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
@@ -27,7 +34,7 @@ def validate_dataset(folder: Path | str) -> list[str]:
     every hash, and every shape: closed, convex, as many facets as stated, unit volume, centroid at
     the origin, and the same solid in the STL as in the half-spaces.
     """
-    target = recovered(Path(folder).resolve())
+    target = recovered(real_path(folder))
     try:
         document = read_document(target)
         problems = [f"{name} does not belong to the dataset." for name in foreign_files(target, document)]

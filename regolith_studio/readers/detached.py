@@ -1,5 +1,6 @@
 """Files that belong to a header file: beside it, never elsewhere."""
 
+import os
 from pathlib import Path
 
 from regolith_studio.errors import FileError
@@ -21,7 +22,7 @@ def beside(path: Path, name: str) -> Path:
     if not _is_bare(name):
         raise FileError(f"points to voxels in “{shown}”; only a file in the same folder is read.")
     target = path.parent / name
-    if target.is_symlink() and target.resolve().parent != path.parent.resolve():
+    if target.is_symlink() and Path(os.path.realpath(target)).parent != Path(os.path.realpath(path.parent)):
         raise FileError(f"points to voxels in “{shown}”, which is a link to another folder.")
     if not target.is_file():
         raise FileError(f"needs the file “{shown}” beside it, which is not there.")

@@ -22,7 +22,8 @@ MEMORY = 6 * 1024**3
 SHARE_OF_MEMORY = 0.75
 """Nor may it use more than this share of what the machine has."""
 
-BASE_SECONDS = 10.0
+BASE_SECONDS = 40.0
+"""Patience with a small file on a machine that has forty other things to do: sound files took 10 s there."""
 WORKING_SECONDS = 1.5
 """A small file may keep the processor busy for so long; the rest is patience with a busy machine."""
 SECONDS_PER_BYTE = 1.0 / 1e6

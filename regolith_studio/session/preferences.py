@@ -48,7 +48,7 @@ class Preferences(BaseModel):
 
     def remember_opened(self, path: Path, unit: str) -> None:
         """Put `path` first among the recent files and `unit` down for its folder."""
-        full = str(path.resolve())
+        full = os.path.realpath(path)  # Path.resolve() fails on links that go round in circles
         self.recent = (full, *(old for old in self.recent if old != full))[:RECENT_LIMIT]
         self.units = self.units | {_folder(path): unit}
 
@@ -65,5 +65,5 @@ def preferences_path() -> Path:
 
 
 def _folder(path: Path) -> str:
-    full = path.resolve()
+    full = Path(os.path.realpath(path))
     return str(full if full.is_dir() else full.parent)

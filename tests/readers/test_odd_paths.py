@@ -20,6 +20,7 @@ from regolith_studio.readers.registry import read_mesh
 from regolith_studio.readers.shape_files import read_shape_source
 from regolith_studio.readers.volumes import describe_volume
 from regolith_studio.session.opening import FileKind, kind_of
+from regolith_studio.session.preferences import Preferences
 from regolith_studio.session.project import read_project
 from regolith_studio.session.recipe import read_recipe
 
@@ -100,6 +101,21 @@ def test_that_a_dataset_whose_document_is_a_pipe_is_a_finding(tmp_path: Path) ->
     os.mkfifo(tmp_path / "dataset.json")
     (problem,) = validate_dataset(tmp_path)
     assert "is no regular file" in problem
+
+
+def test_that_links_in_circles_can_be_remembered_and_checked(tmp_path: Path) -> None:
+    """Path.resolve fails on them with an error that is nobody's."""
+    link = tmp_path / "circle"
+    link.symlink_to("circle")
+    known = Preferences()
+    known.remember_opened(link / "a.stl", "mm")
+    assert known.unit_for(link / "a.stl") == "mm"
+    (problem,) = validate_dataset(link)
+    assert problem.endswith("cannot be read: its links go round in circles.")
+    header = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: raw\ndata file: circle\n\n"
+    (tmp_path / "a.nhdr").write_text(header)
+    with pytest.raises(RegolithError, match=r"which is a link to another folder|which is not there"):
+        describe_volume(tmp_path / "a.nhdr")
 
 
 def test_that_a_file_without_permission_is_refused_in_words(cube, tmp_path: Path) -> None:
