@@ -72,3 +72,5 @@ class Standing:
 
 STANDING = "standing"
 """Its name on the shelf."""
+OPENED = "opened_dataset_wish"
+"""Name on the shelf of what the recipe that was opened last says of its dataset, a :class:`Standing`."""

@@ -17,8 +17,8 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.imaging.stl import stl_bytes
 from regolith_studio.jobs.runners.inline import InlineRunner
 from regolith_studio.session.performing import perform
-from regolith_studio.session.recipe import read_recipe
-from regolith_studio.session.recipe_dataset import STANDING
+from regolith_studio.session.recipe import Recipe, read_recipe
+from regolith_studio.session.recipe_dataset import STANDING, Exports, Representatives
 from regolith_studio.session.session import Session
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.page import PageContext
@@ -326,6 +326,37 @@ def test_that_a_saved_recipe_makes_the_dataset_and_the_exports_of_the_page(
     for part in ("dataset", "exports"):
         assert tree(tmp_path / "run" / part) == tree(tmp_path / "window" / part)
     assert len(read_dataset(tmp_path / "run" / "dataset")) == 3
+
+
+def test_that_a_recipe_that_is_opened_sets_the_controls(page, wait, tmp_path) -> None:
+    for grain in grains():
+        (tmp_path / f"{grain.name}.stl").write_bytes(stl_bytes(grain.mesh, "test"))
+    said = Recipe(
+        inputs=sorted(str(path) for path in tmp_path.glob("*.stl")),
+        representatives=Representatives(count=6, weighting="volume", sizes="classes:30,60", name="six"),
+        exports=Exports(
+            targets=["yade", "lammps"],
+            coarse_graining=4.0,
+            particles=7,
+            settings={"density": 2500.0, "gravity": 1.62},
+        ),
+    )
+    path = tmp_path / "recipe.json"
+    path.write_text(said.to_json())
+    page._context.commands.open_paths([path])
+    wait(lambda: len(page._particles) == 8)
+    wait(lambda: page.folder.name.text() == "six")
+    assert page.representatives.order().count == 6
+    assert page.representatives.order().weighting == "volume"
+    assert page.sizes.text() == "classes:30,60"
+    assert page.targets.chosen() == ("lammps", "yade")
+    options = page.targets.options()
+    assert (options.coarse_graining_factor, options.n_particles) == (4.0, 7)
+    assert (options.contact.density, options.test.gravity) == (2500.0, 1.62)
+    page.folder.name.setText("mine")
+    page.session.shelf.put("something", "else")
+    wait(lambda: page._context.wiring.idle)
+    assert page.folder.name.text() == "mine", "a recipe is taken once"
 
 
 def test_that_a_format_that_may_not_change_shapes_is_in_no_recipe(chosen) -> None:

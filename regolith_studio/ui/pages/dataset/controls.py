@@ -12,27 +12,31 @@ from regolith_studio.dataset.size_spec import Sizing, parse_sizes
 from regolith_studio.errors import InputError
 from regolith_studio.jobs.representing import RepresentativesOrder
 from regolith_studio.session.recipe_dataset import Representatives
+from regolith_studio.ui.translation import mark, tr, tr_count
 from regolith_studio.ui.widgets.labels import heading, remark
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
 
 MOST = 200
-COUNT = NumberSpec("N", "Number of representatives", 1, MOST, tip="The paper has 10.")
-WEIGHTINGS = {"number": "Each particle counts the same", "volume": "Particles count by their volume"}
+COUNT = NumberSpec("N", mark("Number of representatives"), 1, MOST, tip=mark("The paper has 10."))
+WEIGHTINGS = {
+    "number": mark("Each particle counts the same"),
+    "volume": mark("Particles count by their volume"),
+}
 SIZES = {
-    "measured": ("As measured", ""),
-    "classes": ("In size classes", "25,37,56,84,125"),
-    "fitted:log-normal": ("Log-normal, fitted to each class", ""),
-    "log-normal": ("Log-normal, the same for all", "50,0.4"),
-    "rosin-rammler": ("Rosin-Rammler, the same for all", "60,2,10,200"),
-    "sieve": ("Sieve classes, the same for all", "20,32,45,63=10,60,30"),
-    "discrete": ("Single diameters, the same for all", "25=85.5,37=12.6,56=1.7,84=0.23,125=0.03"),
+    "measured": (mark("As measured"), ""),
+    "classes": (mark("In size classes"), "25,37,56,84,125"),
+    "fitted:log-normal": (mark("Log-normal, fitted to each class"), ""),
+    "log-normal": (mark("Log-normal, the same for all"), "50,0.4"),
+    "rosin-rammler": (mark("Rosin-Rammler, the same for all"), "60,2,10,200"),
+    "sieve": (mark("Sieve classes, the same for all"), "20,32,45,63=10,60,30"),
+    "discrete": (mark("Single diameters, the same for all"), "25=85.5,37=12.6,56=1.7,84=0.23,125=0.03"),
 }
 HINTS = {
-    "classes": "Diameters in µm; each particle moves to the nearest (Table 1 of the paper).",
-    "log-normal": "Median in µm, deviation of ln d; @volume behind it counts volume.",
-    "rosin-rammler": "Scale, shape, smallest, largest; @volume behind it counts volume.",
-    "sieve": "Openings in µm = shares between them; @volume behind it counts volume.",
-    "discrete": "Diameter in µm = share; @volume behind it counts volume.",
+    "classes": mark("Diameters in µm; each particle moves to the nearest (Table 1 of the paper)."),
+    "log-normal": mark("Median in µm, deviation of ln d; @volume behind it counts volume."),
+    "rosin-rammler": mark("Scale, shape, smallest, largest; @volume behind it counts volume."),
+    "sieve": mark("Openings in µm = shares between them; @volume behind it counts volume."),
+    "discrete": mark("Diameter in µm = share; @volume behind it counts volume."),
 }
 
 
@@ -47,27 +51,28 @@ class RepresentativesPanel(QWidget):
         super().__init__(parent)
         self.setObjectName("dataset_representatives")
         self.population = remark()
-        self.start = QPushButton("Find representatives")
+        self.start = QPushButton(tr("Find representatives"))
         self.count = NumberSlider(COUNT)
         self.weighting = QComboBox()
         for key, label in WEIGHTINGS.items():
-            self.weighting.addItem(label, key)
+            self.weighting.addItem(tr(label), key)
         self.start.setObjectName("dataset_find")
         self.count.field.setObjectName("dataset_count")
         self.weighting.setObjectName("dataset_weighting")
-        self.weighting.setAccessibleName("What representatives count")
+        self.weighting.setAccessibleName(tr("What representatives count"))
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         for widget in (
-            heading("1  Representatives"),
+            heading(tr("1  Representatives")),
             self.population,
             self.weighting,
             self.start,
             self.count,
         ):
             layout.addWidget(widget)
-        self.count.setValue(10)
-        self.count.valueChanged.connect(lambda value: self.countChanged.emit(int(value)))
+        self._wanted = 10
+        self.count.setValue(self._wanted)
+        self.count.valueChanged.connect(self._count_changed)
         self.weighting.currentIndexChanged.connect(lambda _: self.orderChanged.emit())
         self.start.clicked.connect(self.findRequested)
 
@@ -82,26 +87,34 @@ class RepresentativesPanel(QWidget):
     def show_population(self, n_particles: int) -> None:
         """Say how many particles there are to choose from."""
         self.population.setText(
-            f"{n_particles:,} particles are open."
+            tr_count("1 particle is open.", "{count:,} particles are open.", n_particles)
             if n_particles
-            else "No particles are open: open files, the sample, or draw some on the page Shape model."
+            else tr("No particles are open: open files, the sample, or draw some on the page Shape model.")
         )
         self.start.setEnabled(n_particles > 1)
         top = max(1, min(MOST, n_particles or MOST))
-        now = int(self.count.value())
         self.count.slider.setMaximum(top)
         self.count.field.setMaximum(top)
-        self.count.setValue(min(now, top))
+        self.count.setValue(min(self._wanted, top))
 
     def value(self) -> dict[str, Any]:
         """Plain JSON."""
         return {"count": int(self.count.value()), "weighting": self.weighting.currentData()}
 
     def setValue(self, value: Mapping[str, Any]) -> None:
-        """Show other choices; announces nothing."""
-        self.count.setValue(int(value.get("count", 10)))
+        """Show other choices; announces nothing.
+
+        A number that the open particles do not allow is remembered until there are more; 0 lets each stand
+        for itself.
+        """
+        self._wanted = int(value.get("count", 10)) or MOST
+        self.count.setValue(self._wanted)
         with QSignalBlocker(self.weighting):
             self.weighting.setCurrentIndex(max(0, self.weighting.findData(value.get("weighting"))))
+
+    def _count_changed(self, _value: object) -> None:
+        self._wanted = int(self.count.value())
+        self.countChanged.emit(self._wanted)
 
 
 class SizesPanel(QWidget):
@@ -115,14 +128,14 @@ class SizesPanel(QWidget):
         self.kind, self.numbers = QComboBox(), QLineEdit()
         self.hint, self.problem = remark(), remark(role="warning")
         for key, (label, _) in SIZES.items():
-            self.kind.addItem(label, key)
+            self.kind.addItem(tr(label), key)
         self.kind.setObjectName("dataset_size_kind")
-        self.kind.setAccessibleName("Kind of size distribution")
+        self.kind.setAccessibleName(tr("Kind of size distribution"))
         self.numbers.setObjectName("dataset_size_numbers")
-        self.numbers.setAccessibleName("Numbers of the size distribution")
+        self.numbers.setAccessibleName(tr("Numbers of the size distribution"))
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        for widget in (heading("2  Sizes"), self.kind, self.numbers, self.hint, self.problem):
+        for widget in (heading(tr("2  Sizes")), self.kind, self.numbers, self.hint, self.problem):
             layout.addWidget(widget)
         self.kind.currentIndexChanged.connect(lambda _: self._show_kind())
         self.numbers.textEdited.connect(lambda _: self._tell())
@@ -165,7 +178,7 @@ class SizesPanel(QWidget):
         example = SIZES[key][1]
         self.numbers.setVisible(bool(example))
         self.numbers.setText(example)
-        self.hint.setText(HINTS.get(key, ""))
+        self.hint.setText(tr(HINTS.get(key, "")))
         self.hint.setVisible(key in HINTS)
         self._tell()
 
@@ -185,14 +198,14 @@ class FolderPanel(QWidget):
         self.setObjectName("dataset_folder")
         self.name = QLineEdit("regolith")
         self.name.setObjectName("dataset_name")
-        self.name.setAccessibleName("Name of the dataset")
+        self.name.setAccessibleName(tr("Name of the dataset"))
         self.shapes, self.state = remark(), remark()
-        self.build, self.open = QPushButton("Build the dataset …"), QPushButton("Open a dataset …")
+        self.build, self.open = QPushButton(tr("Build the dataset …")), QPushButton(tr("Open a dataset …"))
         self.build.setObjectName("dataset_build")
         self.open.setObjectName("dataset_open")
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        for widget in (heading("3  Dataset"), self.name, self.shapes, self.build, self.open, self.state):
+        for widget in (heading(tr("3  Dataset")), self.name, self.shapes, self.build, self.open, self.state):
             layout.addWidget(widget)
         self.build.clicked.connect(self.buildRequested)
         self.open.clicked.connect(self.openRequested)
@@ -204,4 +217,4 @@ class FolderPanel(QWidget):
 
     def show_dataset(self, words: str) -> None:
         """Say which dataset is there."""
-        self.state.setText(words or "No dataset yet.")
+        self.state.setText(words or tr("No dataset yet."))

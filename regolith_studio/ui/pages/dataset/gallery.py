@@ -8,6 +8,7 @@ from PySide6.QtWidgets import QLabel, QListView, QListWidget, QListWidgetItem, Q
 
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import heading
 from regolith_studio.ui.widgets.thumbnails import picture_of
 
@@ -35,10 +36,10 @@ class RepresentativesGallery(QWidget):
         self._next = 0
         self._timer = QTimer(self, interval=0)
         self._timer.timeout.connect(self._draw_next)
-        self.title = heading("Representatives")
+        self.title = heading(tr("Representatives"))
         self.list = QListWidget()
         self.list.setObjectName("dataset_gallery")
-        self.list.setAccessibleName("Representative particles")
+        self.list.setAccessibleName(tr("Representative particles"))
         self.list.setViewMode(QListView.ViewMode.IconMode)
         self.list.setResizeMode(QListView.ResizeMode.Adjust)
         self.list.setMovement(QListView.Movement.Static)
@@ -46,7 +47,9 @@ class RepresentativesGallery(QWidget):
         self.list.setGridSize(CELL + QSize(4, 4))
         self.list.setTextElideMode(Qt.TextElideMode.ElideMiddle)
         self.list.setFrameShape(self.list.Shape.NoFrame)
-        self.empty = QLabel("Press Find: the particles that stand for all appear here, with their weights.")
+        self.empty = QLabel(
+            tr("Press Find: the particles that stand for all appear here, with their weights.")
+        )
         self.empty.setProperty("role", "remark")
         self.empty.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self.empty.setWordWrap(True)
@@ -55,7 +58,7 @@ class RepresentativesGallery(QWidget):
         layout.addWidget(self.title)
         layout.addWidget(self.list, 1)
         layout.addWidget(self.empty, 1)
-        self.show_shapes("Representatives", ())
+        self.show_shapes(tr("Representatives"), ())
 
     @property
     def shown(self) -> tuple[Shown, ...]:

@@ -24,12 +24,13 @@ from regolith_studio.jobs.events import Job
 from regolith_studio.ui.layout import side_by_side
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.labels import ElidedLabel, remark
 from regolith_studio.ui.widgets.thumbnails import picture_of
 
 PICTURE = 40
 LANE = "library"
-EMPTY = (
+EMPTY = mark(
     "Choose a folder: the datasets below it are listed here, with what was exported and simulated from each."
 )
 ROLE = Qt.ItemDataRole.UserRole
@@ -46,11 +47,11 @@ class LibraryPanel(QWidget):
         self._context, self._theme = context, current_theme()
         self._entries: tuple[LibraryEntry, ...] = ()
         self._pictures: dict[tuple[str, str], QIcon] = {}
-        self.choose, self.again = QPushButton("Folder …"), QPushButton("Look again")
+        self.choose, self.again = QPushButton(tr("Folder …")), QPushButton(tr("Look again"))
         self.place = ElidedLabel("", role="remark")
-        self.words = QLineEdit(placeholderText="Filter", clearButtonEnabled=True)
-        self.tree, self.facts = QTreeWidget(), remark(EMPTY)
-        self.use, self.look = QPushButton("Use this dataset"), QPushButton("Open folder")
+        self.words = QLineEdit(placeholderText=tr("Filter"), clearButtonEnabled=True)
+        self.tree, self.facts = QTreeWidget(), remark(tr(EMPTY))
+        self.use, self.look = QPushButton(tr("Use this dataset")), QPushButton(tr("Open folder"))
         self._dress()
         self._place_parts()
         self.choose.clicked.connect(self.ask)
@@ -70,7 +71,7 @@ class LibraryPanel(QWidget):
     def ask(self) -> None:
         """Ask for the folder of the library."""
         before = str(self._context.recall("library", str(Path.home())))
-        name = QFileDialog.getExistingDirectory(self, "The folder of your datasets", before)
+        name = QFileDialog.getExistingDirectory(self, tr("The folder of your datasets"), before)
         if name:
             self.show_folder(Path(name))
 
@@ -86,7 +87,7 @@ class LibraryPanel(QWidget):
             self.place.setText(str(root))
             self._entries = ()
             job = Job(list_library, (Path(root), self._results()))
-            self._context.start("Looking for datasets", job, self._take, lane=LANE)
+            self._context.start(tr("Looking for datasets"), job, self._take, lane=LANE)
 
     def suggest(self, root: Path) -> None:
         """List a folder where none was ever chosen; else what it holds now."""
@@ -116,7 +117,7 @@ class LibraryPanel(QWidget):
         self._entries = tuple(entries)
         self._show()
         if not entries:
-            self.facts.setText("There is no dataset below this folder.")
+            self.facts.setText(tr("There is no dataset below this folder."))
 
     def _show(self) -> None:
         self.tree.clear()
@@ -148,12 +149,12 @@ class LibraryPanel(QWidget):
         self.use.setEnabled(entry is not None and entry.kind == "dataset" and not entry.problem)
         self.look.setEnabled(entry is not None)
         if entry is None:
-            self.facts.setText("" if self._entries else EMPTY)
+            self.facts.setText("" if self._entries else tr(EMPTY))
             return
         lines = [entry.name, entry.problem or entry.detail, str(entry.folder)]
         lines += [f"{label}: {text}" for label, text in entry.facts.items()]
         if entry.sha256:
-            lines.append(f"SHA-256 of the dataset: {entry.sha256[:16]} …")
+            lines.append(tr("SHA-256 of the dataset: {hash} …", hash=entry.sha256[:16]))
         self.facts.setText("\n\n".join(lines))
 
     def _open(self) -> None:
@@ -169,9 +170,9 @@ class LibraryPanel(QWidget):
     def _dress(self) -> None:
         for name in ("choose", "again", "words", "tree", "use", "look"):
             getattr(self, name).setObjectName(f"library_{name}")
-        self.words.setAccessibleName("Filter of the library")
-        self.tree.setAccessibleName("Library")
-        self.tree.setHeaderLabels(["Name", "What it holds"])
+        self.words.setAccessibleName(tr("Filter of the library"))
+        self.tree.setAccessibleName(tr("Library"))
+        self.tree.setHeaderLabels([tr("Name"), tr("What it holds")])
         self.tree.setIconSize(QSize(PICTURE, PICTURE))
         self.tree.setColumnWidth(0, 300)
         self.tree.setFrameShape(self.tree.Shape.NoFrame)

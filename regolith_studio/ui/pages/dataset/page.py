@@ -18,15 +18,17 @@ from regolith_studio.jobs.datasets import open_dataset_folder, validate_dataset_
 from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.exporting import export_dataset_folder
 from regolith_studio.jobs.representing import ChosenParticles, Survey, choose_one, survey
-from regolith_studio.session.recipe_dataset import STANDING, Standing
+from regolith_studio.session.recipe_dataset import OPENED, STANDING, Standing
 from regolith_studio.ui.layout import padded, scrolled_column, side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.dataset.controls import FolderPanel, RepresentativesPanel, SizesPanel
-from regolith_studio.ui.pages.dataset.gallery import RepresentativesGallery, Shown
+from regolith_studio.ui.pages.dataset.gallery import RepresentativesGallery
 from regolith_studio.ui.pages.dataset.library import LibraryPanel
 from regolith_studio.ui.pages.dataset.plots import QualityPlot, SizesPlot
+from regolith_studio.ui.pages.dataset.shown import chosen_particles, request_of, shapes, title_of
 from regolith_studio.ui.pages.dataset.targets import ExportsList, LossesLabel, TargetsPanel
 from regolith_studio.ui.theme import Theme
+from regolith_studio.ui.translation import tr, tr_count
 
 FIND, BUILD, EXPORT = "find", "build", "export"
 MOST_MEASURED = 200
@@ -47,6 +49,7 @@ class DatasetPage(PageWidget):
         self._dataset: Dataset | None = None
         self._folder: Path | None = None
         self._exports: list[Exported] = []
+        self._opened: Standing | None = None
         self.representatives, self.sizes = RepresentativesPanel(), SizesPanel()
         self.folder, self.targets = FolderPanel(), TargetsPanel()
         self.quality, self.distribution = QualityPlot(), SizesPlot()
@@ -56,6 +59,7 @@ class DatasetPage(PageWidget):
         self._connect()
         context.wiring.refresh("particles", self._show_particles)
         context.wiring.refresh("choices", self._show_choices, slow=True)
+        context.wiring.refresh("shelf", self._take_opened)
         self._show_losses()
 
     # --- the page of the window ----------------------------------------------------------------
@@ -100,28 +104,30 @@ class DatasetPage(PageWidget):
     def find_representatives(self) -> None:
         """Choose representatives for many numbers, and draw the curve."""
         if not self._particles:
-            self._context.toast.problem("There are no particles to choose from: open some first.")
+            self._context.toast.problem(tr("There are no particles to choose from: open some first."))
             return
         self._points = []
         known = self._survey.population if self._survey else None
         job = Job(survey, (self._particles, self.representatives.order(), known))
         self._context.start(
-            "Finding representatives", job, self._show_survey, partial=self._show_point, lane=FIND
+            tr("Finding representatives"), job, self._show_survey, partial=self._show_point, lane=FIND
         )
 
     def build(self) -> None:
         """Ask for a place and build the dataset in a new folder there."""
         if self._chosen is None:
-            self._context.toast.problem("There are no representatives yet: press Find first.")
+            self._context.toast.problem(tr("There are no representatives yet: press Find first."))
             return
         name = QFileDialog.getExistingDirectory(
-            self, "Build the dataset in this folder", self._place_before()
+            self, tr("Build the dataset in this folder"), self._place_before()
         )
         if not name:
             return
         folder = Path(name) / self.folder.folder_name()
         replaced = folder.is_dir() and any(folder.iterdir())
-        if replaced and not self._asked(f"There is a folder {folder} already. Replace the dataset in it?"):
+        if replaced and not self._asked(
+            tr("There is a folder {folder} already. Replace the dataset in it?", folder=folder)
+        ):
             return
         self.build_in(folder, replaced)
 
@@ -143,18 +149,18 @@ class DatasetPage(PageWidget):
             (self._particles, session.choices.order, folder, options, survey_now.population),
         )
         self._context.remember("place", str(folder.parent))
-        self._context.start("Building the dataset", job, self._take_built, lane=BUILD)
+        self._context.start(tr("Building the dataset"), job, self._take_built, lane=BUILD)
 
     def open_dataset(self) -> None:
         """Ask for a dataset folder and show it."""
-        name = QFileDialog.getExistingDirectory(self, "Open a dataset", self._place_before())
+        name = QFileDialog.getExistingDirectory(self, tr("Open a dataset"), self._place_before())
         if name:
             self.open_folder(Path(name))
 
     def open_folder(self, folder: Path) -> None:
         """Show the dataset of a folder."""
         self._context.start(
-            "Reading the dataset", Job(open_dataset_folder, (folder,)), self._take_read, lane=BUILD
+            tr("Reading the dataset"), Job(open_dataset_folder, (folder,)), self._take_read, lane=BUILD
         )
 
     def open_path(self, path: Path) -> None:
@@ -173,17 +179,17 @@ class DatasetPage(PageWidget):
     def validate(self) -> None:
         """Check every file of the dataset."""
         if self._folder is None:
-            self._context.toast.problem("There is no dataset to check: build or open one first.")
+            self._context.toast.problem(tr("There is no dataset to check: build or open one first."))
             return
         job = Job(validate_dataset_folder, (self._folder,))
-        self._context.start("Checking the dataset", job, self._tell_problems, lane="validate")
+        self._context.start(tr("Checking the dataset"), job, self._tell_problems, lane="validate")
 
     def export(self) -> None:
         """Ask for a place and export the dataset there."""
         if self._folder is None:
-            self._context.toast.problem("There is no dataset to export: build or open one first.")
+            self._context.toast.problem(tr("There is no dataset to export: build or open one first."))
             return
-        name = QFileDialog.getExistingDirectory(self, "Export into this folder", self._place_before())
+        name = QFileDialog.getExistingDirectory(self, tr("Export into this folder"), self._place_before())
         if name:
             self.export_to(Path(name))
 
@@ -200,7 +206,7 @@ class DatasetPage(PageWidget):
             self.targets.consent(),
         )
         self._context.start(
-            "Exporting",
+            tr("Exporting"),
             Job(export_dataset_folder, arguments),
             self._take_exports,
             self._add_export,
@@ -211,7 +217,7 @@ class DatasetPage(PageWidget):
         return str(self._context.recall("place", str(Path.home())))
 
     def _asked(self, question: str) -> bool:
-        answer = QMessageBox.question(self, "Replace the dataset", question)
+        answer = QMessageBox.question(self, tr("Replace the dataset"), question)
         return answer == QMessageBox.StandardButton.Yes
 
     # --- answers -------------------------------------------------------------------------------
@@ -234,10 +240,9 @@ class DatasetPage(PageWidget):
         self.quality.show_curve(found.curve)
         if found.population.omitted:
             name, reason = found.population.omitted[0]
-            more = (
-                f" and {len(found.population.omitted) - 1} more" if len(found.population.omitted) > 1 else ""
-            )
-            self._context.toast.problem(f"Left out: {name}{more}. {reason}")
+            more = len(found.population.omitted) - 1
+            named = tr("{name} and {count} more", name=name, count=more) if more else name
+            self._context.toast.problem(f"{tr('Left out: {names}.', names=named)} {reason}")
         self._choose(int(self.representatives.count.value()))
 
     def _choose(self, count: int) -> None:
@@ -251,25 +256,17 @@ class DatasetPage(PageWidget):
             return
         order = replace(self.representatives.order(), count=count)
         job = Job(choose_one, (self._survey.population, order))
-        self._context.start("Choosing representatives", job, self._take_chosen, lane="choice")
+        self._context.start(tr("Choosing representatives"), job, self._take_chosen, lane="choice")
 
     def _take_chosen(self, chosen: ChosenParticles) -> None:
         self._chosen = chosen
         self._show_chosen()
 
     def _show_chosen(self) -> None:
-        self._dataset, shown = None, []
-        if self._chosen is not None:
-            classes = self._chosen.representatives.classes
-            total = sum(one.weight for one in classes)
-            for place, one in zip(self._chosen.places, classes, strict=True):
-                particle = self._particles[place]
-                share = f"{100 * one.weight / total:.1f} %"
-                tip = f"{particle.name} stands for {one.n_members} particles ({share})"
-                shown.append(Shown(particle.mesh, f"{share}\n{particle.name}", tip))
-        self.gallery.show_shapes(
-            f"{len(shown)} representatives" if shown else "Representatives", sorted(shown, key=_by_share)
-        )
+        self._dataset = None
+        shown = chosen_particles(self._particles, self._chosen) if self._chosen is not None else []
+        title = tr_count("1 representative", "{count} representatives", len(shown))
+        self.gallery.show_shapes(title if shown else tr("Representatives"), shown)
         self.folder.build.setEnabled(bool(shown))
         self._show_sizes()
         self._leave_wish()
@@ -295,7 +292,9 @@ class DatasetPage(PageWidget):
 
     def _take_built(self, built: Built) -> None:
         self._take_dataset(built.folder, built.dataset)
-        self._context.toast.note(f"{len(built.dataset)} shapes in {built.folder}.")
+        self._context.toast.note(
+            tr("{count} shapes in {folder}.", count=len(built.dataset), folder=built.folder)
+        )
         self.library.suggest(built.folder.parent)
 
     def _look_again(self) -> None:
@@ -308,28 +307,19 @@ class DatasetPage(PageWidget):
     def _take_dataset(self, folder: Path, dataset: Dataset) -> None:
         self._folder, self._dataset = folder, dataset
         self._context.session.shelf.put("dataset_folder", folder)
-        weights = dataset.weights
-        shown = [
-            Shown(
-                one.shape.mesh,
-                f"{100 * weight:.1f} %\n{one.shape.n_faces} faces",
-                f"{one.name}: {one.shape.n_faces} faces, {one.shape.n_vertices} vertices, stands for "
-                f"{one.n_members} particles",
-                coarsened=True,
-            )
-            for one, weight in zip(dataset.representatives, weights, strict=True)
-        ]
-        title = f"{dataset.name}: {len(dataset)} shapes, by {dataset.weighting}"
-        self.gallery.show_shapes(title, sorted(shown, key=_by_share))
+        title = title_of(dataset)
+        self.gallery.show_shapes(title, shapes(dataset))
         self.folder.show_dataset(f"{title}\n{folder}")
         self.distribution.show_classes(self._classes())
         self.targets.set_ready(True)
 
     def _tell_problems(self, problems: Sequence[str]) -> None:
         if problems:
-            self._context.toast.problem(f"The dataset is not sound: {problems[0]}", "\n".join(problems))
+            self._context.toast.problem(
+                tr("The dataset is not sound: {problem}", problem=problems[0]), "\n".join(problems)
+            )
         else:
-            self._context.toast.note("The dataset is sound.")
+            self._context.toast.note(tr("The dataset is sound."))
 
     def _add_export(self, one: Exported) -> None:
         self._exports.append(one)
@@ -339,16 +329,26 @@ class DatasetPage(PageWidget):
     def _take_exports(self, done: Sequence[Exported]) -> None:
         self._exports = list(done)
         self.exports.show_exports(done)
-        self._context.toast.note(f"{len(done)} formats written.")
+        self._context.toast.note(tr_count("1 format is written.", "{count} formats are written.", len(done)))
         self._look_again()
 
     # --- parts ---------------------------------------------------------------------------------
 
     def _show_choices(self) -> None:
-        choices = self._context.session.choices
-        self.folder.shapes.setText(
-            f"{choices.n_faces} faces, method {choices.method}, as chosen on the page Explore."
-        )
+        self.folder.shapes.setText(request_of(self._context.session.choices))
+
+    def _take_opened(self) -> None:
+        """Set the controls as the recipe says that was opened, once."""
+        opened = self._context.session.shelf.get(OPENED)
+        if not isinstance(opened, Standing) or opened is self._opened:
+            return
+        self._opened = opened
+        if wish := opened.representatives:
+            self.representatives.setValue(wish.model_dump())
+            self.sizes.set_text(wish.sizes)
+            self.folder.name.setText(wish.name or self.folder.name.text())
+        if opened.exports:
+            self.targets.take(opened.exports)
 
     def _leave_wish(self) -> None:
         """Leave what a recipe would say of the dataset; nothing before representatives are chosen."""
@@ -382,8 +382,12 @@ class DatasetPage(PageWidget):
         left = scrolled_column((self.representatives, self.sizes, self.folder, self.targets))
         upper = side_by_side((self.quality, self.distribution), (600, 460), stretch=0)
         upper.setObjectName("dataset_upper")
-        self._lower = tabs("dataset_lower", [(self.losses, "What formats lose"), (self.exports, "Exported")])
-        self._shapes = tabs("dataset_shapes", [(self.gallery, "Representatives"), (self.library, "Library")])
+        self._lower = tabs(
+            "dataset_lower", [(self.losses, tr("What formats lose")), (self.exports, tr("Exported"))]
+        )
+        self._shapes = tabs(
+            "dataset_shapes", [(self.gallery, tr("Representatives")), (self.library, tr("Library"))]
+        )
         middle = stacked((upper, self._shapes, self._lower), (330, 330, 150), stretch=1)
         middle.setObjectName("dataset_middle")
         whole = side_by_side((left, padded(middle, 0, 4, 4, 4)), (320, 1200), stretch=1)
@@ -391,7 +395,3 @@ class DatasetPage(PageWidget):
         layout = QHBoxLayout(self)
         layout.setContentsMargins(8, 0, 4, 0)
         layout.addWidget(whole)
-
-
-def _by_share(shown: Shown) -> float:
-    return -float(shown.caption.split(" ")[0])

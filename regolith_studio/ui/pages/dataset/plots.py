@@ -8,6 +8,7 @@ from PySide6.QtWidgets import QWidget
 from regolith_studio.dataset.build import ShapeClass
 from regolith_studio.dataset.quality import QualityCurve, QualityPoint
 from regolith_studio.ui.theme import Theme
+from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.curve_plot import Curve, CurvePlot
 
 NAMES = {
@@ -18,6 +19,8 @@ NAMES = {
     "max_diameter": "D<sub>max</sub>",
 }
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8c6d00")
+WEIGHTINGS = (mark("number"), mark("volume"))
+"""What distributions count by."""
 MOST_CLASSES = 12
 """Classes whose own distributions are drawn; of more only the mixture."""
 
@@ -29,9 +32,9 @@ class QualityPlot(CurvePlot):
         self._points: tuple[QualityPoint, ...] = ()
         self._noise: float | None = None
         super().__init__(
-            "Number of representatives",
-            "Distance to the population [deviations]",
-            "How many are enough? Press Find: the curve falls to the sampling noise of the population.",
+            tr("Number of representatives"),
+            tr("Distance to the population [deviations]"),
+            tr("How many are enough? Press Find: the curve falls to the sampling noise of the population."),
             log_y=True,
             parent=parent,
         )
@@ -52,7 +55,9 @@ class QualityPlot(CurvePlot):
         self._points = curve.points if curve else ()
         self._noise = curve.noise_mean if curve else None
         enough = curve.enough if curve else None
-        self.set_remark(f"as small as the sampling noise from N = {enough} on" if enough else "")
+        self.set_remark(
+            tr("as small as the sampling noise from N = {count} on", count=enough) if enough else ""
+        )
         self._draw()
 
     def set_theme(self, theme: Theme) -> None:
@@ -66,11 +71,16 @@ class QualityPlot(CurvePlot):
             for key, colour in zip(NAMES, COLOURS, strict=True)
         ]
         curves.append(
-            Curve("mean", self.theme.text, counts, tuple(map(_drawn, (point.mean for point in self._points))))
+            Curve(
+                tr("mean"),
+                self.theme.text,
+                counts,
+                tuple(map(_drawn, (point.mean for point in self._points))),
+            )
         )
         if self._noise is not None and counts:
             ends = (counts[0], counts[-1])
-            curves.append(Curve("noise", self.theme.muted, ends, (self._noise, self._noise), dash=True))
+            curves.append(Curve(tr("noise"), self.theme.muted, ends, (self._noise, self._noise), dash=True))
         self.set_curves(curves)
 
     def _column(self, key: str) -> tuple[float, ...]:
@@ -88,9 +98,9 @@ class SizesPlot(CurvePlot):
     def __init__(self, parent: QWidget | None = None) -> None:
         self._classes: tuple[ShapeClass, ...] = ()
         super().__init__(
-            "Equivalent diameter [µm]",
-            "Share at or below [%]",
-            "The sizes of the classes appear here.",
+            tr("Equivalent diameter [µm]"),
+            tr("Share at or below [%]"),
+            tr("The sizes of the classes appear here."),
             parent=parent,
         )
         self.setObjectName("dataset_sizes")
@@ -123,6 +133,6 @@ class SizesPlot(CurvePlot):
             curves = [Curve("", self.theme.border, tuple(at), tuple(100 * row)) for row in rows]
         mixture = 100 * (weights @ rows) / weights.sum()
         kinds = {one.sizes.weighting for one in self._classes}
-        words = "all classes, by " + " and ".join(sorted(kinds))
+        words = tr("all classes, by {kinds}", kinds=f" {tr('and')} ".join(tr(each) for each in sorted(kinds)))
         curves.append(Curve(words, self.theme.accent, tuple(at), tuple(mixture)))
         self.set_curves(curves)

@@ -24,6 +24,7 @@ from regolith_studio.dataset.parameters import NOT_GIVEN, ContactParameters, Lif
 from regolith_studio.dataset.simulation_case import today_named
 from regolith_studio.errors import InputError
 from regolith_studio.session.recipe_dataset import Exports
+from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.collapsible import Collapsible
 from regolith_studio.ui.widgets.labels import ElidedLabel, heading, remark
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
@@ -32,9 +33,11 @@ from regolith_studio.ui.widgets.preset_form import PresetForm
 
 FIRST = ("rocky", "yade")
 NARROW = 84
-COARSE_GRAINING = NumberSpec("", "Coarse-graining factor", 1, 20, limit=1000, tip="The paper has 10.")
+COARSE_GRAINING = NumberSpec(
+    "", mark("Coarse-graining factor"), 1, 20, limit=1000, tip=mark("The paper has 10.")
+)
 PARTICLES = NumberSpec(
-    "", "Particles drawn", 1, 5000, limit=1_000_000, tip="For formats that list single bodies."
+    "", mark("Particles drawn"), 1, 5000, limit=1_000_000, tip=mark("For formats that list single bodies.")
 )
 
 
@@ -52,26 +55,26 @@ class TargetsPanel(QWidget):
         self.coarse_graining, self.particles = NumberSlider(COARSE_GRAINING), NumberSlider(PARTICLES)
         self.coarse_graining.field.setObjectName("dataset_coarse_graining")
         self.particles.field.setObjectName("dataset_particles")
-        self.contact = PresetForm(ContactParameters, "export_contact", "Table 1 of the paper")
-        self.test = PresetForm(LiftingCylinderTest, "export_test", "Table 2 of the paper")
+        self.contact = PresetForm(ContactParameters, "export_contact", tr("Table 1 of the paper"))
+        self.test = PresetForm(LiftingCylinderTest, "export_test", tr("Table 2 of the paper"))
         self.times = ParameterForm(ScriptTimes, "export")
-        self.lossy = QCheckBox("Shapes may be changed")
+        self.lossy = QCheckBox(tr("Shapes may be changed"))
         self.lossy.setObjectName("dataset_lossy")
-        self.export = QPushButton("Export …")
+        self.export = QPushButton(tr("Export …"))
         self.export.setObjectName("dataset_export")
         form = QFormLayout()
-        form.addRow("Coarse graining", self.coarse_graining)
-        form.addRow("Particles drawn", self.particles)
+        form.addRow(tr("Coarse graining"), self.coarse_graining)
+        form.addRow(tr("Particles drawn"), self.particles)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(heading("4  Export to"))
+        layout.addWidget(heading(tr("4  Export to")))
         for box in self.boxes.values():
             layout.addWidget(box)
         layout.addLayout(form)
         layout.addWidget(
             Collapsible(
-                "Material and cylinder",
-                _column((self.contact, self.test, self.times, remark(f"* {NOT_GIVEN}"))),
+                tr("Material and cylinder"),
+                _column((self.contact, self.test, self.times, remark(f"* {tr(NOT_GIVEN)}"))),
             )
         )
         layout.addWidget(self.lossy)
@@ -149,13 +152,22 @@ class TargetsPanel(QWidget):
                 getattr(self, part).restore(changes)
         self._show()
 
+    def take(self, wish: Exports) -> None:
+        """Show what a recipe says of them."""
+        every = tuple(EXPORTERS) if "all" in wish.targets else wish.targets
+        chosen = {"targets": every, "coarse_graining": wish.coarse_graining, "particles": wish.particles}
+        self.setValue(chosen | {"lossy": wish.lossy, PARTS[0]: wish.settings})
+
     def _box(self, key: str) -> QCheckBox:
         exporter = EXPORTERS[key]
         box = QCheckBox(exporter.label)
         box.setObjectName(f"dataset_to_{key}")
-        lines = [f"Carries: {'; '.join(exporter.carries)}", f"Loses: {'; '.join(exporter.loses)}"]
-        lines += [f"Shapes are changed: {exporter.alters}"] if exporter.alters else []
-        box.setToolTip("\n".join([*lines, f"Units: {exporter.units}"]))
+        lines = [
+            tr("Carries: {what}", what="; ".join(map(tr, exporter.carries))),
+            tr("Loses: {what}", what="; ".join(map(tr, exporter.loses))),
+        ]
+        lines += [tr("Shapes are changed: {how}", how=tr(exporter.alters))] if exporter.alters else []
+        box.setToolTip("\n".join([*lines, tr("Units: {units}", units=tr(exporter.units))]))
         box.toggled.connect(lambda _: self._show())
         return box
 
@@ -169,7 +181,7 @@ class TargetsPanel(QWidget):
         allowed = self._allowed()
         self.export.setEnabled(getattr(self, "_ready", False) and bool(self.chosen()) and allowed)
         self.export.setToolTip(
-            "" if allowed else f"{EXPORTERS[altering[0]].label}: {EXPORTERS[altering[0]].alters}"
+            "" if allowed else f"{EXPORTERS[altering[0]].label}: {tr(EXPORTERS[altering[0]].alters)}"
         )
         self.chosenChanged.emit()
 
@@ -205,12 +217,19 @@ class LossesLabel(QScrollArea):
         lines = []
         for key in keys:
             each = EXPORTERS[key]
-            changed = f"<br><b>Shapes are changed:</b> {each.alters}" if each.alters else ""
-            lost = "; ".join(each.loses)
-            lines.append(
-                f"<p><b>{each.label}</b> does not carry: {lost}.{changed}<br>Units: {each.units}.</p>"
+            changed = (
+                "<br>" + tr("<b>Shapes are changed:</b> {how}", how=tr(each.alters)) if each.alters else ""
             )
-        self.label.setText("".join(lines) or "Tick a format to see what it carries and what it loses.")
+            lost = "; ".join(map(tr, each.loses))
+            lines.append(
+                "<p>"
+                + tr("<b>{label}</b> does not carry: {lost}.", label=each.label, lost=lost)
+                + changed
+                + "<br>"
+                + tr("Units: {units}", units=tr(each.units))
+                + ".</p>"
+            )
+        self.label.setText("".join(lines) or tr("Tick a format to see what it carries and what it loses."))
 
 
 class ExportsList(QWidget):
@@ -222,7 +241,7 @@ class ExportsList(QWidget):
         self._rows = QVBoxLayout()
         layout = QVBoxLayout(self)
         layout.setContentsMargins(8, 6, 8, 6)
-        self._empty = remark("What has been exported is listed here, with the command that loads it.")
+        self._empty = remark(tr("What has been exported is listed here, with the command that loads it."))
         layout.addWidget(self._empty)
         layout.addLayout(self._rows)
         layout.addStretch(1)
@@ -249,7 +268,7 @@ class ExportsList(QWidget):
         line.setContentsMargins(0, 0, 0, 0)
         name = QLabel(EXPORTERS[one.key].label if one.key in EXPORTERS else one.key)
         name.setMinimumWidth(190)
-        look, copy = QPushButton("Open folder"), QPushButton("Copy load command")
+        look, copy = QPushButton(tr("Open folder")), QPushButton(tr("Copy load command"))
         look.setObjectName(f"dataset_open_{one.key}")
         copy.setObjectName(f"dataset_copy_{one.key}")
         look.clicked.connect(lambda: QDesktopServices.openUrl(QUrl.fromLocalFile(str(one.folder))))

@@ -1,0 +1,69 @@
+"""Representatives and shapes as small pictures with their words, those with the largest share first."""
+
+from collections.abc import Sequence
+
+from regolith_studio.coarsening.methods import METHODS
+from regolith_studio.dataset.dataset import Dataset
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.jobs.representing import ChosenParticles
+from regolith_studio.session.choices import Choices
+from regolith_studio.ui.pages.dataset.gallery import Shown
+from regolith_studio.ui.translation import tr, tr_count
+
+
+def chosen_particles(particles: Sequence[Particle], chosen: ChosenParticles) -> list[Shown]:
+    """The particles that stand for all."""
+    classes = chosen.representatives.classes
+    total = sum(one.weight for one in classes)
+    shown = []
+    for place, one in zip(chosen.places, classes, strict=True):
+        particle = particles[place]
+        share = f"{100 * one.weight / total:.1f} %"
+        tip = tr_count(
+            "{name} stands for 1 particle ({share})",
+            "{name} stands for {count} particles ({share})",
+            one.n_members,
+            name=particle.name,
+            share=share,
+        )
+        shown.append((one.weight, Shown(particle.mesh, f"{share}\n{particle.name}", tip)))
+    return _by_share(shown)
+
+
+def shapes(dataset: Dataset) -> list[Shown]:
+    """The polyhedra of a dataset."""
+    shown = []
+    for one, weight in zip(dataset.representatives, dataset.weights, strict=True):
+        solid = one.shape
+        tip = tr(
+            "{name}: {faces} facets, {vertices} vertices, stands for {count} particles",
+            name=one.name,
+            faces=solid.n_faces,
+            vertices=solid.n_vertices,
+            count=one.n_members,
+        )
+        words = f"{100 * weight:.1f} %\n" + tr("{count} facets", count=solid.n_faces)
+        shown.append((float(weight), Shown(solid.mesh, words, tip, coarsened=True)))
+    return _by_share(shown)
+
+
+def title_of(dataset: Dataset) -> str:
+    """Name, number of shapes, and what they count."""
+    counts = tr(str(dataset.weighting))
+    return tr(
+        "{name}: {count} shapes, by {weighting}", name=dataset.name, count=len(dataset), weighting=counts
+    )
+
+
+def request_of(choices: Choices) -> str:
+    """How the shapes will be made."""
+    known = METHODS.get(choices.method)
+    return tr(
+        "{count} facets, method: {method}; chosen on the page Explore.",
+        count=choices.n_faces,
+        method=tr(known.label) if known else choices.method,
+    )
+
+
+def _by_share(shown: list[tuple[float, Shown]]) -> list[Shown]:
+    return [each for _, each in sorted(shown, key=lambda pair: -pair[0])]
