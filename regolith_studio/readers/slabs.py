@@ -9,7 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError, reason_of
-from regolith_studio.readers.guard import START_SECONDS, WORKING_SECONDS, Guard, checked_size, volume_guard
+from regolith_studio.readers.guard import (
+    BASE_SECONDS,
+    START_SECONDS,
+    WORKING_SECONDS,
+    Guard,
+    checked_size,
+    volume_guard,
+)
 from regolith_studio.readers.plain_voxels import PlainVoxels, plain_voxels
 from regolith_studio.readers.sentences import sentence_about
 from regolith_studio.readers.volume_files import slice_names, slices_stamp
@@ -112,7 +119,7 @@ class OpenedFile:
         work += min(layers, file_bytes * DEFLATE_AT_BEST) / BYTES_SKIPPED_A_SECOND
         request = {**self.request, "memory": LEAST_MEMORY + 6 * size + min(layers, KEPT_BYTES)}
         message = (self.guard or volume_guard()).ask(
-            "volume-slices", self.path, PATIENCE * work, work, z0=z0, z1=z1, **request
+            "volume-slices", self.path, max(BASE_SECONDS, PATIENCE * work), work, z0=z0, z1=z1, **request
         )
         voxels = message.arrays[0]
         if voxels.shape != (z1 - z0, *self.header.shape[1:]) or voxels.dtype != self.header.dtype:
@@ -150,7 +157,9 @@ def opened_file(
     }
     reader.ask("volume-prepare", path, START_SECONDS)
     work = WORKING_SECONDS + size / BYTES_OPENED_A_SECOND
-    answer = reader.ask("volume-open", path, PATIENCE * work, work, memory=LEAST_MEMORY, **request).header
+    answer = reader.ask(
+        "volume-open", path, max(BASE_SECONDS, PATIENCE * work), work, memory=LEAST_MEMORY, **request
+    ).header
     header = _header_from(answer)
     straight = answer["plain"] and plain_voxels(answer["plain"], header.shape, header.dtype)
     return OpenedFile(
