@@ -273,9 +273,69 @@
    <translation>(D_min D_int / D_max²)^(1/3) (Krumbein)</translation>
   </message>
   <message>
+   <location filename="ui/pages/sample/statistics.py" />
+   <source>(no group)</source>
+   <translation>(ohne Gruppe)</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/help.py" />
    <source>(not installed)</source>
    <translation>(nicht installiert)</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/studies/band_plot.py" />
+   <source>({low:.4g} to {high:.4g})</source>
+   <translation>({low:.4g} bis {high:.4g})</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/setup.py" />
+   <source>* not given in the paper: a choice, yours to change.</source>
+   <translation>* im Artikel nicht angegeben: eine Wahl, die Sie ändern können.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/words.py" />
+   <source>, one that bounds no facet at the moment</source>
+   <translation>, eine, die gerade keine Facette begrenzt</translation>
+  </message>
+  <message>
+   <source>0: whole pile</source>
+   <translation>0: der ganze Kegel</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/controls.py" />
+   <source>1  Representatives</source>
+   <translation>1  Repräsentanten</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/degrees.py" />
+   <source>1 coefficient</source>
+   <translation>1 Koeffizient</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/page.py" />
+   <source>1 format is written.</source>
+   <translation>1 Format ist geschrieben.</translation>
+  </message>
+  <message>
+   <source>1 m in the file is 1 mm of the particles, coarse graining applied; y up</source>
+   <translation>1 m in der Datei ist 1 mm der Partikel, mit Vergröberungsfaktor; y zeigt nach oben</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/scatter.py" />
+   <location filename="ui/pages/studies/variation_panel.py" />
+   <location filename="ui/panels/lmax_study.py" />
+   <source>1 particle</source>
+   <translation>1 Partikel</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/controls.py" />
+   <source>1 particle is open.</source>
+   <translation>1 Partikel ist geöffnet.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/page.py" />
+   <source>1 representative</source>
+   <translation>1 Repräsentant</translation>
   </message>
   <message>
    <location filename="ui/dialogs/batch.py" />
@@ -283,9 +343,39 @@
    <translation>1 Arbeitsprozess</translation>
   </message>
   <message>
+   <location filename="ui/pages/dataset/controls.py" />
+   <source>2  Sizes</source>
+   <translation>2  Größen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/controls.py" />
+   <source>3  Dataset</source>
+   <translation>3  Datensatz</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/targets.py" />
+   <source>4  Export to</source>
+   <translation>4  Exportieren nach</translation>
+  </message>
+  <message>
    <location filename="ui/views/triptych.py" />
    <source>; {count} facets were asked for</source>
    <translation>; {count} Facetten waren verlangt</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/words.py" />
+   <source>&lt;b&gt;Angle of repose {angle:.1f}°&lt;/b&gt; ({low:.1f}° to {high:.1f}°, {count} sections); the paper's two sections: asymmetric {asymmetric:.1f}°, symmetric {symmetric:.1f}°.</source>
+   <translation>&lt;b&gt;Schüttwinkel {angle:.1f}°&lt;/b&gt; ({low:.1f}° bis {high:.1f}°, {count} Schnitte); die zwei Schnitte des Artikels: asymmetrisch {asymmetric:.1f}°, symmetrisch {symmetric:.1f}°.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/targets.py" />
+   <source>&lt;b&gt;Shapes are changed:&lt;/b&gt; {how}</source>
+   <translation>&lt;b&gt;Formen werden verändert:&lt;/b&gt; {how}</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/targets.py" />
+   <source>&lt;b&gt;{label}&lt;/b&gt; does not carry: {lost}.</source>
+   <translation>&lt;b&gt;{label}&lt;/b&gt; überträgt nicht: {lost}.</translation>
   </message>
   <message>
    <source>A</source>
@@ -308,6 +398,11 @@
   <message>
    <source>A closed mesh without faults.</source>
    <translation>Ein geschlossenes, fehlerfreies Netz.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/study.py" />
+   <source>A dataset is made of the open particles for every value.</source>
+   <translation>Für jeden Wert wird aus den geöffneten Partikeln ein Datensatz gemacht.</translation>
   </message>
   <message>
    <location filename="ui/activity.py" />
@@ -334,6 +429,16 @@
    <translation>Ein Skript, das dasselbe tut</translation>
   </message>
   <message>
+   <location filename="ui/pages/repose/page.py" />
+   <source>A simulation of the angle of repose would be stopped.</source>
+   <translation>Eine Simulation des Schüttwinkels würde abgebrochen.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/study_desk.py" />
+   <source>A study of the angle of repose would be stopped; it can go on later.</source>
+   <translation>Eine Studie des Schüttwinkels würde abgebrochen; sie kann später weitergehen.</translation>
+  </message>
+  <message>
    <location filename="ui/actions.py" />
    <source>A walk through the window</source>
    <translation>Ein Gang durch das Fenster</translation>
@@ -342,6 +447,11 @@
    <location filename="ui/dialogs/help.py" />
    <source>About Regolith Studio</source>
    <translation>Über Regolith Studio</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/page.py" />
+   <source>About {time} on one core.</source>
+   <translation>Etwa {time} auf einem Kern.</translation>
   </message>
   <message>
    <location filename="ui/activity.py" />
@@ -375,6 +485,11 @@
    <translation>Alle Dateien (*)</translation>
   </message>
   <message>
+   <location filename="ui/pages/sample/table.py" />
+   <source>All particles</source>
+   <translation>Alle Partikel</translation>
+  </message>
+  <message>
    <location filename="ui/pages/sample/__init__.py" />
    <source>All particles: table, scatter plot, health and statistics of groups</source>
    <translation>Alle Partikel: Tabelle, Streudiagramm, Zustand der Netze und Statistik der Gruppen</translation>
@@ -395,6 +510,11 @@
    <translation>Amplitude √A&lt;sub&gt;l&lt;/sub&gt; / c&lt;sub&gt;00&lt;/sub&gt; [%]</translation>
   </message>
   <message>
+   <location filename="ui/widgets/spectrum_editor.py" />
+   <source>Amplitude √A&lt;sub&gt;l&lt;/sub&gt; / μ [%]</source>
+   <translation>Amplitude √A&lt;sub&gt;l&lt;/sub&gt; / μ [%]</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/batch_fields.py" />
    <source>An encrypted cluster needs a folder with {names}.</source>
    <translation>Ein verschlüsselter Cluster braucht einen Ordner mit {names}.</translation>
@@ -410,13 +530,46 @@
    <translation>Und was er nicht sieht</translation>
   </message>
   <message>
+   <location filename="ui/pages/repose/runs.py" />
+   <location filename="ui/pages/repose/study.py" />
+   <source>Angle</source>
+   <translation>Winkel</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/runs.py" />
+   <location filename="ui/pages/repose/study.py" />
+   <source>Angle [°]</source>
+   <translation>Winkel [°]</translation>
+  </message>
+  <message>
    <location filename="ui/pages/repose/__init__.py" />
    <source>Angle of repose</source>
    <translation>Schüttwinkel</translation>
   </message>
   <message>
+   <location filename="ui/pages/repose/page.py" />
+   <source>Angle of repose, {count:,} particles</source>
+   <translation>Schüttwinkel, {count:,} Partikel</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/study_desk.py" />
+   <source>Angle of repose: study</source>
+   <translation>Schüttwinkel: Studie</translation>
+  </message>
+  <message>
    <source>Angularity</source>
    <translation>Kantigkeit</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/annealing.py" />
+   <location filename="ui/pages/lecture/page.py" />
+   <source>Annealing</source>
+   <translation>Abkühlung</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/page.py" />
+   <source>Annealing step by step</source>
+   <translation>Abkühlung Schritt für Schritt</translation>
   </message>
   <message>
    <location filename="ui/pages/lecture/__init__.py" />
@@ -424,7 +577,13 @@
    <translation>Simuliertes Abkühlen Schritt für Schritt, wachsendes l_max, ein Zufallsfeld auf der Kugel; in großer Schrift</translation>
   </message>
   <message>
+   <location filename="ui/pages/lecture/annealing.py" />
+   <source>Annealing, step {number} of {count}</source>
+   <translation>Abkühlung, Schritt {number} von {count}</translation>
+  </message>
+  <message>
    <location filename="ui/pages/lecture/__init__.py" />
+   <location filename="ui/pages/lecture/page.py" />
    <source>Another seed</source>
    <translation>Anderer Startwert</translation>
   </message>
@@ -439,9 +598,28 @@
    <translation>Als CSV-Datei</translation>
   </message>
   <message>
+   <source>As given</source>
+   <translation>Wie vorgegeben</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/setup.py" />
+   <source>As given (experimental)</source>
+   <translation>Wie vorgegeben (experimentell)</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/controls.py" />
+   <source>As measured</source>
+   <translation>Wie gemessen</translation>
+  </message>
+  <message>
    <location filename="ui/actions.py" />
    <source>As the &amp;system</source>
    <translation>Wie das &amp;System</translation>
+  </message>
+  <message>
+   <location filename="ui/widgets/preset_form.py" />
+   <source>As the paper gives them; a star where it gives none</source>
+   <translation>Wie im Artikel; ein Stern, wo er nichts angibt</translation>
   </message>
   <message>
    <location filename="ui/dialogs/preferences.py" />
@@ -463,6 +641,11 @@
    <translation>Seitenverhältnis, Gl. 2</translation>
   </message>
   <message>
+   <location filename="ui/pages/lecture/words.py" />
+   <source>At {symbol} = {degree} the series has a negative radius somewhere: it is no surface.</source>
+   <translation>Bei {symbol} = {degree} hat die Reihe irgendwo einen negativen Radius: sie ist keine Oberfläche.</translation>
+  </message>
+  <message>
    <location filename="ui/panels/fit.py" />
    <source>Automatic</source>
    <translation>Automatisch</translation>
@@ -482,6 +665,11 @@
    <translation>Zurück zu den Werten der Vorlage</translation>
   </message>
   <message>
+   <location filename="ui/pages/repose/page.py" />
+   <source>Before the fall</source>
+   <translation>Vor dem Fall</translation>
+  </message>
+  <message>
    <source>Being measured …</source>
    <translation>Wird vermessen …</translation>
   </message>
@@ -491,8 +679,30 @@
    <translation>Angepasstes Ellipsoid</translation>
   </message>
   <message>
+   <source>Bin width, in mean d</source>
+   <translation>Klassenbreite, in mittleren d</translation>
+  </message>
+  <message>
+   <source>Blocks of the cylinder</source>
+   <translation>Blöcke des Zylinders</translation>
+  </message>
+  <message>
+   <source>Bootstrap seed</source>
+   <translation>Startwert des Bootstraps</translation>
+  </message>
+  <message>
    <source>Bottom (from -z)</source>
    <translation>Unten (von -z)</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/studies/rows_bar.py" />
+   <source>Bounding box</source>
+   <translation>Hüllquader</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/studies/rows_bar.py" />
+   <source>Bounding box of the diameters</source>
+   <translation>Hüllquader der Durchmesser</translation>
   </message>
   <message>
    <location filename="session/session.py" />
@@ -506,7 +716,18 @@
    <translation>Durchsuchen …</translation>
   </message>
   <message>
+   <location filename="ui/pages/dataset/page.py" />
+   <source>Build the dataset in this folder</source>
+   <translation>Den Datensatz in diesem Ordner bauen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/controls.py" />
+   <source>Build the dataset …</source>
+   <translation>Datensatz bauen …</translation>
+  </message>
+  <message>
    <location filename="session/session.py" />
+   <location filename="ui/pages/dataset/page.py" />
    <source>Building the dataset</source>
    <translation>Datensatz wird gebaut</translation>
   </message>
@@ -522,9 +743,16 @@
    <translation>CT-Partikel</translation>
   </message>
   <message>
+   <location filename="ui/pages/lecture/degrees.py" />
+   <location filename="ui/pages/sample/page.py" />
    <location filename="ui/views/triptych.py" />
    <source>CT particle, {name}</source>
    <translation>CT-Partikel, {name}</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/targets.py" />
+   <source>Carries: {what}</source>
+   <translation>Überträgt: {what}</translation>
   </message>
   <message>
    <location filename="ui/dialogs/unit.py" />
@@ -552,9 +780,49 @@
    <translation>Ändern</translation>
   </message>
   <message>
+   <location filename="ui/pages/studies/change_table.py" />
+   <source>Changes of errors in percentage points</source>
+   <translation>Änderungen der Fehler in Prozentpunkten</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/words.py" />
+   <source>Checked: {count:,} particles, overlap at most {overlap:.1f} % of d</source>
+   <translation>Geprüft: {count:,} Partikel, Überlappung höchstens {overlap:.1f} % von d</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/page.py" />
+   <source>Checking the dataset</source>
+   <translation>Datensatz wird geprüft</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/runs.py" />
+   <source>Checks</source>
+   <translation>Prüfung</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/setup.py" />
+   <source>Choose a dataset folder</source>
+   <translation>Einen Datensatzordner wählen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/player.py" />
+   <source>Choose a dataset to see the cylinder filled.</source>
+   <translation>Wählen Sie einen Datensatz, um den gefüllten Zylinder zu sehen.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/library.py" />
+   <source>Choose a folder: the datasets below it are listed here, with what was exported and simulated from each.</source>
+   <translation>Wählen Sie einen Ordner: die Datensätze darin werden hier aufgeführt, mit allem, was aus ihnen exportiert und simuliert wurde.</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/batch_fields.py" />
    <source>Choose a recipe file.</source>
    <translation>Wählen Sie eine Rezeptdatei.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/study.py" />
+   <source>Choose it to see the run.</source>
+   <translation>Wählen Sie die Zeile, um den Lauf zu sehen.</translation>
   </message>
   <message>
    <location filename="ui/pages/dataset/__init__.py" />
@@ -567,9 +835,23 @@
    <translation>Den Datensatz der Simulation wählen</translation>
   </message>
   <message>
+   <location filename="ui/pages/sample/page.py" />
+   <source>Choose the rows to keep first.</source>
+   <translation>Wählen Sie zuerst die Zeilen, die bleiben sollen.</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/batch.py" />
    <source>Choose what is to be written.</source>
    <translation>Wählen Sie, was geschrieben werden soll.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/page.py" />
+   <source>Choosing representatives</source>
+   <translation>Repräsentanten werden gewählt</translation>
+  </message>
+  <message>
+   <source>Chosen weights</source>
+   <translation>Gewählte Gewichte</translation>
   </message>
   <message>
    <location filename="ui/pages/sample/__init__.py" />
@@ -597,6 +879,21 @@
    <translation>Das Schließen des Fensters bricht das ab.</translation>
   </message>
   <message>
+   <location filename="ui/pages/dataset/targets.py" />
+   <source>Coarse graining</source>
+   <translation>Vergröberung</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/targets.py" />
+   <source>Coarse-graining factor</source>
+   <translation>Vergröberungsfaktor</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/setup.py" />
+   <source>Coarsen the open particles first</source>
+   <translation>Zuerst die geöffneten Partikel vergröbern</translation>
+  </message>
+  <message>
    <location filename="ui/panels/coarsening.py" />
    <source>Coarsened polyhedron</source>
    <translation>Vergröbertes Polyeder</translation>
@@ -608,6 +905,7 @@
   </message>
   <message>
    <location filename="session/solids.py" />
+   <location filename="ui/pages/studies/page.py" />
    <source>Coarsening for the gallery</source>
    <translation>Vergröberung für die Galerie</translation>
   </message>
@@ -615,6 +913,12 @@
    <location filename="ui/panels/coarsening.py" />
    <source>Coarsening method</source>
    <translation>Verfahren der Vergröberung</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/setup.py" />
+   <location filename="ui/pages/repose/study.py" />
+   <source>Cohesion</source>
+   <translation>Kohäsion</translation>
   </message>
   <message>
    <location filename="ui/dialogs/command_palette.py" />
@@ -636,6 +940,11 @@
    <location filename="ui/dialogs/command_palette.py" />
    <source>Commands that fit</source>
    <translation>Passende Befehle</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/runs.py" />
+   <source>Compare the angle against</source>
+   <translation>Den Winkel vergleichen über</translation>
   </message>
   <message>
    <location filename="ui/views/comparison.py" />
@@ -662,6 +971,11 @@
    <translation>Berechnen</translation>
   </message>
   <message>
+   <location filename="ui/pages/studies/page.py" />
+   <source>Compute a study first.</source>
+   <translation>Berechnen Sie zuerst eine Studie.</translation>
+  </message>
+  <message>
    <location filename="ui/widgets/study_frame.py" />
    <source>Compute for all {count} particles</source>
    <translation>Für alle {count} Partikel berechnen</translation>
@@ -670,6 +984,19 @@
    <location filename="ui/widgets/study_frame.py" />
    <source>Compute for this particle</source>
    <translation>Für dieses Partikel berechnen</translation>
+  </message>
+  <message>
+   <source>Confidence</source>
+   <translation>Vertrauensbereich</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/setup.py" />
+   <source>Contact (Table 1)</source>
+   <translation>Kontakt (Tabelle 1)</translation>
+  </message>
+  <message>
+   <source>Contact time in steps</source>
+   <translation>Kontaktzeit in Schritten</translation>
   </message>
   <message>
    <source>Convex hull instead of volume</source>
@@ -698,6 +1025,11 @@
    <translation>Als &amp;Kommando kopieren</translation>
   </message>
   <message>
+   <location filename="ui/pages/dataset/targets.py" />
+   <source>Copy load command</source>
+   <translation>Ladebefehl kopieren</translation>
+  </message>
+  <message>
    <location filename="ui/panels/log.py" />
    <location filename="ui/widgets/toast.py" />
    <source>Copy report</source>
@@ -711,6 +1043,22 @@
   <message>
    <source>Corey shape factor</source>
    <translation>Formfaktor nach Corey</translation>
+  </message>
+  <message>
+   <source>Correct for grain size</source>
+   <translation>Um die Korngröße berichtigen</translation>
+  </message>
+  <message>
+   <source>Coulomb friction against rolling and spinning</source>
+   <translation>Coulomb-Reibung gegen Rollen und Bohren</translation>
+  </message>
+  <message>
+   <source>Coulomb friction in an elliptic cone, one coefficient (the static one)</source>
+   <translation>Coulomb-Reibung in elliptischem Kegel, ein Beiwert (der der Haftreibung)</translation>
+  </message>
+  <message>
+   <source>Coulomb friction while sliding, one coefficient (the static one), no memory at rest</source>
+   <translation>Coulomb-Reibung beim Gleiten, ein Beiwert (der der Haftreibung), kein Gedächtnis in Ruhe</translation>
   </message>
   <message>
    <location filename="ui/pages/explore/__init__.py" />
@@ -737,6 +1085,14 @@
    <translation>Alle Ansichten schneiden</translation>
   </message>
   <message>
+   <source>Cylinder diameter</source>
+   <translation>Zylinderdurchmesser</translation>
+  </message>
+  <message>
+   <source>Cylinder height</source>
+   <translation>Zylinderhöhe</translation>
+  </message>
+  <message>
    <source>D_int / D_max (Zingg)</source>
    <translation>D_int / D_max (Zingg)</translation>
   </message>
@@ -753,6 +1109,10 @@
    <translation>D_min / √(D_max D_int) (Corey)</translation>
   </message>
   <message>
+   <source>Damping</source>
+   <translation>Dämpfung</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/preferences.py" />
    <source>Dark</source>
    <translation>Dunkel</translation>
@@ -760,6 +1120,7 @@
   <message>
    <location filename="ui/dialogs/batch.py" />
    <location filename="ui/pages/dataset/__init__.py" />
+   <location filename="ui/pages/repose/setup.py" />
    <source>Dataset</source>
    <translation>Datensatz</translation>
   </message>
@@ -770,8 +1131,19 @@
   </message>
   <message>
    <location filename="ui/panels/spectrum.py" />
+   <location filename="ui/widgets/spectrum_editor.py" />
    <source>Degree l</source>
    <translation>Grad l</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/degrees.py" />
+   <source>Degree l&lt;sub&gt;max&lt;/sub&gt;</source>
+   <translation>Grad l&lt;sub&gt;max&lt;/sub&gt;</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/page.py" />
+   <source>Degrees of the fit</source>
+   <translation>Grade des Fits</translation>
   </message>
   <message>
    <location filename="ui/widgets/preset_bar.py" />
@@ -782,6 +1154,11 @@
    <location filename="ui/panels/error_bars.py" />
    <source>Descriptor</source>
    <translation>Deskriptor</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/statistics.py" />
+   <source>Descriptor of the statistics</source>
+   <translation>Deskriptor der Statistik</translation>
   </message>
   <message>
    <location filename="ui/dialogs/batch.py" />
@@ -801,6 +1178,26 @@
    <translation>Einzelheiten …</translation>
   </message>
   <message>
+   <location filename="ui/pages/repose/export.py" />
+   <source>Diameter</source>
+   <translation>Durchmesser</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/controls.py" />
+   <source>Diameter in µm = share; @volume behind it counts volume.</source>
+   <translation>Durchmesser in µm = Anteil; mit @volume dahinter zählt das Volumen.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/studies/rows_bar.py" />
+   <source>Diameters and aspect ratio come from this box. The heuristic of the paper's program is no minimum; it is here to compare numbers.</source>
+   <translation>Durchmesser und Seitenverhältnis kommen aus diesem Quader. Die Heuristik im Programm des Artikels ist kein Minimum; sie steht hier zum Vergleich der Zahlen.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/controls.py" />
+   <source>Diameters in µm; each particle moves to the nearest (Table 1 of the paper).</source>
+   <translation>Durchmesser in µm; jedes Partikel rückt zum nächsten (Tabelle 1 des Artikels).</translation>
+  </message>
+  <message>
    <location filename="ui/pages/explore/section_panel.py" />
    <source>Direction of the section</source>
    <translation>Richtung des Schnitts</translation>
@@ -809,6 +1206,11 @@
    <location filename="ui/pages/explore/section_panel.py" />
    <source>Distance from the middle of the particle; the frame in the views can be dragged as well.</source>
    <translation>Abstand von der Mitte des Partikels; auch der Rahmen in den Ansichten lässt sich ziehen.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/plots.py" />
+   <source>Distance to the population [deviations]</source>
+   <translation>Abstand zur Population [Abweichungen]</translation>
   </message>
   <message>
    <location filename="ui/panels/fit.py" />
@@ -830,9 +1232,34 @@
    <translation>Ziehen Sie daran. Bei 0 ist der Fit eine Kugel, bei 10 behält er, was der Artikel behält, bei 30 fast alles. Hier wird die Reihe von Gl. 4 abgebrochen.</translation>
   </message>
   <message>
+   <location filename="ui/pages/lecture/field.py" />
+   <source>Draw anew</source>
+   <translation>Neu ziehen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/studies/page.py" />
+   <source>Draw the polyhedra of this particle</source>
+   <translation>Die Polyeder dieses Partikels zeichnen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/studies/page.py" />
+   <source>Draw the polyhedra of {count} particles</source>
+   <translation>Die Polyeder von {count} Partikeln zeichnen</translation>
+  </message>
+  <message>
    <location filename="ui/pages/model/__init__.py" />
    <source>Draw virtual particles with the shapes and sizes of a sample</source>
    <translation>Virtuelle Partikel mit den Formen und Größen einer Probe ziehen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/field.py" />
+   <source>Draw {number}. The radius strays by {found:.1%} from its mean; {expected:.1%} is expected over many draws. Degree {loudest} is the strongest: {share:.2g} %.</source>
+   <translation>Ziehung {number}. Der Radius weicht um {found:.1%} von seinem Mittel ab; über viele Ziehungen sind {expected:.1%} zu erwarten. Grad {loudest} ist der stärkste: {share:.2g} %.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/page.py" />
+   <source>Drawing particles</source>
+   <translation>Partikel werden gezogen</translation>
   </message>
   <message>
    <location filename="ui/pages/explore/pictures.py" />
@@ -860,14 +1287,37 @@
    <translation>Netzdateien oder Ordner irgendwo im Fenster ablegen, um sie zu öffnen.</translation>
   </message>
   <message>
+   <source>Dynamic friction</source>
+   <translation>Gleitreibung</translation>
+  </message>
+  <message>
    <location filename="ui/pages/sample/__init__.py" />
    <source>E&amp;xport table …</source>
    <translation>Tabelle &amp;exportieren …</translation>
   </message>
   <message>
+   <location filename="ui/pages/dataset/controls.py" />
+   <source>Each particle counts the same</source>
+   <translation>Jedes Partikel zählt gleich</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/study.py" />
+   <source>Each run adds a point.</source>
+   <translation>Jeder Lauf fügt einen Punkt hinzu.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/studies/rows_bar.py" />
+   <source>Each term alone</source>
+   <translation>Jeder Term allein</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/export.py" />
    <source>Each with</source>
    <translation>Jedes mit</translation>
+  </message>
+  <message>
+   <source>Earth</source>
+   <translation>Erde</translation>
   </message>
   <message>
    <location filename="ui/dialogs/unit.py" />
@@ -889,8 +1339,59 @@
    <translation>Beenden</translation>
   </message>
   <message>
+   <location filename="ui/pages/repose/runs.py" />
+   <location filename="ui/pages/repose/setup.py" />
+   <source>Engine</source>
+   <translation>Rechenkern</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/engine_panel.py" />
+   <location filename="ui/pages/repose/page.py" />
+   <source>Engines</source>
+   <translation>Rechenkerne</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/degrees.py" />
+   <source>Eq. 4 with its numbers</source>
+   <translation>Gl. 4 mit ihren Zahlen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/annealing.py" />
+   <source>Eq. 9 of the exact method</source>
+   <translation>Gl. 9 des exakten Verfahrens</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/annealing.py" />
+   <source>Eq. 9 with its numbers</source>
+   <translation>Gl. 9 mit ihren Zahlen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/plots.py" />
+   <source>Equivalent diameter [µm]</source>
+   <translation>Äquivalentdurchmesser [µm]</translation>
+  </message>
+  <message>
    <source>Equivalent radius</source>
    <translation>Äquivalentradius</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/degrees.py" />
+   <source>Error [%]</source>
+   <translation>Fehler [%]</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/studies/page.py" />
+   <source>Error against l&lt;sub&gt;max&lt;/sub&gt; (Fig. 3)</source>
+   <translation>Fehler gegen l&lt;sub&gt;max&lt;/sub&gt; (Bild 3)</translation>
+  </message>
+  <message>
+   <source>Error against the number of faces</source>
+   <translation>Fehler gegen die Anzahl der Facetten</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/studies/page.py" />
+   <source>Error of coarsened particles</source>
+   <translation>Fehler vergröberter Partikel</translation>
   </message>
   <message>
    <location filename="ui/pages/explore/plot_area.py" />
@@ -903,8 +1404,18 @@
    <translation>Fehler gegen l_max, Facetten und Gewichte, und wie die Polyeder aussehen</translation>
   </message>
   <message>
+   <location filename="ui/pages/repose/setup.py" />
+   <source>Evaluation (section 3.3)</source>
+   <translation>Auswertung (Abschnitt 3.3)</translation>
+  </message>
+  <message>
    <source>Every open particle. Click a row to put it on screen; the arrow keys walk through the list. The icon tells the health of the mesh. Drop your own files anywhere in the window.</source>
    <translation>Alle geöffneten Partikel. Ein Klick auf eine Zeile zeigt eines davon; die Pfeiltasten wandern durch die Liste. Das Symbol sagt, wie gesund das Netz ist. Eigene Dateien lassen sich irgendwo im Fenster ablegen.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/study_desk.py" />
+   <source>Every run is kept in {folder}.</source>
+   <translation>Jeder Lauf wird in {folder} aufbewahrt.</translation>
   </message>
   <message>
    <location filename="ui/pages/studies/__init__.py" />
@@ -914,6 +1425,16 @@
   <message>
    <source>Exact descriptors</source>
    <translation>Exakte Deskriptoren</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/annealing.py" />
+   <source>Exact method</source>
+   <translation>Exaktes Verfahren</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/annealing.py" />
+   <source>Exact method:</source>
+   <translation>Exaktes Verfahren:</translation>
   </message>
   <message>
    <location filename="ui/pages/explore/__init__.py" />
@@ -936,9 +1457,50 @@
    <translation>Datensatz exportieren</translation>
   </message>
   <message>
+   <location filename="ui/pages/repose/export.py" />
+   <source>Export figure and JSON</source>
+   <translation>Abbildung und JSON exportieren</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/page.py" />
+   <source>Export into this folder</source>
+   <translation>In diesen Ordner exportieren</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/page.py" />
+   <source>Export table</source>
+   <translation>Tabelle exportieren</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/targets.py" />
+   <source>Export …</source>
+   <translation>Exportieren …</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/page.py" />
+   <source>Exported</source>
+   <translation>Exportiert</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/page.py" />
+   <source>Exporting</source>
+   <translation>Export</translation>
+  </message>
+  <message>
    <location filename="ui/pages/lecture/__init__.py" />
    <source>F&amp;ull screen</source>
    <translation>Voll&amp;bild</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/studies/page.py" />
+   <location filename="ui/pages/studies/variation_panel.py" />
+   <source>Faces</source>
+   <translation>Facetten</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/runs.py" />
+   <source>Facets a particle</source>
+   <translation>Facetten je Partikel</translation>
   </message>
   <message>
    <location filename="ui/panels/coarsening.py" />
@@ -946,8 +1508,25 @@
    <translation>Facetten n</translation>
   </message>
   <message>
+   <location filename="ui/pages/repose/study.py" />
+   <source>Facets of the open particles</source>
+   <translation>Facetten der geöffneten Partikel</translation>
+  </message>
+  <message>
+   <source>Factors on one weight at a time</source>
+   <translation>Faktoren auf je ein Gewicht</translation>
+  </message>
+  <message>
+   <source>Factors on the weight of the overlap</source>
+   <translation>Faktoren auf das Gewicht der Überdeckung</translation>
+  </message>
+  <message>
    <source>Fewer facets make a faster simulation. The views say how many facets, vertices and triangles the polyhedron really has, and a sentence appears here if a wish cannot be met.</source>
    <translation>Weniger Facetten machen die Simulation schneller. Über der Ansicht steht, wie viele Facetten, Ecken und Dreiecke das Polyeder wirklich hat; hier erscheint ein Satz, wenn ein Wunsch nicht erfüllbar ist.</translation>
+  </message>
+  <message>
+   <source>Fewest particles</source>
+   <translation>Wenigste Partikel</translation>
   </message>
   <message>
    <source>Figure 7, fifth column: aspect ratio and IoU</source>
@@ -970,6 +1549,11 @@
    <translation>Bild 8: jeder Term von Gl. 9 mit Gewicht 1</translation>
   </message>
   <message>
+   <location filename="ui/pages/repose/export.py" />
+   <source>Figure and JSON are in {name}.</source>
+   <translation>Abbildung und JSON sind in {name}.</translation>
+  </message>
+  <message>
    <source>Figures 7 and 8: every descriptor of section 2.2, without IoU</source>
    <translation>Bilder 7 und 8: jeder Deskriptor von Abschnitt 2.2, ohne IoU</translation>
   </message>
@@ -979,9 +1563,53 @@
    <translation>Einen Zylinder mit den Partikeln eines Datensatzes füllen, ihn heben, den Schüttkegel vermessen</translation>
   </message>
   <message>
+   <location filename="ui/pages/repose/setup.py" />
+   <source>Fill, lift, measure</source>
+   <translation>Füllen, heben, messen</translation>
+  </message>
+  <message>
+   <source>Filling speed</source>
+   <translation>Füllgeschwindigkeit</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/library.py" />
+   <source>Filter</source>
+   <translation>Filter</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/library.py" />
+   <source>Filter of the library</source>
+   <translation>Filter der Bibliothek</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/page.py" />
+   <source>Filter of the table</source>
+   <translation>Filter der Tabelle</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/page.py" />
+   <source>Filter: words and comparisons, such as  flat S&lt;0.8 AR&gt;1.5</source>
+   <translation>Filter: Wörter und Vergleiche, etwa  flat S&lt;0.8 AR&gt;1.5</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/controls.py" />
+   <source>Find representatives</source>
+   <translation>Repräsentanten finden</translation>
+  </message>
+  <message>
    <location filename="ui/pages/scan/__init__.py" />
    <source>Find the grains in a CT volume and make particles of them</source>
    <translation>Die Körner in einem CT-Volumen finden und Partikel daraus machen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/page.py" />
+   <source>Finding representatives</source>
+   <translation>Repräsentanten werden gesucht</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/setup.py" />
+   <source>Fine</source>
+   <translation>Fein</translation>
   </message>
   <message>
    <location filename="ui/panels/fit.py" />
@@ -1004,6 +1632,7 @@
    <translation>Fit gegen Partikel</translation>
   </message>
   <message>
+   <location filename="ui/pages/lecture/degrees.py" />
    <location filename="ui/views/triptych.py" />
    <source>Fit, {degree}</source>
    <translation>Fit, {degree}</translation>
@@ -1023,14 +1652,29 @@
    <translation>Abplattung</translation>
   </message>
   <message>
+   <location filename="ui/pages/sample/scatter.py" />
+   <source>Flatness against elongation, with Zingg's classes of form</source>
+   <translation>Abplattung gegen Elongation, mit den Formklassen nach Zingg</translation>
+  </message>
+  <message>
    <location filename="ui/pages/explore/section_panel.py" />
    <source>Flip</source>
    <translation>Umkehren</translation>
   </message>
   <message>
+   <location filename="ui/pages/studies/page.py" />
+   <source>Folder of figures and tables</source>
+   <translation>Ordner für Abbildungen und Tabellen</translation>
+  </message>
+  <message>
    <location filename="ui/pages/repose/__init__.py" />
    <source>Folder of r&amp;uns …</source>
    <translation>Ordner der &amp;Läufe …</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/page.py" />
+   <source>Folder of runs</source>
+   <translation>Ordner der Läufe</translation>
   </message>
   <message>
    <location filename="ui/dialogs/export.py" />
@@ -1048,9 +1692,19 @@
    <translation>Ordner mit {names}</translation>
   </message>
   <message>
+   <location filename="ui/pages/dataset/library.py" />
+   <source>Folder …</source>
+   <translation>Ordner …</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/export.py" />
    <source>Folder:</source>
    <translation>Ordner:</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/targets.py" />
+   <source>For formats that list single bodies.</source>
+   <translation>Für Formate, die einzelne Körper aufführen.</translation>
   </message>
   <message>
    <location filename="ui/actions.py" />
@@ -1063,9 +1717,29 @@
    <translation>Größen und Grenzen vergessen</translation>
   </message>
   <message>
+   <location filename="ui/pages/sample/table.py" />
+   <source>Form</source>
+   <translation>Form</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/engine_panel.py" />
+   <source>Found</source>
+   <translation>Gefunden</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/runs.py" />
+   <source>Friction</source>
+   <translation>Reibung</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/help.py" />
    <source>From X-ray micro-CT to DEM-ready regolith particles whose geometry is right.</source>
    <translation>Von der Röntgen-Mikro-CT zu DEM-fertigen Regolithpartikeln, deren Geometrie stimmt.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/setup.py" />
+   <source>From open particles</source>
+   <translation>Aus den Partikeln</translation>
   </message>
   <message>
    <source>From scan to heap</source>
@@ -1081,14 +1755,45 @@
    <translation>GIF von l_max 0 bis 30</translation>
   </message>
   <message>
+   <source>Gap, in mean d</source>
+   <translation>Lücke, in mittleren d</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/batch.py" />
    <source>Go on with the run that has not ended</source>
    <translation>Den nicht beendeten Lauf fortsetzen</translation>
   </message>
   <message>
+   <location filename="ui/pages/sample/statistics.py" />
+   <source>Grains that the border of the scan cuts were left out, large ones more often than small ones. Each of the others counts a little more for it (weights of Miles and Lantuéjoul).</source>
+   <translation>Körner, die der Rand des Scans schneidet, fielen weg, große öfter als kleine. Jedes der übrigen zählt dafür etwas mehr (Gewichte nach Miles und Lantuéjoul).</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/runs.py" />
+   <source>Gravity</source>
+   <translation>Schwerkraft</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/runs.py" />
+   <location filename="ui/pages/repose/study.py" />
+   <source>Gravity [m/s²]</source>
+   <translation>Schwerkraft [m/s²]</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/setup.py" />
+   <source>Gravity of</source>
+   <translation>Schwerkraft</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/table.py" />
    <location filename="ui/panels/particle_list.py" />
    <source>Group</source>
    <translation>Gruppe</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/page.py" />
+   <source>Growing the fit</source>
+   <translation>Fit wächst</translation>
   </message>
   <message>
    <location filename="ui/panels/coarsening.py" />
@@ -1106,9 +1811,38 @@
    <translation>Kugelflächen-Fit, {degree}</translation>
   </message>
   <message>
+   <location filename="ui/pages/sample/table.py" />
+   <source>Health</source>
+   <translation>Zustand</translation>
+  </message>
+  <message>
    <location filename="ui/actions.py" />
    <source>Here or on a cluster</source>
    <translation>Hier oder auf einem Cluster</translation>
+  </message>
+  <message>
+   <source>Hertz and Mindlin stiffness, restitution, friction of rest apart from friction of motion</source>
+   <translation>Steifigkeit nach Hertz und Mindlin, Stoßzahl, Haftreibung getrennt von Gleitreibung</translation>
+  </message>
+  <message>
+   <source>Hertz from Young's modulus (softened, recorded) with restitution, approximate with cohesion</source>
+   <translation>Hertz aus dem Elastizitätsmodul (erweicht, vermerkt) mit Stoßzahl, mit Kohäsion genähert</translation>
+  </message>
+  <message>
+   <source>Hertz, Mindlin, restitution, cohesion, rolling resistance: qualitative; some 200 particles</source>
+   <translation>Hertz, Mindlin, Stoßzahl, Kohäsion, Rollwiderstand: qualitativ; etwa 200 Partikel</translation>
+  </message>
+  <message>
+   <source>Hertz, Mindlin-Deresiewicz, JKR, restitution: the law is volumetric</source>
+   <translation>Hertz, Mindlin-Deresiewicz, JKR, Stoßzahl: das Gesetz ist volumetrisch</translation>
+  </message>
+  <message>
+   <source>Hertz, Mindlin-Deresiewicz, JKR: MuJoCo's contacts are soft constraints</source>
+   <translation>Hertz, Mindlin-Deresiewicz, JKR: MuJoCos Kontakte sind weiche Zwangsbedingungen</translation>
+  </message>
+  <message>
+   <source>Hertz, Mindlin-Deresiewicz, JKR: the pair style is linear</source>
+   <translation>Hertz, Mindlin-Deresiewicz, JKR: das Paarpotential ist linear</translation>
   </message>
   <message>
    <location filename="ui/panels/task_list.py" />
@@ -1116,8 +1850,23 @@
    <translation>Nach dem laufenden Schritt anhalten oder weiterlaufen lassen</translation>
   </message>
   <message>
+   <location filename="ui/pages/sample/scatter.py" />
+   <source>Horizontal axis</source>
+   <translation>Waagerechte Achse</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/plots.py" />
+   <source>How many are enough? Press Find: the curve falls to the sampling noise of the population.</source>
+   <translation>Wie viele genügen? Drücken Sie „Repräsentanten finden“: die Kurve fällt bis zum Stichprobenrauschen der Population.</translation>
+  </message>
+  <message>
    <source>How many facets</source>
    <translation>Wie viele Facetten</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/table.py" />
+   <source>How many grains it stands for, since large ones were lost at the border of the scan</source>
+   <translation>Für wie viele Körner es steht, weil am Rand des Scans große verloren gingen</translation>
   </message>
   <message>
    <source>How much detail: l_max</source>
@@ -1139,6 +1888,16 @@
    <translation>Vorbild</translation>
   </message>
   <message>
+   <location filename="ui/pages/repose/page.py" />
+   <source>Imported particles</source>
+   <translation>Importierte Partikel</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/controls.py" />
+   <source>In size classes</source>
+   <translation>In Größenklassen</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/unit.py" />
    <source>In which unit are the numbers of these {count} files and folders?</source>
    <translation>In welcher Einheit sind die Zahlen dieser {count} Dateien und Ordner?</translation>
@@ -1153,6 +1912,12 @@
    <translation>Mittlerer Durchmesser</translation>
   </message>
   <message>
+   <location filename="ui/pages/repose/runs.py" />
+   <location filename="ui/pages/repose/study.py" />
+   <source>Interval</source>
+   <translation>Bereich</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/batch.py" />
    <source>Into:</source>
    <translation>Nach:</translation>
@@ -1160,6 +1925,10 @@
   <message>
    <source>Isometric</source>
    <translation>Isometrisch</translation>
+  </message>
+  <message>
+   <source>Iterations</source>
+   <translation>Iterationen</translation>
   </message>
   <message>
    <source>Iterations k_max</source>
@@ -1179,6 +1948,10 @@
    <location filename="ui/panels/loss.py" />
    <source>Jaccard distance, Eq. 7 (paper: IoU)</source>
    <translation>Jaccard-Distanz, Gl. 7 (im Artikel: IoU)</translation>
+  </message>
+  <message>
+   <source>Johnson, Kendall and Roberts between spheres</source>
+   <translation>Johnson, Kendall und Roberts zwischen Kugeln</translation>
   </message>
   <message>
    <source>Keep the best so far</source>
@@ -1215,6 +1988,11 @@
    <translation>Art des Bildes</translation>
   </message>
   <message>
+   <location filename="ui/pages/dataset/controls.py" />
+   <source>Kind of size distribution</source>
+   <translation>Art der Größenverteilung</translation>
+  </message>
+  <message>
    <source>Krumbein sphericity</source>
    <translation>Sphärizität nach Krumbein</translation>
   </message>
@@ -1222,6 +2000,10 @@
    <location filename="ui/actions.py" />
    <source>L&amp;og</source>
    <translation>&amp;Protokoll</translation>
+  </message>
+  <message>
+   <source>LAMMPS rounds edges; facets stay in their planes, corners are lost.</source>
+   <translation>LAMMPS rundet Kanten; Facetten bleiben in ihren Ebenen, Ecken gehen verloren.</translation>
   </message>
   <message>
    <location filename="ui/dialogs/preferences.py" />
@@ -1275,6 +2057,11 @@
    <translation>Linke Taste ziehen</translation>
   </message>
   <message>
+   <location filename="ui/pages/dataset/page.py" />
+   <source>Left out: {names}.</source>
+   <translation>Ausgelassen: {names}.</translation>
+  </message>
+  <message>
    <source>Left: the particle as the CT scan measured it. Middle: its spherical-harmonics fit. Right: the convex polyhedron that a DEM solver will roll. Drag to turn: all three turn together.</source>
    <translation>Links: das Partikel, wie die CT es gemessen hat. Mitte: sein Fit mit Kugelflächenfunktionen. Rechts: das konvexe Polyeder, das ein DEM-Programm rollen lässt. Zum Drehen ziehen: alle drei drehen sich gemeinsam.</translation>
   </message>
@@ -1284,8 +2071,34 @@
    <translation>Längeneinheit</translation>
   </message>
   <message>
+   <location filename="ui/pages/repose/export.py" />
+   <source>Length unit of the file:</source>
+   <translation>Längeneinheit der Datei:</translation>
+  </message>
+  <message>
    <source>Level</source>
    <translation>Stufe</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/library.py" />
+   <location filename="ui/pages/dataset/page.py" />
+   <source>Library</source>
+   <translation>Bibliothek</translation>
+  </message>
+  <message>
+   <source>Lift speed</source>
+   <translation>Hubgeschwindigkeit</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/runs.py" />
+   <location filename="ui/pages/repose/study.py" />
+   <source>Lift speed [m/s]</source>
+   <translation>Hubgeschwindigkeit [m/s]</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/player.py" />
+   <source>Lifting cylinder</source>
+   <translation>Hubzylinder</translation>
   </message>
   <message>
    <location filename="ui/dialogs/preferences.py" />
@@ -1299,14 +2112,48 @@
    <translation>Protokoll</translation>
   </message>
   <message>
+   <location filename="ui/pages/dataset/controls.py" />
+   <source>Log-normal, fitted to each class</source>
+   <translation>Lognormal, an jede Klasse angepasst</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/controls.py" />
+   <source>Log-normal, the same for all</source>
+   <translation>Lognormal, für alle gleich</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/scatter.py" />
+   <source>Logarithmic</source>
+   <translation>Logarithmisch</translation>
+  </message>
+  <message>
+   <source>Longest wait</source>
+   <translation>Längste Wartezeit</translation>
+  </message>
+  <message>
    <location filename="ui/actions.py" />
    <location filename="ui/pages/explore/__init__.py" />
    <source>Look &amp;from</source>
    <translation>&amp;Blickrichtung</translation>
   </message>
   <message>
+   <location filename="ui/pages/dataset/library.py" />
+   <source>Look again</source>
+   <translation>Nochmals suchen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/library.py" />
+   <source>Looking for datasets</source>
+   <translation>Datensätze werden gesucht</translation>
+  </message>
+  <message>
    <source>Looking for the cluster</source>
    <translation>Cluster wird gesucht</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/targets.py" />
+   <source>Loses: {what}</source>
+   <translation>Verliert: {what}</translation>
   </message>
   <message>
    <location filename="ui/pages/explore/plot_area.py" />
@@ -1319,13 +2166,89 @@
    <translation>Verlust (Gl. 9)</translation>
   </message>
   <message>
+   <location filename="ui/pages/lecture/annealing.py" />
+   <source>Loss L (Eq. 9)</source>
+   <translation>Verlust L (Gl. 9)</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/studies/rows_bar.py" />
+   <source>Losses</source>
+   <translation>Verluste</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/studies/page.py" />
+   <source>Losses (Fig. 8)</source>
+   <translation>Verluste (Bild 8)</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/studies/rows_bar.py" />
+   <source>Losses of figures 7 and 8</source>
+   <translation>Verluste der Bilder 7 und 8</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/studies/rows_bar.py" />
+   <source>Losses that are the rows of figures 7 and 8</source>
+   <translation>Verluste, die die Zeilen der Bilder 7 und 8 sind</translation>
+  </message>
+  <message>
+   <source>Lower cut</source>
+   <translation>Unterer Schnitt</translation>
+  </message>
+  <message>
+   <source>Lowest cut, in mean d</source>
+   <translation>Tiefster Schnitt, in mittleren d</translation>
+  </message>
+  <message>
+   <source>Lowest pile, in mean d</source>
+   <translation>Niedrigster Kegel, in mittleren d</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/page.py" />
+   <source>Making a dataset</source>
+   <translation>Datensatz wird gemacht</translation>
+  </message>
+  <message>
+   <source>Mars</source>
+   <translation>Mars</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/field.py" />
+   <source>Material</source>
+   <translation>Material</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/targets.py" />
+   <source>Material and cylinder</source>
+   <translation>Material und Zylinder</translation>
+  </message>
+  <message>
    <location filename="ui/panels/fit.py" />
    <source>Maximum degree</source>
    <translation>Höchster Grad</translation>
   </message>
   <message>
+   <location filename="ui/panels/lmax_study.py" />
+   <source>Maximum degree l&lt;sub&gt;max&lt;/sub&gt;</source>
+   <translation>Höchster Grad l&lt;sub&gt;max&lt;/sub&gt;</translation>
+  </message>
+  <message>
    <source>Maximum diameter</source>
    <translation>Größter Durchmesser</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/studies/variation_panel.py" />
+   <source>Mean Jaccard distance [%]</source>
+   <translation>Mittlere Jaccard-Distanz [%]</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/studies/variation_panel.py" />
+   <source>Mean RMSRE of six descriptors [%]</source>
+   <translation>Mittl. RMSRE der Deskriptoren [%]</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/export.py" />
+   <source>Measure positions</source>
+   <translation>Positionen vermessen</translation>
   </message>
   <message>
    <location filename="ui/pages/repose/__init__.py" />
@@ -1345,6 +2268,16 @@
   <message>
    <source>Measuring the fit</source>
    <translation>Fit wird vermessen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/page.py" />
+   <source>Measuring the pile</source>
+   <translation>Schüttkegel wird vermessen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/controls.py" />
+   <source>Median in µm, deviation of ln d; @volume behind it counts volume.</source>
+   <translation>Median in µm, Abweichung von ln d; mit @volume dahinter zählt das Volumen.</translation>
   </message>
   <message>
    <location filename="ui/dialogs/unit.py" />
@@ -1377,13 +2310,31 @@
    <translation>Millimeter (mm)</translation>
   </message>
   <message>
+   <source>Mindlin with history and Coulomb friction, one coefficient (the static one)</source>
+   <translation>Mindlin mit Gedächtnis und Coulomb-Reibung, ein Beiwert (der der Haftreibung)</translation>
+  </message>
+  <message>
    <source>Minimum diameter</source>
    <translation>Kleinster Durchmesser</translation>
+  </message>
+  <message>
+   <source>Moon</source>
+   <translation>Mond</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/page.py" />
+   <source>More than {count:,} particles are for other programs: export the dataset.</source>
+   <translation>Mehr als {count:,} Partikel sind Sache anderer Programme: exportieren Sie den Datensatz.</translation>
   </message>
   <message>
    <location filename="ui/dialogs/shortcuts.py" />
    <source>Mouse in the views</source>
    <translation>Maus in den Ansichten</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/library.py" />
+   <source>Name</source>
+   <translation>Name</translation>
   </message>
   <message>
    <location filename="ui/dialogs/batch.py" />
@@ -1402,8 +2353,14 @@
   </message>
   <message>
    <location filename="ui/dialogs/export.py" />
+   <location filename="ui/pages/dataset/controls.py" />
    <source>Name of the dataset</source>
    <translation>Name des Datensatzes</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/table.py" />
+   <source>Name of the file or of the grain</source>
+   <translation>Name der Datei oder des Korns</translation>
   </message>
   <message>
    <location filename="ui/widgets/preset_bar.py" />
@@ -1414,6 +2371,11 @@
    <location filename="ui/dialogs/export.py" />
    <source>Name:</source>
    <translation>Name:</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/study.py" />
+   <source>Names of presets: {names}</source>
+   <translation>Namen der Vorlagen: {names}</translation>
   </message>
   <message>
    <location filename="ui/dialogs/unit.py" />
@@ -1441,9 +2403,45 @@
    <translation>Nächster Startwert: dasselbe Verfahren mit anderen Zufallszahlen</translation>
   </message>
   <message>
+   <location filename="ui/pages/repose/setup.py" />
+   <source>No dataset yet</source>
+   <translation>Noch kein Datensatz</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/controls.py" />
+   <source>No dataset yet.</source>
+   <translation>Noch kein Datensatz.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/field.py" />
+   <source>No material.</source>
+   <translation>Kein Material.</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/batch_fields.py" />
    <source>No open particle comes from a file: open some, or choose a recipe file.</source>
    <translation>Kein geöffnetes Partikel stammt aus einer Datei: öffnen Sie welche oder wählen Sie eine Rezeptdatei.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/studies/desk.py" />
+   <location filename="ui/pages/studies/page.py" />
+   <source>No particle is open; open a mesh first.</source>
+   <translation>Kein Partikel ist geöffnet; öffnen Sie zuerst ein Netz.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/controls.py" />
+   <source>No particles are open: open files, the sample, or draw some on the page Shape model.</source>
+   <translation>Keine Partikel sind geöffnet: öffnen Sie Dateien oder die Probe, oder ziehen Sie welche auf der Seite Formmodell.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/page.py" />
+   <source>No particles are open; open some, or the shipped sample.</source>
+   <translation>Keine Partikel sind geöffnet; öffnen Sie welche oder die mitgelieferte Probe.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/page.py" />
+   <source>No pile yet.</source>
+   <translation>Noch kein Schüttkegel.</translation>
   </message>
   <message>
    <location filename="ui/translation/sentences.py" />
@@ -1451,9 +2449,22 @@
    <translation>Es fand sich kein Polyeder mit {faces} Facetten, das alle Deskriptoren trifft: {name} weicht um {error} % ab; mehr Facetten oder ein Gewicht von 0 gäben Raum.</translation>
   </message>
   <message>
+   <location filename="ui/pages/repose/setup.py" />
+   <source>None</source>
+   <translation>Keine</translation>
+  </message>
+  <message>
+   <source>Normal force</source>
+   <translation>Normalkraft</translation>
+  </message>
+  <message>
    <location filename="ui/panels/fit.py" />
    <source>Not fitted yet.</source>
    <translation>Noch nicht angepasst.</translation>
+  </message>
+  <message>
+   <source>Not represented</source>
+   <translation>Nicht abgebildet</translation>
   </message>
   <message>
    <location filename="ui/panels/task_list.py" />
@@ -1461,9 +2472,21 @@
    <translation>Nichts ist in Arbeit.</translation>
   </message>
   <message>
+   <location filename="ui/pages/repose/setup.py" />
+   <source>Number</source>
+   <translation>Anzahl</translation>
+  </message>
+  <message>
    <location filename="ui/panels/coarsening.py" />
    <source>Number of facets</source>
    <translation>Anzahl der Facetten</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/runs.py" />
+   <location filename="ui/pages/repose/setup.py" />
+   <location filename="ui/pages/repose/study.py" />
+   <source>Number of particles</source>
+   <translation>Anzahl der Partikel</translation>
   </message>
   <message>
    <location filename="ui/dialogs/batch_fields.py" />
@@ -1471,9 +2494,39 @@
    <translation>Anzahl der Prozesse</translation>
   </message>
   <message>
+   <location filename="ui/pages/dataset/controls.py" />
+   <location filename="ui/pages/dataset/plots.py" />
+   <source>Number of representatives</source>
+   <translation>Anzahl der Repräsentanten</translation>
+  </message>
+  <message>
+   <source>Numbers of faces</source>
+   <translation>Anzahlen der Facetten</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/controls.py" />
+   <source>Numbers of the size distribution</source>
+   <translation>Zahlen der Größenverteilung</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/studies/variation_panel.py" />
+   <source>Numbers with commas between them; Return starts the study</source>
+   <translation>Zahlen mit Kommas dazwischen; Eingabe startet die Studie</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/setup.py" />
+   <source>Numerics of the engine</source>
+   <translation>Numerik des Rechenkerns</translation>
+  </message>
+  <message>
    <location filename="ui/panels/coarsening.py" />
    <source>Of all random numbers: the same seed gives the same polyhedron.</source>
    <translation>Aller Zufallszahlen: derselbe Startwert ergibt dasselbe Polyeder.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/table.py" />
+   <source>Of the mesh; the tool tip of a cell says what was found and mended</source>
+   <translation>Des Netzes; der Hinweis einer Zelle sagt, was gefunden und ausgebessert wurde</translation>
   </message>
   <message>
    <location filename="ui/pages/explore/__init__.py" />
@@ -1496,8 +2549,14 @@
   </message>
   <message>
    <location filename="ui/pages/lecture/__init__.py" />
+   <location filename="ui/pages/lecture/transport.py" />
    <source>One step</source>
    <translation>Ein Schritt</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/transport.py" />
+   <source>One step back</source>
+   <translation>Ein Schritt zurück</translation>
   </message>
   <message>
    <location filename="ui/pages/explore/__init__.py" />
@@ -1544,6 +2603,22 @@
    <translation>Ein CT-Volumen öffnen</translation>
   </message>
   <message>
+   <location filename="ui/pages/dataset/page.py" />
+   <location filename="ui/pages/repose/page.py" />
+   <source>Open a dataset</source>
+   <translation>Datensatz öffnen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/controls.py" />
+   <source>Open a dataset …</source>
+   <translation>Datensatz öffnen …</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/page.py" />
+   <source>Open a dataset, or make one from the open particles.</source>
+   <translation>Öffnen Sie einen Datensatz, oder machen Sie einen aus den geöffneten Partikeln.</translation>
+  </message>
+  <message>
    <location filename="ui/commands.py" />
    <source>Open a folder of meshes</source>
    <translation>Einen Ordner mit Netzen öffnen</translation>
@@ -1552,6 +2627,17 @@
    <location filename="ui/pages/scan/__init__.py" />
    <source>Open a folder of s&amp;lices …</source>
    <translation>Ordner mit &amp;Schichtbildern öffnen …</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/page.py" />
+   <source>Open a particle first.</source>
+   <translation>Öffnen Sie zuerst ein Partikel.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/library.py" />
+   <location filename="ui/pages/dataset/targets.py" />
+   <source>Open folder</source>
+   <translation>Ordner öffnen</translation>
   </message>
   <message>
    <location filename="ui/actions.py" />
@@ -1589,6 +2675,21 @@
    <translation>Öffnen, woraus gezogen wird</translation>
   </message>
   <message>
+   <location filename="ui/pages/repose/setup.py" />
+   <source>Open …</source>
+   <translation>Öffnen …</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/controls.py" />
+   <source>Openings in µm = shares between them; @volume behind it counts volume.</source>
+   <translation>Maschenweiten in µm = Anteile dazwischen; mit @volume dahinter zählt das Volumen.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/setup.py" />
+   <source>Other</source>
+   <translation>Andere</translation>
+  </message>
+  <message>
    <source>Our own: mass and sieve size, the rest by overlap</source>
    <translation>Eigene: Masse und Siebgröße, das Übrige durch Überdeckung</translation>
   </message>
@@ -1597,11 +2698,26 @@
    <translation>Eigene: die äußere Größe zählt und das Volumen gibt nach, denn ein konvexer Körper hat nur eines von beiden</translation>
   </message>
   <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>Overlap + {symbols}</source>
+   <translation>Überdeckung + {symbols}</translation>
+  </message>
+  <message>
+   <source>Overlap against descriptors</source>
+   <translation>Überdeckung gegen Deskriptoren</translation>
+  </message>
+  <message>
    <source>Overlap only</source>
    <translation>Nur Überdeckung</translation>
   </message>
   <message>
+   <location filename="ui/pages/studies/page.py" />
+   <source>Overlap or descriptors</source>
+   <translation>Überdeckung oder Deskriptoren</translation>
+  </message>
+  <message>
    <location filename="ui/panels/loss.py" />
+   <location filename="ui/widgets/preset_form.py" />
    <source>Own preset</source>
    <translation>Eigene Vorlage</translation>
   </message>
@@ -1621,13 +2737,24 @@
    <translation>Seite {title}</translation>
   </message>
   <message>
+   <location filename="ui/pages/lecture/page.py" />
+   <location filename="ui/pages/sample/table.py" />
    <location filename="ui/panels/descriptor_table.py" />
    <location filename="ui/panels/particle_list.py" />
    <source>Particle</source>
    <translation>Partikel</translation>
   </message>
   <message>
+   <source>Particle density</source>
+   <translation>Dichte der Partikel</translation>
+  </message>
+  <message>
+   <source>Particle mass</source>
+   <translation>Masse der Partikel</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/export.py" />
+   <location filename="ui/pages/repose/setup.py" />
    <location filename="ui/panels/particle_list.py" />
    <source>Particles</source>
    <translation>Partikel</translation>
@@ -1643,6 +2770,18 @@
    <translation>Partikel ({count})</translation>
   </message>
   <message>
+   <location filename="ui/pages/dataset/controls.py" />
+   <source>Particles count by their volume</source>
+   <translation>Partikel zählen nach Volumen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/targets.py" />
+   <source>Particles drawn</source>
+   <translation>Gezogene Partikel</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/transport.py" />
+   <location filename="ui/pages/repose/player.py" />
    <location filename="ui/panels/task_list.py" />
    <source>Pause</source>
    <translation>Anhalten</translation>
@@ -1663,9 +2802,43 @@
    <translation>Ort des Schnitts</translation>
   </message>
   <message>
+   <location filename="ui/pages/lecture/words.py" />
+   <source>Plane {number} of {count} is moved by {distance:.3g} µm</source>
+   <translation>Ebene {number} von {count} wird um {distance:.3g} µm verschoben</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/study.py" />
+   <source>Plate friction</source>
+   <translation>Reibung der Platte</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/transport.py" />
+   <location filename="ui/pages/repose/player.py" />
+   <source>Play</source>
+   <translation>Abspielen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/transport.py" />
+   <source>Play or pause</source>
+   <translation>Abspielen oder anhalten</translation>
+  </message>
+  <message>
+   <source>Points a flank</source>
+   <translation>Punkte je Flanke</translation>
+  </message>
+  <message>
+   <source>Poisson's ratio</source>
+   <translation>Querkontraktionszahl</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/batch.py" />
    <source>Polyhedra (STL)</source>
    <translation>Polyeder (STL)</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/studies/gallery.py" />
+   <source>Polyhedra by loss function and particle</source>
+   <translation>Polyeder nach Verlustfunktion und Partikel</translation>
   </message>
   <message>
    <location filename="ui/panels/descriptor_table.py" />
@@ -1689,6 +2862,11 @@
    <translation>Polyeder, {count} Facetten</translation>
   </message>
   <message>
+   <location filename="ui/pages/repose/export.py" />
+   <source>Positions (*.npz *.csv *.txt *.dat *.xyz *.dump *.lammpstrj *.vtk *.vtp *.vtu);;All files (*)</source>
+   <translation>Positionen (*.npz *.csv *.txt *.dat *.xyz *.dump *.lammpstrj *.vtk *.vtp *.vtu);;Alle Dateien (*)</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/preferences.py" />
    <source>Preferences</source>
    <translation>Einstellungen</translation>
@@ -1697,6 +2875,21 @@
    <location filename="ui/panels/loss.py" />
    <source>Preset of weights</source>
    <translation>Vorlage der Gewichte</translation>
+  </message>
+  <message>
+   <location filename="ui/widgets/preset_form.py" />
+   <source>Preset of {label}</source>
+   <translation>Vorlage: {label}</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/gallery.py" />
+   <source>Press Find: the particles that stand for all appear here, with their weights.</source>
+   <translation>Drücken Sie „Repräsentanten finden“: die Partikel, die für alle stehen, erscheinen hier mit ihren Gewichten.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/annealing.py" />
+   <source>Probability</source>
+   <translation>Wahrscheinlichkeit</translation>
   </message>
   <message>
    <location filename="ui/dialogs/batch_fields.py" />
@@ -1744,6 +2937,21 @@
    <translation>Quadrik-Dezimierung (ohne Verlust)</translation>
   </message>
   <message>
+   <location filename="ui/panels/coarsening_study.py" />
+   <source>RMSRE [%], 1 particle</source>
+   <translation>RMSRE [%], 1 Partikel</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/studies/variation_panel.py" />
+   <source>RMSRE [%], at least {least:g}</source>
+   <translation>RMSRE [%], mindestens {least:g}</translation>
+  </message>
+  <message>
+   <location filename="ui/panels/coarsening_study.py" />
+   <source>RMSRE [%], {count} particles</source>
+   <translation>RMSRE [%], {count} Partikel</translation>
+  </message>
+  <message>
    <location filename="session/studies.py" />
    <source>RMSRE against l_max</source>
    <translation>RMSRE gegen l_max</translation>
@@ -1764,9 +2972,19 @@
    <translation>Regel für Radien</translation>
   </message>
   <message>
+   <location filename="ui/pages/lecture/page.py" />
+   <source>Random field</source>
+   <translation>Zufallsfeld</translation>
+  </message>
+  <message>
    <location filename="jobs/loading.py" />
    <source>Reading particles</source>
    <translation>Partikel werden gelesen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/page.py" />
+   <source>Reading the dataset</source>
+   <translation>Datensatz wird gelesen</translation>
   </message>
   <message>
    <location filename="jobs/loading.py" />
@@ -1828,6 +3046,11 @@
    <translation>Verlorene Facetten ersetzen</translation>
   </message>
   <message>
+   <location filename="ui/pages/dataset/page.py" />
+   <source>Replace the dataset</source>
+   <translation>Datensatz ersetzen</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/export.py" />
    <source>Replace the dataset that is there</source>
    <translation>Den vorhandenen Datensatz ersetzen</translation>
@@ -1838,9 +3061,45 @@
    <translation>Bericht (HTML)</translation>
   </message>
   <message>
+   <location filename="ui/pages/dataset/gallery.py" />
+   <source>Representative particles</source>
+   <translation>Repräsentative Partikel</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/gallery.py" />
+   <location filename="ui/pages/dataset/page.py" />
+   <source>Representatives</source>
+   <translation>Repräsentanten</translation>
+  </message>
+  <message>
    <location filename="ui/widgets/preset_bar.py" />
    <source>Reset</source>
    <translation>Zurücksetzen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/field.py" />
+   <source>Reset the spectrum</source>
+   <translation>Spektrum zurücksetzen</translation>
+  </message>
+  <message>
+   <source>Rest: energy</source>
+   <translation>Ruhe: Energie</translation>
+  </message>
+  <message>
+   <source>Rest: time</source>
+   <translation>Ruhe: Zeit</translation>
+  </message>
+  <message>
+   <source>Restarts</source>
+   <translation>Neustarts</translation>
+  </message>
+  <message>
+   <source>Resting time</source>
+   <translation>Ruhezeit</translation>
+  </message>
+  <message>
+   <source>Restitution</source>
+   <translation>Stoßzahl</translation>
   </message>
   <message>
    <source>Restore the volume</source>
@@ -1870,6 +3129,40 @@
    <translation>Das Bild rollen</translation>
   </message>
   <message>
+   <source>Rolling</source>
+   <translation>Rollen</translation>
+  </message>
+  <message>
+   <source>Rolling median</source>
+   <translation>Gleitender Median</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/runs.py" />
+   <location filename="ui/pages/repose/study.py" />
+   <source>Rolling resistance</source>
+   <translation>Rollwiderstand</translation>
+  </message>
+  <message>
+   <location filename="ui/panels/lmax_study.py" />
+   <source>Root mean squared relative error of each descriptor against l&lt;sub&gt;max&lt;/sub&gt;, as in Fig. 3 of the paper.</source>
+   <translation>Wurzel des mittleren quadratischen relativen Fehlers jedes Deskriptors gegen l&lt;sub&gt;max&lt;/sub&gt;, wie in Bild 3 des Artikels.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/studies/variation_panel.py" />
+   <source>Root mean squared relative error of each descriptor against the number of faces.</source>
+   <translation>Wurzel des mittleren quadratischen relativen Fehlers jedes Deskriptors gegen die Anzahl der Facetten.</translation>
+  </message>
+  <message>
+   <location filename="ui/panels/coarsening_study.py" />
+   <source>Root mean squared relative error of each descriptor, one row a loss function, as in Fig. 8 of the paper.</source>
+   <translation>Wurzel des mittleren quadratischen relativen Fehlers jedes Deskriptors, eine Zeile je Verlustfunktion, wie in Bild 8 des Artikels.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/controls.py" />
+   <source>Rosin-Rammler, the same for all</source>
+   <translation>Rosin-Rammler, für alle gleich</translation>
+  </message>
+  <message>
    <source>Roughness</source>
    <translation>Rauheit</translation>
   </message>
@@ -1878,9 +3171,20 @@
    <translation>Rundheit</translation>
   </message>
   <message>
+   <location filename="ui/pages/studies/rows_bar.py" />
+   <source>Rows of Fig. 8</source>
+   <translation>Zeilen von Bild 8</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/batch.py" />
+   <location filename="ui/pages/repose/runs.py" />
    <source>Run</source>
    <translation>Ausführen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/section_plot.py" />
+   <source>Run a test or open positions to see its section.</source>
+   <translation>Führen Sie einen Versuch durch oder öffnen Sie Positionen, um den Schnitt zu sehen.</translation>
   </message>
   <message>
    <location filename="ui/actions.py" />
@@ -1893,9 +3197,20 @@
    <translation>Als Stapel ausführen</translation>
   </message>
   <message>
+   <location filename="ui/pages/repose/page.py" />
+   <location filename="ui/pages/repose/setup.py" />
+   <source>Run the test</source>
+   <translation>Versuch durchführen</translation>
+  </message>
+  <message>
    <location filename="ui/pages/repose/__init__.py" />
    <source>Run the values of the study, or go on</source>
    <translation>Die Werte der Studie rechnen oder fortfahren</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/page.py" />
+   <source>Running</source>
+   <translation>In Arbeit</translation>
   </message>
   <message>
    <location filename="ui/batches.py" />
@@ -1903,9 +3218,58 @@
    <translation>Rezept wird ausgeführt</translation>
   </message>
   <message>
+   <location filename="ui/pages/repose/page.py" />
+   <source>Running …</source>
+   <translation>In Arbeit …</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/page.py" />
+   <location filename="ui/pages/repose/runs.py" />
+   <source>Runs</source>
+   <translation>Läufe</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/study.py" />
+   <source>Runs of each</source>
+   <translation>Läufe je Wert</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/study.py" />
+   <source>Runs of each value, with other seeds</source>
+   <translation>Läufe je Wert, mit anderen Startwerten</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/study.py" />
+   <source>Runs of the study</source>
+   <translation>Läufe der Studie</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/study.py" />
+   <source>Runs that are there already are not run again</source>
+   <translation>Vorhandene Läufe werden nicht wiederholt</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/runs.py" />
+   <source>Runs that became piles are compared here.</source>
+   <translation>Läufe, die zu Schüttkegeln wurden, werden hier verglichen.</translation>
+  </message>
+  <message>
    <location filename="ui/pages/lecture/__init__.py" />
    <source>S&amp;maller letters</source>
    <translation>&amp;Kleinere Schrift</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/library.py" />
+   <source>SHA-256 of the dataset: {hash} …</source>
+   <translation>SHA-256 des Datensatzes: {hash} …</translation>
+  </message>
+  <message>
+   <source>SI; coarse graining applied</source>
+   <translation>SI; mit Vergröberungsfaktor</translation>
+  </message>
+  <message>
+   <source>SI; sizes are equivalent diameters in metres before coarse graining, which Rocky applies itself</source>
+   <translation>SI; Größen sind Äquivalentdurchmesser in Metern vor der Vergröberung, die Rocky selbst anwendet</translation>
   </message>
   <message>
    <location filename="ui/pages/scan/__init__.py" />
@@ -1914,10 +3278,22 @@
   </message>
   <message>
    <location filename="ui/pages/sample/__init__.py" />
+   <location filename="ui/pages/sample/page.py" />
    <source>Sample</source>
    <translation>Probe</translation>
   </message>
   <message>
+   <location filename="ui/pages/sample/page.py" />
+   <source>Sample ({seen} of {total})</source>
+   <translation>Probe ({seen} von {total})</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/page.py" />
+   <source>Sample ({total})</source>
+   <translation>Probe ({total})</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/table.py" />
    <location filename="ui/panels/particle_list.py" />
    <source>Sample or size fraction</source>
    <translation>Probe oder Größenklasse</translation>
@@ -2038,6 +3414,16 @@
    <translation>Maßstab des Bildes</translation>
   </message>
   <message>
+   <location filename="ui/pages/dataset/controls.py" />
+   <source>Scale, shape, smallest, largest; @volume behind it counts volume.</source>
+   <translation>Skala, Form, kleinster, größter; mit @volume dahinter zählt das Volumen.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/setup.py" />
+   <source>Scaled with the size (experimental)</source>
+   <translation>Mit der Größe skaliert (experimentell)</translation>
+  </message>
+  <message>
    <location filename="ui/pages/scan/__init__.py" />
    <source>Scan</source>
    <translation>Scan</translation>
@@ -2063,10 +3449,18 @@
    <translation>Schnitt</translation>
   </message>
   <message>
+   <location filename="ui/pages/repose/page.py" />
+   <source>Sections</source>
+   <translation>Schnitte</translation>
+  </message>
+  <message>
    <source>See why it works</source>
    <translation>Sehen, warum es geht</translation>
   </message>
   <message>
+   <location filename="ui/pages/repose/runs.py" />
+   <location filename="ui/pages/repose/setup.py" />
+   <location filename="ui/pages/repose/study.py" />
    <location filename="ui/panels/coarsening.py" />
    <source>Seed</source>
    <translation>Startwert</translation>
@@ -2075,6 +3469,10 @@
    <location filename="ui/pages/scan/__init__.py" />
    <source>Segment the whole volume</source>
    <translation>Das ganze Volumen segmentieren</translation>
+  </message>
+  <message>
+   <source>Sensitivity to the weights</source>
+   <translation>Empfindlichkeit gegen die Gewichte</translation>
   </message>
   <message>
    <location filename="ui/pages/explore/pictures.py" />
@@ -2087,9 +3485,39 @@
    <translation>Einstellungen des Verfahrens</translation>
   </message>
   <message>
+   <source>Settling time</source>
+   <translation>Absetzzeit</translation>
+  </message>
+  <message>
+   <source>Shape</source>
+   <translation>Form</translation>
+  </message>
+  <message>
    <location filename="ui/pages/model/__init__.py" />
    <source>Shape model</source>
    <translation>Formmodell</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/runs.py" />
+   <location filename="ui/pages/repose/setup.py" />
+   <location filename="ui/pages/repose/study.py" />
+   <source>Shapes</source>
+   <translation>Formen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/targets.py" />
+   <source>Shapes are changed: {how}</source>
+   <translation>Formen werden verändert: {how}</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/targets.py" />
+   <source>Shapes may be changed</source>
+   <translation>Formen dürfen verändert werden</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/plots.py" />
+   <source>Share at or below [%]</source>
+   <translation>Anteil bis hierher [%]</translation>
   </message>
   <message>
    <location filename="ui/dialogs/shortcuts.py" />
@@ -2122,13 +3550,27 @@
    <translation>Dreiecke zeigen</translation>
   </message>
   <message>
+   <location filename="ui/pages/dataset/controls.py" />
+   <source>Sieve classes, the same for all</source>
+   <translation>Siebklassen, für alle gleich</translation>
+  </message>
+  <message>
    <source>Simulated annealing (paper)</source>
    <translation>Simuliertes Abkühlen (Artikel)</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/controls.py" />
+   <source>Single diameters, the same for all</source>
+   <translation>Einzelne Durchmesser, für alle gleich</translation>
   </message>
   <message>
    <location filename="ui/dialogs/preferences.py" />
    <source>Size of letters</source>
    <translation>Schriftgröße</translation>
+  </message>
+  <message>
+   <source>Slice, in mean d</source>
+   <translation>Scheibe, in mittleren d</translation>
   </message>
   <message>
    <source>Smallest Feret diameter</source>
@@ -2138,6 +3580,20 @@
    <location filename="ui/pages/explore/__init__.py" />
    <source>Smallest in volume</source>
    <translation>Der kleinste dem Volumen nach</translation>
+  </message>
+  <message>
+   <location filename="ui/panels/lmax_study.py" />
+   <source>Smallest l&lt;sub&gt;max&lt;/sub&gt; with every error below</source>
+   <translation>Kleinstes l&lt;sub&gt;max&lt;/sub&gt; mit allen Fehlern unter</translation>
+  </message>
+  <message>
+   <source>Snapshots</source>
+   <translation>Momentaufnahmen</translation>
+  </message>
+  <message>
+   <location filename="ui/panels/descriptor_table.py" />
+   <source>Solid</source>
+   <translation>Körper</translation>
   </message>
   <message>
    <location filename="ui/app.py" />
@@ -2150,11 +3606,31 @@
    <translation>Spektrum</translation>
   </message>
   <message>
+   <location filename="ui/widgets/spectrum_editor.py" />
+   <source>Spectrum of the model; left and right choose a degree, up and down change it</source>
+   <translation>Spektrum des Modells; links und rechts wählen einen Grad, auf und ab ändern ihn</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/transport.py" />
+   <source>Speed</source>
+   <translation>Tempo</translation>
+  </message>
+  <message>
    <location filename="ui/panels/fit.py" />
    <source>Sphere</source>
    <translation>Kugel</translation>
   </message>
   <message>
+   <source>Spheres a particle</source>
+   <translation>Kugeln je Partikel</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/setup.py" />
+   <source>Spheres of the same volumes</source>
+   <translation>Kugeln gleicher Volumen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/degrees.py" />
    <location filename="ui/panels/coarsening.py" />
    <location filename="ui/panels/fit.py" />
    <location filename="ui/views/triptych.py" />
@@ -2162,6 +3638,7 @@
    <translation>Fit mit Kugelflächenfunktionen</translation>
   </message>
   <message>
+   <location filename="ui/pages/lecture/degrees.py" />
    <location filename="ui/views/triptych.py" />
    <source>Spherical-harmonics fit, {degree}</source>
    <translation>Fit mit Kugelflächenfunktionen, {degree}</translation>
@@ -2206,6 +3683,11 @@
    <translation>Sternförmig: kein Teil der Oberfläche ist vom Sternpunkt aus verdeckt.</translation>
   </message>
   <message>
+   <location filename="ui/pages/repose/study.py" />
+   <source>Start or go on</source>
+   <translation>Starten oder fortfahren</translation>
+  </message>
+  <message>
    <source>Start temperature T₀</source>
    <translation>Anfangstemperatur T₀</translation>
   </message>
@@ -2223,6 +3705,22 @@
    <location filename="ui/dialogs/export.py" />
    <source>Starting …</source>
    <translation>Beginnt …</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/runs.py" />
+   <location filename="ui/pages/repose/study.py" />
+   <source>Static friction</source>
+   <translation>Haftreibung</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/statistics.py" />
+   <source>Statistics of</source>
+   <translation>Statistik:</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/statistics.py" />
+   <source>Statistics of groups</source>
+   <translation>Statistik der Gruppen</translation>
   </message>
   <message>
    <location filename="ui/panels/loss_curve.py" />
@@ -2245,11 +3743,39 @@
    <translation>Schritt für Schritt</translation>
   </message>
   <message>
+   <location filename="ui/pages/lecture/annealing.py" />
+   <source>Step k</source>
+   <translation>Schritt k</translation>
+  </message>
+  <message>
+   <source>Step, in Rayleigh's time</source>
+   <translation>Schritt, in Rayleigh-Zeiten</translation>
+  </message>
+  <message>
    <source>Step, in mean |p|</source>
    <translation>Schrittweite in mittleren |p|</translation>
   </message>
   <message>
+   <source>Step, share of a swing</source>
+   <translation>Schritt, Anteil einer Schwingung</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/transport.py" />
+   <source>Steps a second</source>
+   <translation>Schritte je Sekunde</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/transport.py" />
+   <source>Steps a second while it plays by itself.</source>
+   <translation>Schritte je Sekunde, während es von selbst läuft.</translation>
+  </message>
+  <message>
+   <source>Stiffness, in m g / d³</source>
+   <translation>Steifigkeit, in m g / d³</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/batch.py" />
+   <location filename="ui/pages/repose/study.py" />
    <location filename="ui/panels/task_list.py" />
    <location filename="ui/panels/tasks.py" />
    <location filename="ui/widgets/study_frame.py" />
@@ -2267,14 +3793,29 @@
    <translation>Abbrechen, was in Arbeit ist</translation>
   </message>
   <message>
+   <location filename="ui/pages/lecture/page.py" />
+   <source>Stopped. Choose another seed, or come back to this page, to begin again.</source>
+   <translation>Abgebrochen. Wählen Sie einen anderen Startwert oder kehren Sie zu dieser Seite zurück, um neu zu beginnen.</translation>
+  </message>
+  <message>
    <location filename="ui/batches.py" />
    <source>Stopped. What was done is kept: run again into the same folder to go on.</source>
    <translation>Abgebrochen. Was fertig ist, bleibt: noch einmal in denselben Ordner ausführen setzt es fort.</translation>
   </message>
   <message>
+   <location filename="ui/pages/repose/study_desk.py" />
+   <source>Stopped; what is finished is kept, and the start button goes on there.</source>
+   <translation>Abgebrochen; was fertig ist, bleibt, und der Startknopf fährt dort fort.</translation>
+  </message>
+  <message>
    <location filename="ui/pages/studies/__init__.py" />
    <source>Studies</source>
    <translation>Studien</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/page.py" />
+   <source>Study</source>
+   <translation>Studie</translation>
   </message>
   <message>
    <location filename="ui/dialogs/batch.py" />
@@ -2289,6 +3830,40 @@
   <message>
    <source>Surface area</source>
    <translation>Oberfläche</translation>
+  </message>
+  <message>
+   <source>Surface energy</source>
+   <translation>Oberflächenenergie</translation>
+  </message>
+  <message>
+   <source>Table 1</source>
+   <translation>Tabelle 1</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/targets.py" />
+   <location filename="ui/pages/repose/setup.py" />
+   <source>Table 1 of the paper</source>
+   <translation>Tabelle 1 des Artikels</translation>
+  </message>
+  <message>
+   <source>Table 2</source>
+   <translation>Tabelle 2</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/targets.py" />
+   <location filename="ui/pages/repose/setup.py" />
+   <source>Table 2 of the paper</source>
+   <translation>Tabelle 2 des Artikels</translation>
+  </message>
+  <message>
+   <location filename="ui/widgets/heat_table.py" />
+   <source>Table of errors</source>
+   <translation>Tabelle der Fehler</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/page.py" />
+   <source>Tables (*.csv)</source>
+   <translation>Tabellen (*.csv)</translation>
   </message>
   <message>
    <location filename="ui/commands.py" />
@@ -2306,9 +3881,28 @@
    <translation>Die andere Hälfte wegnehmen</translation>
   </message>
   <message>
+   <source>Tangential force</source>
+   <translation>Tangentialkraft</translation>
+  </message>
+  <message>
    <location filename="ui/activity.py" />
    <source>Tasks</source>
    <translation>Aufgaben</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/setup.py" />
+   <source>Teaching</source>
+   <translation>Lehre</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/annealing.py" />
+   <source>Term of Eq. 9</source>
+   <translation>Term von Gl. 9</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/setup.py" />
+   <source>Test (Table 2)</source>
+   <translation>Versuch (Tabelle 2)</translation>
   </message>
   <message>
    <location filename="ui/pages/explore/pictures.py" />
@@ -2336,6 +3930,21 @@
    <translation>Der Datensatz ist in {folder}.</translation>
   </message>
   <message>
+   <location filename="ui/pages/dataset/page.py" />
+   <source>The dataset is not sound: {problem}</source>
+   <translation>Der Datensatz ist fehlerhaft: {problem}</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/page.py" />
+   <source>The dataset is sound.</source>
+   <translation>Der Datensatz ist fehlerfrei.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/setup.py" />
+   <source>The dataset's polyhedra</source>
+   <translation>Polyeder des Datensatzes</translation>
+  </message>
+  <message>
    <location filename="ui/panels/error_bars.py" />
    <source>The errors appear when the fit is measured.</source>
    <translation>Die Fehler erscheinen, sobald der Fit vermessen ist.</translation>
@@ -2349,6 +3958,21 @@
    <location filename="ui/translation/sentences.py" />
    <source>The expansion up to l = {degree} misses the radius by {error} in the root mean square: it oscillates, as it does on flat and elongated grains.</source>
    <translation>Die Entwicklung bis l = {degree} verfehlt den Radius im quadratischen Mittel um {error}: sie schwingt, wie sie es bei flachen und länglichen Körnern tut.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/field.py" />
+   <source>The field on the sphere</source>
+   <translation>Das Feld auf der Kugel</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/field.py" />
+   <source>The field with its amplitudes</source>
+   <translation>Das Feld mit seinen Amplituden</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/export.py" />
+   <source>The file has no diameters; one for all, in mm:</source>
+   <translation>Die Datei hat keine Durchmesser; einer für alle, in mm:</translation>
   </message>
   <message>
    <location filename="ui/dialogs/batch_fields.py" />
@@ -2366,6 +3990,11 @@
    <translation>Der Ordner ist nicht leer: wählen Sie einen anderen oder ersetzen Sie den Datensatz darin.</translation>
   </message>
   <message>
+   <location filename="ui/pages/dataset/library.py" />
+   <source>The folder of your datasets</source>
+   <translation>Der Ordner Ihrer Datensätze</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/preferences.py" />
    <source>The language takes effect when the program starts again.</source>
    <translation>Die Sprache gilt ab dem nächsten Start des Programms.</translation>
@@ -2378,6 +4007,11 @@
   <message>
    <source>The loss falls while the coarsening runs; the spectrum shows which degrees are kept. Nothing here blocks the window: what runs is in the status bar and can be stopped there.</source>
    <translation>Der Verlust fällt, während die Vergröberung läuft; das Spektrum zeigt, welche Grade erhalten bleiben. Nichts davon blockiert das Fenster: was in Arbeit ist, steht in der Statuszeile und lässt sich dort abbrechen.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/studies/variation_panel.py" />
+   <source>The method keeps descriptors exactly: each is asked for or not, whatever its weight.</source>
+   <translation>Das Verfahren hält Deskriptoren genau ein: jeder wird verlangt oder nicht, gleich mit welchem Gewicht.</translation>
   </message>
   <message>
    <location filename="ui/main_window.py" />
@@ -2393,6 +4027,27 @@
    <translation>Die Seiten folgen der Arbeit: Körner in einem Scan finden, ihre Form modellieren und neue ziehen, einen Datensatz für Rocky, YADE oder LAMMPS bauen und den Schüttwinkel messen.</translation>
   </message>
   <message>
+   <location filename="ui/pages/dataset/controls.py" />
+   <location filename="ui/pages/dataset/targets.py" />
+   <source>The paper has 10.</source>
+   <translation>Im Artikel sind es 10.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/field.py" />
+   <source>The particle</source>
+   <translation>Das Partikel</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/annealing.py" />
+   <source>The particle is annealed …</source>
+   <translation>Das Partikel wird abgekühlt …</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/degrees.py" />
+   <source>The particle is fitted …</source>
+   <translation>Das Partikel wird angepasst …</translation>
+  </message>
+  <message>
    <location filename="ui/pages/explore/pictures.py" />
    <source>The picture is in {path}.</source>
    <translation>Das Bild ist in {path}.</translation>
@@ -2401,6 +4056,21 @@
    <location filename="ui/pages/explore/pictures.py" />
    <source>The picture {path} cannot be written.</source>
    <translation>Das Bild {path} lässt sich nicht schreiben.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/scatter.py" />
+   <source>The plot appears when the particles are measured.</source>
+   <translation>Die Darstellung erscheint, sobald die Partikel vermessen sind.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/studies/gallery.py" />
+   <source>The polyhedra of six particles as each loss function makes them, as in Fig. 7 of the paper.</source>
+   <translation>Die Polyeder von sechs Partikeln, wie jede Verlustfunktion sie macht, wie in Bild 7 des Artikels.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/annealing.py" />
+   <source>The proposal, T(k) and the decision with their numbers</source>
+   <translation>Der Vorschlag, T(k) und die Entscheidung mit ihren Zahlen</translation>
   </message>
   <message>
    <location filename="ui/dialogs/batch.py" />
@@ -2417,9 +4087,24 @@
    <translation>Das Skript ist in der Zwischenablage.</translation>
   </message>
   <message>
+   <location filename="ui/pages/dataset/plots.py" />
+   <source>The sizes of the classes appear here.</source>
+   <translation>Die Größen der Klassen erscheinen hier.</translation>
+  </message>
+  <message>
    <location filename="ui/panels/spectrum.py" />
    <source>The spectrum appears when the particle is fitted.</source>
    <translation>Das Spektrum erscheint, sobald das Partikel angepasst ist.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/words.py" />
+   <source>The start: the convex hull, decimated to {count} planes. In each step one plane is moved at random, and the move is taken or not.</source>
+   <translation>Der Anfang: die konvexe Hülle, auf {count} Ebenen dezimiert. In jedem Schritt wird eine Ebene zufällig verschoben, und der Zug wird angenommen oder nicht.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/page.py" />
+   <source>The table is on the clipboard.</source>
+   <translation>Die Tabelle ist in der Zwischenablage.</translation>
   </message>
   <message>
    <location filename="ui/pages/explore/pictures.py" />
@@ -2441,14 +4126,97 @@
    <translation>Farbschema</translation>
   </message>
   <message>
+   <location filename="ui/pages/dataset/page.py" />
+   <source>There are no particles to choose from: open some first.</source>
+   <translation>Es gibt keine Partikel zur Auswahl: öffnen Sie zuerst welche.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/page.py" />
+   <source>There are no representatives yet: press Find first.</source>
+   <translation>Es gibt noch keine Repräsentanten: drücken Sie zuerst „Repräsentanten finden“.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/page.py" />
+   <source>There is a folder {folder} already. Replace the dataset in it?</source>
+   <translation>Den Ordner {folder} gibt es schon. Den Datensatz darin ersetzen?</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/page.py" />
+   <source>There is no angle of repose.</source>
+   <translation>Es gibt keinen Schüttwinkel.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/library.py" />
+   <source>There is no dataset below this folder.</source>
+   <translation>Unter diesem Ordner gibt es keinen Datensatz.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/page.py" />
+   <source>There is no dataset to check: build or open one first.</source>
+   <translation>Es gibt keinen Datensatz zu prüfen: bauen oder öffnen Sie zuerst einen.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/page.py" />
+   <source>There is no dataset to export: build or open one first.</source>
+   <translation>Es gibt keinen Datensatz zu exportieren: bauen oder öffnen Sie zuerst einen.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/page.py" />
+   <source>There is no dataset yet: open one, or make one first.</source>
+   <translation>Es gibt noch keinen Datensatz: öffnen oder machen Sie zuerst einen.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/page.py" />
+   <source>There is no measured pile to export yet.</source>
+   <translation>Es gibt noch keinen vermessenen Schüttkegel zu exportieren.</translation>
+  </message>
+  <message>
    <location filename="ui/commands.py" />
    <source>There is nothing to export: open a particle first.</source>
    <translation>Es gibt nichts zu exportieren: öffnen Sie zuerst ein Partikel.</translation>
   </message>
   <message>
+   <location filename="ui/pages/studies/change_table.py" />
+   <source>This may be chance.</source>
+   <translation>Das kann Zufall sein.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/page.py" />
+   <source>This run was not finished: {state}.</source>
+   <translation>Dieser Lauf wurde nicht beendet: {state}.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/studies/rows_bar.py" />
+   <source>Those of Fig. 8</source>
+   <translation>Die von Bild 8</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/help.py" />
    <source>Three-dimensional views: {how}</source>
    <translation>Dreidimensionale Ansichten: {how}</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/targets.py" />
+   <source>Tick a format to see what it carries and what it loses.</source>
+   <translation>Kreuzen Sie ein Format an, um zu sehen, was es überträgt und was es verliert.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/player.py" />
+   <source>Time of the run</source>
+   <translation>Zeit des Laufs</translation>
+  </message>
+  <message>
+   <source>Time step</source>
+   <translation>Zeitschritt</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/transport.py" />
+   <source>To the beginning</source>
+   <translation>An den Anfang</translation>
+  </message>
+  <message>
+   <source>Tolerance</source>
+   <translation>Toleranz</translation>
   </message>
   <message>
    <location filename="ui/actions.py" />
@@ -2491,8 +4259,28 @@
   </message>
   <message>
    <location filename="ui/dialogs/unit.py" />
+   <location filename="ui/pages/repose/export.py" />
    <source>Unit</source>
    <translation>Einheit</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/targets.py" />
+   <source>Units: {units}</source>
+   <translation>Einheiten: {units}</translation>
+  </message>
+  <message>
+   <source>Upper cut</source>
+   <translation>Oberer Schnitt</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/library.py" />
+   <source>Use this dataset</source>
+   <translation>Diesen Datensatz verwenden</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/setup.py" />
+   <source>Usual</source>
+   <translation>Üblich</translation>
   </message>
   <message>
    <location filename="ui/dialogs/shortcuts.py" />
@@ -2510,6 +4298,31 @@
   <message>
    <source>V of the hull</source>
    <translation>V der Hülle</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/study.py" />
+   <source>Value</source>
+   <translation>Wert</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/study.py" />
+   <source>Values</source>
+   <translation>Werte</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/study.py" />
+   <source>Values, with commas between them</source>
+   <translation>Werte, mit Kommas dazwischen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/study.py" />
+   <source>Vary</source>
+   <translation>Verändert</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/scatter.py" />
+   <source>Vertical axis</source>
+   <translation>Senkrechte Achse</translation>
   </message>
   <message>
    <location filename="ui/panels/particle_list.py" />
@@ -2545,6 +4358,12 @@
    <translation>Warten Sie, bis die Ansichten gezeichnet sind.</translation>
   </message>
   <message>
+   <location filename="ui/pages/repose/runs.py" />
+   <location filename="ui/pages/repose/study.py" />
+   <source>Wall friction</source>
+   <translation>Reibung der Wand</translation>
+  </message>
+  <message>
    <source>Watch it work</source>
    <translation>Bei der Arbeit zusehen</translation>
   </message>
@@ -2554,7 +4373,13 @@
    <translation>Gewicht: {name}</translation>
   </message>
   <message>
+   <location filename="ui/pages/sample/statistics.py" />
+   <source>Weighting of the statistics</source>
+   <translation>Gewichtung der Statistik</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/export.py" />
+   <location filename="ui/pages/studies/page.py" />
    <source>Weights</source>
    <translation>Gewichte</translation>
   </message>
@@ -2564,9 +4389,29 @@
    <translation>Gewichte der Verlustfunktion (Gl. 9)</translation>
   </message>
   <message>
+   <location filename="ui/pages/repose/study.py" />
+   <source>Weights of the loss, open particles</source>
+   <translation>Gewichte des Verlusts, geöffnete Partikel</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/studies/variation_panel.py" />
+   <source>What each error becomes when one weight of the loss is changed: which weights matter.</source>
+   <translation>Was aus jedem Fehler wird, wenn ein Gewicht des Verlusts geändert wird: auf welche Gewichte es ankommt.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/page.py" />
+   <source>What formats lose</source>
+   <translation>Was Formate verlieren</translation>
+  </message>
+  <message>
    <location filename="ui/widgets/toast.py" />
    <source>What happened</source>
    <translation>Was geschehen ist</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/targets.py" />
+   <source>What has been exported is listed here, with the command that loads it.</source>
+   <translation>Was exportiert wurde, steht hier, mit dem Befehl, der es lädt.</translation>
   </message>
   <message>
    <location filename="ui/panels/coarsening.py" />
@@ -2584,8 +4429,23 @@
    <translation>Was in Arbeit ist</translation>
   </message>
   <message>
+   <location filename="ui/pages/repose/study.py" />
+   <source>What is varied</source>
+   <translation>Was verändert wird</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/library.py" />
+   <source>What it holds</source>
+   <translation>Was er enthält</translation>
+  </message>
+  <message>
    <source>What matters to you</source>
    <translation>Worauf es Ihnen ankommt</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/studies/variation_panel.py" />
+   <source>What overlap costs in descriptors, and descriptors in overlap: lower left is better.</source>
+   <translation>Was Überdeckung an Deskriptoren kostet, und Deskriptoren an Überdeckung: links unten ist besser.</translation>
   </message>
   <message>
    <location filename="ui/panels/fit.py" />
@@ -2593,8 +4453,18 @@
    <translation>Wodurch Radien geteilt werden, bevor sie entwickelt werden. Ein Ellipsoid mindert das Schwingen bei flachen und länglichen Körnern.</translation>
   </message>
   <message>
+   <location filename="ui/pages/dataset/controls.py" />
+   <source>What representatives count</source>
+   <translation>Wonach Repräsentanten zählen</translation>
+  </message>
+  <message>
    <source>What the fit and the polyhedron keep</source>
    <translation>Was Fit und Polyeder bewahren</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/studies/page.py" />
+   <source>What the polyhedra look like (Fig. 7)</source>
+   <translation>Wie die Polyeder aussehen (Bild 7)</translation>
   </message>
   <message>
    <location filename="ui/actions.py" />
@@ -2619,6 +4489,11 @@
    <location filename="ui/panels/fit.py" />
    <source>Which radius counts where a ray crosses the surface more than once. Keep the volume: the cube root of the signed sum of r³ over all crossings.</source>
    <translation>Welcher Radius zählt, wo ein Strahl die Oberfläche mehrmals durchstößt. Volumen erhalten: die Kubikwurzel der vorzeichenbehafteten Summe von r³ über alle Durchstöße.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/transport.py" />
+   <source>Which {noun}</source>
+   <translation>Welcher {noun}</translation>
   </message>
   <message>
    <location filename="ui/pages/explore/__init__.py" />
@@ -2651,6 +4526,11 @@
    <translation>Schreiben:</translation>
   </message>
   <message>
+   <location filename="ui/pages/studies/page.py" />
+   <source>Writing figures</source>
+   <translation>Abbildungen werden geschrieben</translation>
+  </message>
+  <message>
    <source>Writing the dataset</source>
    <translation>Datensatz wird geschrieben</translation>
   </message>
@@ -2660,9 +4540,32 @@
    <translation>Ergebnisse werden geschrieben</translation>
   </message>
   <message>
+   <source>Young's modulus</source>
+   <translation>Elastizitätsmodul</translation>
+  </message>
+  <message>
+   <source>Young's modulus / ρgd</source>
+   <translation>Elastizitätsmodul / ρgd</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/table.py" />
+   <source>Zingg's class: equant, disc, rod or blade</source>
+   <translation>Klasse nach Zingg: isometrisch, scheibig, stabförmig oder klingenförmig</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/shortcuts.py" />
    <source>Zoom</source>
    <translation>Vergrößern und verkleinern</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/words.py" />
+   <source>a sphere</source>
+   <translation>eine Kugel</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/words.py" />
+   <source>a sphere that is shifted a little</source>
+   <translation>eine etwas verschobene Kugel</translation>
   </message>
   <message>
    <source>about the centroid</source>
@@ -2684,9 +4587,29 @@
    <translation>noch etwa {seconds} s</translation>
   </message>
   <message>
+   <location filename="ui/pages/lecture/words.py" />
+   <source>accept</source>
+   <translation>annehmen</translation>
+  </message>
+  <message>
    <location filename="ui/pages/explore/section_panel.py" />
    <source>across</source>
    <translation>quer</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/scatter.py" />
+   <source>against</source>
+   <translation>gegen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/statistics.py" />
+   <source>all</source>
+   <translation>alle</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/plots.py" />
+   <source>all classes, by {kinds}</source>
+   <translation>alle Klassen, nach {kinds}</translation>
   </message>
   <message>
    <location filename="ui/views/comparison.py" />
@@ -2719,13 +4642,34 @@
   </message>
   <message>
    <location filename="ui/panels/spectrum.py" />
+   <location filename="ui/widgets/spectrum_editor.py" />
    <source>amplitude [%]</source>
    <translation>Amplitude [%]</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/plots.py" />
+   <source>and</source>
+   <translation>und</translation>
   </message>
   <message>
    <location filename="ui/panels/tasks.py" />
    <source>and {count} more</source>
    <translation>und {count} weitere</translation>
+  </message>
+  <message>
+   <location filename="ui/widgets/spectrum_editor.py" />
+   <source>as fitted</source>
+   <translation>wie angepasst</translation>
+  </message>
+  <message>
+   <location filename="ui/widgets/spectrum_editor.py" />
+   <source>as fitted [%]</source>
+   <translation>wie angepasst [%]</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/plots.py" />
+   <source>as small as the sampling noise from N = {count} on</source>
+   <translation>ab N = {count} so klein wie das Stichprobenrauschen</translation>
   </message>
   <message>
    <location filename="ui/dialogs/export.py" />
@@ -2743,6 +4687,16 @@
    <translation>höchstens {reach:.3g} µm vom Partikel entfernt</translation>
   </message>
   <message>
+   <location filename="ui/pages/lecture/annealing.py" />
+   <source>before</source>
+   <translation>vorher</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/annealing.py" />
+   <source>being found …</source>
+   <translation>wird gesucht …</translation>
+  </message>
+  <message>
    <source>best</source>
    <translation>beste</translation>
   </message>
@@ -2752,9 +4706,106 @@
    <translation>bisher bester</translation>
   </message>
   <message>
+   <location filename="ui/pages/lecture/annealing.py" />
+   <source>better</source>
+   <translation>besser</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/section_plot.py" />
+   <source>between the cuts</source>
+   <translation>zwischen den Schnitten</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/scatter.py" />
+   <location filename="ui/pages/sample/table.py" />
+   <source>blade</source>
+   <translation>klingenförmig</translation>
+  </message>
+  <message>
+   <source>both programs need rounded edges; facets stay in their planes, corners are lost.</source>
+   <translation>beide Programme brauchen gerundete Kanten; Facetten bleiben in ihren Ebenen, Ecken gehen verloren.</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>box</source>
+   <translation>Quader</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/studies/variation_panel.py" />
+   <location filename="ui/panels/coarsening_study.py" />
+   <source>box of {name}</source>
+   <translation>Quader von {name}</translation>
+  </message>
+  <message>
+   <source>by size</source>
+   <translation>über die Größe</translation>
+  </message>
+  <message>
+   <source>by size; scaling the surface energy keeps cohesion over weight</source>
+   <translation>über die Größe; das Skalieren der Oberflächenenergie erhält Kohäsion zu Gewicht</translation>
+  </message>
+  <message>
    <location filename="ui/widgets/bar_plot.py" />
    <source>category</source>
    <translation>Kategorie</translation>
+  </message>
+  <message>
+   <source>class weights as shares of the mass</source>
+   <translation>Klassengewichte als Massenanteile</translation>
+  </message>
+  <message>
+   <source>class weights by number and mass</source>
+   <translation>Klassengewichte nach Anzahl und Masse</translation>
+  </message>
+  <message>
+   <source>class weights by number and mass, sizes (sizes.csv)</source>
+   <translation>Klassengewichte nach Anzahl und Masse, Größen (sizes.csv)</translation>
+  </message>
+  <message>
+   <source>class weights, sizes</source>
+   <translation>Klassengewichte, Größen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/table.py" />
+   <source>coarse</source>
+   <translation>grob</translation>
+  </message>
+  <message>
+   <source>coarse graining, lifting cylinder</source>
+   <translation>Vergröberung, Hubzylinder</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/words.py" />
+   <source>coefficients</source>
+   <translation>Koeffizienten</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/studies/variation_panel.py" />
+   <location filename="ui/panels/coarsening_study.py" />
+   <location filename="ui/panels/lmax_study.py" />
+   <source>computed with other choices</source>
+   <translation>mit anderen Einstellungen berechnet</translation>
+  </message>
+  <message>
+   <source>contact parameters</source>
+   <translation>Kontaktparameter</translation>
+  </message>
+  <message>
+   <source>contact parameters: damped Hertzian, Mindlin-Deresiewicz, JKR</source>
+   <translation>Kontaktparameter: gedämpft nach Hertz, Mindlin-Deresiewicz, JKR</translation>
+  </message>
+  <message>
+   <source>continuous size distributions: at most 16 sizes a class</source>
+   <translation>stetige Größenverteilungen: höchstens 16 Größen je Klasse</translation>
+  </message>
+  <message>
+   <source>continuous size distributions: at most 16 sizes a shape</source>
+   <translation>stetige Größenverteilungen: höchstens 16 Größen je Form</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/statistics.py" />
+   <source>count</source>
+   <translation>Anzahl</translation>
   </message>
   <message>
    <location filename="ui/widgets/curve_plot.py" />
@@ -2767,9 +4818,77 @@
    <translation>abgeschnitten</translation>
   </message>
   <message>
+   <location filename="ui/pages/lecture/degrees.py" />
+   <source>degree</source>
+   <translation>Grad</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/scatter.py" />
+   <location filename="ui/pages/sample/table.py" />
+   <source>disc</source>
+   <translation>scheibig</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/table.py" />
+   <source>doubtful</source>
+   <translation>zweifelhaft</translation>
+  </message>
+  <message>
+   <location filename="ui/widgets/spectrum_editor.py" />
+   <source>drag the bars</source>
+   <translation>Balken ziehen</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/help.py" />
    <source>drawn by OpenGL in the window</source>
    <translation>von OpenGL im Fenster gezeichnet</translation>
+  </message>
+  <message>
+   <source>drawn particles: shape, size, orientation</source>
+   <translation>gezogene Partikel: Form, Größe, Lage</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/annealing.py" />
+   <source>drawn u</source>
+   <translation>gezogenes u</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/statistics.py" />
+   <source>each counts once</source>
+   <translation>jedes zählt einmal</translation>
+  </message>
+  <message>
+   <source>edges, corners and flat faces; friction of rest apart from friction of motion</source>
+   <translation>Kanten, Ecken und ebene Flächen; Haftreibung getrennt von Gleitreibung</translation>
+  </message>
+  <message>
+   <source>elastic constants, friction</source>
+   <translation>elastische Konstanten, Reibung</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/scatter.py" />
+   <location filename="ui/pages/sample/table.py" />
+   <source>equant</source>
+   <translation>isometrisch</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/field.py" />
+   <source>equivalent radius {radius:.3g} µm</source>
+   <translation>Äquivalentradius {radius:.3g} µm</translation>
+  </message>
+  <message>
+   <source>exact half-spaces: float32 triangles</source>
+   <translation>genaue Halbräume: Dreiecke in float32</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/annealing.py" />
+   <source>exact method</source>
+   <translation>exaktes Verfahren</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/studies/rows_bar.py" />
+   <source>exact minimum volume</source>
+   <translation>kleinstes Volumen (exakt)</translation>
   </message>
   <message>
    <location filename="ui/views/facet_pointer.py" />
@@ -2777,8 +4896,25 @@
    <translation>Facette {number} von {count}: {area:,.4g} µm² ({share:.1%}), Normale ({x:.2f}, {y:.2f}, {z:.2f}), {offset:.4g} µm von der Mitte, {corners} Ecken</translation>
   </message>
   <message>
+   <source>facets: they are those of the vertices' hull</source>
+   <translation>Facetten: es sind die der Hülle der Ecken</translation>
+  </message>
+  <message>
    <source>fast</source>
    <translation>schnell</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/words.py" />
+   <source>finer and finer bumps</source>
+   <translation>immer feinere Höcker</translation>
+  </message>
+  <message>
+   <source>flat facets and edges</source>
+   <translation>ebene Facetten und Kanten</translation>
+  </message>
+  <message>
+   <source>flat shading of facets</source>
+   <translation>flache Schattierung der Facetten</translation>
   </message>
   <message>
    <location filename="ui/dialogs/batch_fields.py" />
@@ -2786,8 +4922,31 @@
    <translation>Ordner mit {names}</translation>
   </message>
   <message>
+   <location filename="ui/pages/studies/gallery.py" />
+   <source>for the particle on screen and those after it, one row a loss function</source>
+   <translation>für das gezeigte Partikel und die danach, eine Zeile je Verlustfunktion</translation>
+  </message>
+  <message>
+   <source>force in proportion to the overlapping volume: neither Hertz nor restitution</source>
+   <translation>Kraft im Verhältnis zum Überlappungsvolumen: weder Hertz noch Stoßzahl</translation>
+  </message>
+  <message>
+   <source>friction</source>
+   <translation>Reibung</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/section_plot.py" />
+   <source>grain {number}: {size:.3g} mm at {x:.3g}, {z:.3g} mm</source>
+   <translation>Korn {number}: {size:.3g} mm bei {x:.3g}, {z:.3g} mm</translation>
+  </message>
+  <message>
    <source>greatest distance of two points</source>
    <translation>größter Abstand zweier Punkte</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/statistics.py" />
+   <source>group</source>
+   <translation>Gruppe</translation>
   </message>
   <message>
    <location filename="ui/panels/task_list.py" />
@@ -2796,8 +4955,32 @@
    <translation>angehalten</translation>
   </message>
   <message>
+   <location filename="ui/pages/repose/section_plot.py" />
+   <source>in the regression</source>
+   <translation>in der Regression</translation>
+  </message>
+  <message>
    <source>least distance of two parallel tangent planes</source>
    <translation>kleinster Abstand zweier paralleler Tangentialebenen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/section_plot.py" />
+   <source>left flank: {z:.3g} mm, {angle:.1f}°</source>
+   <translation>linke Flanke: {z:.3g} mm, {angle:.1f}°</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/section_plot.py" />
+   <source>left {angle:.1f}°</source>
+   <translation>links {angle:.1f}°</translation>
+  </message>
+  <message>
+   <source>lifting cylinder</source>
+   <translation>Hubzylinder</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/field.py" />
+   <source>ln(r / mean), blue inwards, red outwards</source>
+   <translation>ln(r / Mittel), blau nach innen, rot nach außen</translation>
   </message>
   <message>
    <source>longest edge of the bounding box</source>
@@ -2809,17 +4992,66 @@
    <translation>Verlust (Gl. 9): {loss:.4g}</translation>
   </message>
   <message>
+   <location filename="ui/pages/lecture/annealing.py" />
+   <source>loss {loss:.4g}; {facets} facets of {planes} planes</source>
+   <translation>Verlust {loss:.4g}; {facets} Facetten aus {planes} Ebenen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/annealing.py" />
+   <source>loss {loss:.4g}; {facets} facets; veil: what is imitated</source>
+   <translation>Verlust {loss:.4g}; {facets} Facetten; Schleier: das Vorbild</translation>
+  </message>
+  <message>
    <location filename="ui/panels/loss_curve.py" />
    <source>lowest {loss:.4g}</source>
    <translation>kleinster {loss:.4g}</translation>
+  </message>
+  <message>
+   <source>mass and inertia</source>
+   <translation>Masse und Trägheit</translation>
+  </message>
+  <message>
+   <source>mass fractions (as comments)</source>
+   <translation>Massenanteile (als Kommentare)</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/plots.py" />
+   <location filename="ui/pages/repose/study.py" />
+   <location filename="ui/pages/sample/statistics.py" />
+   <source>mean</source>
+   <translation>Mittel</translation>
   </message>
   <message>
    <source>mean of |n·x|/|x| over the surface (Bullard and Garboczi)</source>
    <translation>Mittel von |n·x|/|x| über die Oberfläche (Bullard und Garboczi)</translation>
   </message>
   <message>
+   <location filename="ui/pages/sample/table.py" />
+   <source>mended</source>
+   <translation>ausgebessert</translation>
+  </message>
+  <message>
    <source>middle edge of the bounding box</source>
    <translation>mittlere Kante des Hüllquaders</translation>
+  </message>
+  <message>
+   <source>mm, mg, ms; coarse graining applied</source>
+   <translation>mm, mg, ms; mit Vergröberungsfaktor</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/words.py" />
+   <source>nearly an ellipsoid</source>
+   <translation>fast ein Ellipsoid</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/words.py" />
+   <source>no polyhedron</source>
+   <translation>kein Polyeder</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/plots.py" />
+   <source>noise</source>
+   <translation>Rauschen</translation>
   </message>
   <message>
    <location filename="ui/dialogs/export.py" />
@@ -2827,9 +5059,32 @@
    <translation>keine</translation>
   </message>
   <message>
+   <source>none besides what edges and faces do</source>
+   <translation>keines außer dem, was Kanten und Flächen bewirken</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/studies/variation_panel.py" />
+   <source>none is better in both</source>
+   <translation>keiner ist in beidem besser</translation>
+  </message>
+  <message>
+   <location filename="ui/panels/lmax_study.py" />
+   <source>none of these</source>
+   <translation>keines davon</translation>
+  </message>
+  <message>
    <location filename="ui/widgets/bar_plot.py" />
    <source>not below {bound:.3g} {unit} (line)</source>
    <translation>nicht unter {bound:.3g} {unit} (Linie)</translation>
+  </message>
+  <message>
+   <source>not given in the paper</source>
+   <translation>im Artikel nicht angegeben</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/section_plot.py" />
+   <source>not used: outside the cuts</source>
+   <translation>nicht verwendet: außerhalb der Schnitte</translation>
   </message>
   <message>
    <location filename="ui/panels/log.py" />
@@ -2837,9 +5092,23 @@
    <translation>Hinweis</translation>
   </message>
   <message>
+   <location filename="ui/pages/dataset/plots.py" />
+   <source>number</source>
+   <translation>Anzahl</translation>
+  </message>
+  <message>
    <location filename="ui/views/triptych.py" />
    <source>on its way; the very first one takes longer …</source>
    <translation>unterwegs; das allererste dauert länger …</translation>
+  </message>
+  <message>
+   <source>part of the volume</source>
+   <translation>ein Teil des Volumens</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/runs.py" />
+   <source>passed</source>
+   <translation>bestanden</translation>
   </message>
   <message>
    <location filename="ui/dialogs/help.py" />
@@ -2847,6 +5116,20 @@
    <translation>Bilder, im Speicher gezeichnet</translation>
   </message>
   <message>
+   <source>polygonal facets, edges, vertices</source>
+   <translation>polygonale Facetten, Kanten, Ecken</translation>
+  </message>
+  <message>
+   <source>polygonal facets: they are cut into triangles</source>
+   <translation>polygonale Facetten: sie werden in Dreiecke zerlegt</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/runs.py" />
+   <source>polyhedra</source>
+   <translation>Polyeder</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/annealing.py" />
    <location filename="ui/panels/loss_curve.py" />
    <source>present</source>
    <translation>aktuell</translation>
@@ -2857,13 +5140,194 @@
    <translation>Problem</translation>
   </message>
   <message>
+   <location filename="ui/pages/lecture/annealing.py" />
+   <source>proposed</source>
+   <translation>vorgeschlagen</translation>
+  </message>
+  <message>
+   <source>pull-off force 3/2 π w R*, shared by the contact points; hardly steepens a heap: take LAMMPS</source>
+   <translation>Abreißkraft 3/2 π w R*, auf die Kontaktpunkte verteilt; macht einen Kegel kaum steiler: nehmen Sie LAMMPS</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/degrees.py" />
+   <source>radius (rms)</source>
+   <translation>Radius (quadr. Mittel)</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/words.py" />
+   <source>refuse</source>
+   <translation>ablehnen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/annealing.py" />
+   <source>refused</source>
+   <translation>abgelehnt</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/section_plot.py" />
+   <source>right flank: {z:.3g} mm, {angle:.1f}°</source>
+   <translation>rechte Flanke: {z:.3g} mm, {angle:.1f}°</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/section_plot.py" />
+   <source>right {angle:.1f}°</source>
+   <translation>rechts {angle:.1f}°</translation>
+  </message>
+  <message>
+   <source>rigid clumps of inscribed spheres (8 by default) with the polyhedra's mass and inertia: rounder</source>
+   <translation>starre Gruppen einbeschriebener Kugeln (sonst 8) mit Masse und Trägheit der Polyeder: runder</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/words.py" />
+   <source>rises from {before} to {after}</source>
+   <translation>steigt von {before} auf {after}</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/scatter.py" />
+   <location filename="ui/pages/sample/table.py" />
+   <source>rod</source>
+   <translation>stabförmig</translation>
+  </message>
+  <message>
+   <source>rolling resistance</source>
+   <translation>Rollwiderstand</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/runs.py" />
+   <source>see tip</source>
+   <translation>siehe Hinweis</translation>
+  </message>
+  <message>
+   <source>shapes</source>
+   <translation>Formen</translation>
+  </message>
+  <message>
+   <source>shapes approximately</source>
+   <translation>Formen näherungsweise</translation>
+  </message>
+  <message>
+   <source>shapes as triangles</source>
+   <translation>Formen als Dreiecke</translation>
+  </message>
+  <message>
+   <source>shapes by their vertices</source>
+   <translation>Formen durch ihre Ecken</translation>
+  </message>
+  <message>
+   <source>shapes exactly</source>
+   <translation>Formen genau</translation>
+  </message>
+  <message>
+   <source>shapes of volume 1 (before rounding) without a length unit; diameters in micrometres</source>
+   <translation>Formen vom Volumen 1 (vor dem Runden) ohne Längeneinheit; Durchmesser in Mikrometern</translation>
+  </message>
+  <message>
+   <source>shapes of volume 1 without a length unit; diameters in micrometres</source>
+   <translation>Formen vom Volumen 1 ohne Längeneinheit; Durchmesser in Mikrometern</translation>
+  </message>
+  <message>
+   <source>shapes of volume 1; scales in metres, coarse graining applied</source>
+   <translation>Formen vom Volumen 1; Maße in Metern, mit Vergröberungsfaktor</translation>
+  </message>
+  <message>
+   <source>shapes of volume 1; scales in metres, coarse graining applied; SI material</source>
+   <translation>Formen vom Volumen 1; Maße in Metern, mit Vergröberungsfaktor; Material in SI</translation>
+  </message>
+  <message>
    <source>shortest edge of the bounding box</source>
    <translation>kürzeste Kante des Hüllquaders</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>size</source>
+   <translation>Größe</translation>
+  </message>
+  <message>
+   <source>size distributions inside the .shp: give each particle its homothety</source>
+   <translation>Größenverteilungen in der .shp-Datei: geben Sie jedem Partikel seine Streckung</translation>
+  </message>
+  <message>
+   <source>sizes</source>
+   <translation>Größen</translation>
+  </message>
+  <message>
+   <source>sizes as cumulative percentages by mass</source>
+   <translation>Größen als Summenprozente nach Masse</translation>
+  </message>
+  <message>
+   <source>sizes, one template each</source>
+   <translation>Größen, je eine Vorlage</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/table.py" />
+   <source>sound</source>
+   <translation>fehlerfrei</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/runs.py" />
+   <source>spheres</source>
+   <translation>Kugeln</translation>
+  </message>
+  <message>
+   <source>spheres in the frame of a shape of volume 1; diameters in micrometres</source>
+   <translation>Kugeln im Bezug einer Form vom Volumen 1; Durchmesser in Mikrometern</translation>
+  </message>
+  <message>
+   <source>spheres inside each polyhedron stand for it; facets become bumpy and some volume is missing.</source>
+   <translation>Kugeln in jedem Polyeder stehen für es; Facetten werden höckerig, und etwas Volumen fehlt.</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>sphericity</source>
+   <translation>Sphärizität</translation>
+  </message>
+  <message>
+   <source>spring, dashpot and slider (where resistance is above 0)</source>
+   <translation>Feder, Dämpfer und Gleiter (wo der Widerstand über 0 ist)</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/words.py" />
+   <source>stays what it is</source>
+   <translation>bleibt, was er ist</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/statistics.py" />
+   <source>std. dev.</source>
+   <translation>Std.-Abw.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/annealing.py" />
+   <source>step</source>
+   <translation>Schritt</translation>
   </message>
   <message>
    <location filename="ui/panels/loss_curve.py" />
    <source>step {at} of {total}</source>
    <translation>Schritt {at} von {total}</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/section_plot.py" />
+   <source>surface at {x:.3g} mm: {z:.3g} mm ({taken})</source>
+   <translation>Oberfläche bei {x:.3g} mm: {z:.3g} mm ({taken})</translation>
+  </message>
+  <message>
+   <source>surface energy (JKR)</source>
+   <translation>Oberflächenenergie (JKR)</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/section_plot.py" />
+   <source>surface z [mm]</source>
+   <translation>Oberfläche z [mm]</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/section_plot.py" />
+   <source>symmetric model: {z:.3g} mm, {angle:.1f}°</source>
+   <translation>symmetrisches Modell: {z:.3g} mm, {angle:.1f}°</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/section_plot.py" />
+   <source>symmetric {angle:.1f}°</source>
+   <translation>symmetrisch {angle:.1f}°</translation>
   </message>
   <message>
    <location filename="ui/dialogs/batch_fields.py" />
@@ -2876,6 +5340,20 @@
    <translation>das CT-Partikel selbst</translation>
   </message>
   <message>
+   <source>the convex polyhedra themselves</source>
+   <translation>die konvexen Polyeder selbst</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/page.py" />
+   <source>the fit at l&lt;sub&gt;max&lt;/sub&gt; = {degree}</source>
+   <translation>der Fit bei l&lt;sub&gt;max&lt;/sub&gt; = {degree}</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/page.py" />
+   <source>the particle</source>
+   <translation>das Partikel</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/export.py" />
    <source>the surface of the spherical-harmonics fit at l&lt;sub&gt;max&lt;/sub&gt; = {l_max}</source>
    <translation>die Oberfläche des Fits mit Kugelflächenfunktionen bei l&lt;sub&gt;max&lt;/sub&gt; = {l_max}</translation>
@@ -2883,6 +5361,34 @@
   <message>
    <source>to the eye</source>
    <translation>zum Auge</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/studies/rows_bar.py" />
+   <source>trimesh's heuristic (paper)</source>
+   <translation>Heuristik von trimesh (Artikel)</translation>
+  </message>
+  <message>
+   <source>true moments of inertia (fit.csv)</source>
+   <translation>wahre Trägheitsmomente (fit.csv)</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/statistics.py" />
+   <source>undo the loss at the border</source>
+   <translation>Verlust am Rand ausgleichen</translation>
+  </message>
+  <message>
+   <source>unilateral constraint, no bounce; penetration is reported, stiffness has no part</source>
+   <translation>einseitige Zwangsbedingung, kein Rückprall; die Durchdringung wird gemeldet, die Steifigkeit spielt keine Rolle</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/table.py" />
+   <source>unknown</source>
+   <translation>unbekannt</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/table.py" />
+   <source>unsound</source>
+   <translation>fehlerhaft</translation>
   </message>
   <message>
    <location filename="ui/pages/explore/section_panel.py" />
@@ -2895,14 +5401,49 @@
    <translation>bis l&lt;sub&gt;max&lt;/sub&gt; = {l_max}</translation>
   </message>
   <message>
+   <location filename="ui/pages/dataset/plots.py" />
+   <source>volume</source>
+   <translation>Volumen</translation>
+  </message>
+  <message>
+   <source>volume and inertia</source>
+   <translation>Volumen und Trägheit</translation>
+  </message>
+  <message>
    <location filename="ui/views/triptych.py" />
    <source>waiting for the coefficients …</source>
    <translation>wartet auf die Koeffizienten …</translation>
   </message>
   <message>
+   <location filename="ui/pages/sample/table.py" />
+   <source>weight</source>
+   <translation>Gewicht</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/statistics.py" />
+   <source>weighted by volume</source>
+   <translation>nach Volumen gewichtet</translation>
+  </message>
+  <message>
+   <source>weights and size distributions: only a sample is drawn</source>
+   <translation>Gewichte und Größenverteilungen: nur eine Stichprobe wird gezogen</translation>
+  </message>
+  <message>
+   <source>weights and size distributions: only a sample is drawn (sizes.csv has them)</source>
+   <translation>Gewichte und Größenverteilungen: nur eine Stichprobe wird gezogen (sizes.csv hat sie)</translation>
+  </message>
+  <message>
+   <source>weights and sizes (sizes.csv)</source>
+   <translation>Gewichte und Größen (sizes.csv)</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/export.py" />
    <source>weights, size distribution, descriptors, provenance (JSON)</source>
    <translation>Gewichte, Größenverteilung, Deskriptoren, Herkunft (JSON)</translation>
+  </message>
+  <message>
+   <source>where the particles come from (dataset.json has it)</source>
+   <translation>woher die Partikel kommen (steht in dataset.json)</translation>
   </message>
   <message>
    <location filename="ui/views/comparison.py" />
@@ -2920,6 +5461,11 @@
    <translation>mit Polyeder</translation>
   </message>
   <message>
+   <location filename="ui/pages/lecture/annealing.py" />
+   <source>worse, accepted</source>
+   <translation>schlechter, angenommen</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/batch.py" />
    <source>{at:,} of {total:,}</source>
    <translation>{at:,} von {total:,}</translation>
@@ -2932,14 +5478,71 @@
    <translation>{at} von {total}</translation>
   </message>
   <message>
+   <location filename="ui/pages/lecture/degrees.py" />
+   <source>{count:,} coefficients</source>
+   <translation>{count:,} Koeffizienten</translation>
+  </message>
+  <message>
    <location filename="ui/views/triptych.py" />
    <source>{count:,} coefficients, {triangles:,} triangles</source>
    <translation>{count:,} Koeffizienten, {triangles:,} Dreiecke</translation>
   </message>
   <message>
+   <location filename="ui/pages/repose/page.py" />
+   <location filename="ui/pages/repose/setup.py" />
+   <source>{count:,} particles</source>
+   <translation>{count:,} Partikel</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/controls.py" />
+   <source>{count:,} particles are open.</source>
+   <translation>{count:,} Partikel sind geöffnet.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/page.py" />
+   <source>{count:,} particles of {name}</source>
+   <translation>{count:,} Partikel aus {name}</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>{count} faces</source>
+   <translation>{count} Facetten</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/shown.py" />
    <location filename="ui/views/triptych.py" />
    <source>{count} facets</source>
    <translation>{count} Facetten</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/studies/gallery.py" />
+   <source>{count} facets, Jaccard distance J = {distance:.3f}, loss of this row {loss:.3g}</source>
+   <translation>{count} Facetten, Jaccard-Distanz J = {distance:.3f}, Verlust dieser Zeile {loss:.3g}</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/shown.py" />
+   <source>{count} facets, method: {method}; chosen on the page Explore.</source>
+   <translation>{count} Facetten, Verfahren: {method}; gewählt auf der Seite Erkunden.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/studies/page.py" />
+   <source>{count} files were written to {folder}.</source>
+   <translation>{count} Dateien wurden nach {folder} geschrieben.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/page.py" />
+   <source>{count} formats are written.</source>
+   <translation>{count} Formate sind geschrieben.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/studies/variation_panel.py" />
+   <source>{count} left out</source>
+   <translation>{count} ausgelassen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/studies/rows_bar.py" />
+   <source>{count} losses</source>
+   <translation>{count} Verluste</translation>
   </message>
   <message>
    <location filename="ui/dialogs/batch_fields.py" />
@@ -2947,14 +5550,46 @@
    <translation>{count} der geöffneten Partikel stammen aus keiner Datei und können nicht Teil eines Stapels sein.</translation>
   </message>
   <message>
+   <location filename="ui/pages/sample/scatter.py" />
+   <location filename="ui/pages/studies/variation_panel.py" />
+   <location filename="ui/panels/lmax_study.py" />
+   <source>{count} particles</source>
+   <translation>{count} Partikel</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/page.py" />
+   <source>{count} particles are in {name}.</source>
+   <translation>{count} Partikel sind in {name}.</translation>
+  </message>
+  <message>
    <location filename="ui/commands.py" />
    <source>{count} particles came from no file and are not in it ({names}); export them.</source>
    <translation>{count} Partikel stammen aus keiner Datei und sind nicht darin ({names}); exportieren Sie sie.</translation>
   </message>
   <message>
+   <location filename="ui/pages/lecture/page.py" />
+   <source>{count} planes, imitating {imitated}, seed {seed}</source>
+   <translation>{count} Ebenen, Vorbild: {imitated}, Startwert {seed}</translation>
+  </message>
+  <message>
    <location filename="ui/batches.py" />
    <source>{count} problems are listed in failed.csv.</source>
    <translation>{count} Probleme stehen in failed.csv.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/page.py" />
+   <source>{count} representatives</source>
+   <translation>{count} Repräsentanten</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/study_desk.py" />
+   <source>{count} runs; tables and figure are in {folder}.</source>
+   <translation>{count} Läufe; Tabellen und Abbildung sind in {folder}.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/page.py" />
+   <source>{count} shapes in {folder}.</source>
+   <translation>{count} Formen in {folder}.</translation>
   </message>
   <message>
    <location filename="ui/views/triptych.py" />
@@ -2987,9 +5622,45 @@
    <translation>{keys} ist keine Taste, die ein Befehl haben kann.</translation>
   </message>
   <message>
+   <location filename="ui/pages/repose/runs.py" />
+   <location filename="ui/pages/repose/study.py" />
+   <source>{low:.1f} to {high:.1f}</source>
+   <translation>{low:.1f} bis {high:.1f}</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/export.py" />
    <source>{method}, seed {seed}</source>
    <translation>{method}, Startwert {seed}</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/words.py" />
+   <source>{moved}: the half-spaces bound no polyhedron any more. Refused without asking T(k).</source>
+   <translation>{moved}: die Halbräume begrenzen kein Polyeder mehr. Abgelehnt, ohne T(k) zu fragen.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/words.py" />
+   <source>{moved}: the loss falls from {before} to {after}. Better, so it is accepted.</source>
+   <translation>{moved}: der Verlust fällt von {before} auf {after}. Besser, also angenommen.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/words.py" />
+   <source>{moved}: the loss {how}. Accepted all the same: luck, of which there was {chance}.</source>
+   <translation>{moved}: der Verlust {how}. Trotzdem angenommen: Glück, das es mit {chance} gab.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/words.py" />
+   <source>{moved}: the loss {how}. Refused; there was a chance of {chance} that it would have been taken.</source>
+   <translation>{moved}: der Verlust {how}. Abgelehnt; mit einer Wahrscheinlichkeit von {chance} wäre es angenommen worden.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/studies/variation_panel.py" />
+   <source>{name} (mean)</source>
+   <translation>{name} (Mittel)</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/page.py" />
+   <source>{name} and {count} more</source>
+   <translation>{name} und {count} weitere</translation>
   </message>
   <message>
    <location filename="ui/projects.py" />
@@ -2997,9 +5668,44 @@
    <translation>{name} hat Änderungen, die nicht gespeichert sind.</translation>
   </message>
   <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>{name} only</source>
+   <translation>Nur {name}</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/shown.py" />
+   <source>{name} stands for 1 particle ({share})</source>
+   <translation>{name} steht für 1 Partikel ({share})</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/shown.py" />
+   <source>{name} stands for {count} particles ({share})</source>
+   <translation>{name} steht für {count} Partikel ({share})</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>{name} × {factor}</source>
+   <translation>{name} × {factor}</translation>
+  </message>
+  <message>
    <location filename="ui/widgets/number_slider.py" />
    <source>{name}, slider</source>
    <translation>{name}, Schieberegler</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/shown.py" />
+   <source>{name}: {count} shapes, by {weighting}</source>
+   <translation>{name}: {count} Formen, nach {weighting}</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/shown.py" />
+   <source>{name}: {faces} facets, {vertices} vertices, stands for {count} particles</source>
+   <translation>{name}: {faces} Facetten, {vertices} Ecken, steht für {count} Partikel</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/transport.py" />
+   <source>{noun} {at} of {last}</source>
+   <translation>{noun} {at} von {last}</translation>
   </message>
   <message>
    <location filename="ui/widgets/preset_bar.py" />
@@ -3010,6 +5716,21 @@
    <location filename="ui/dialogs/export.py" />
    <source>{preset}, modified</source>
    <translation>{preset}, geändert</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/studies/change_table.py" />
+   <source>{row}, {column}: {before:.3g} % becomes {after:.3g} %</source>
+   <translation>{row}, {column}: aus {before:.3g} % werden {after:.3g} %</translation>
+  </message>
+  <message>
+   <location filename="ui/panels/coarsening_study.py" />
+   <source>{row}, {column}: {value:.3g} % ({low:.3g} to {high:.3g}; {share:.0%} bootstrap interval)</source>
+   <translation>{row}, {column}: {value:.3g} % ({low:.3g} bis {high:.3g}; {share:.0%}-Bootstrap-Bereich)</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/statistics.py" />
+   <source>{share} quant.</source>
+   <translation>{share}-Quant.</translation>
   </message>
   <message>
    <location filename="ui/views/triptych.py" />
@@ -3027,9 +5748,24 @@
    <translation>{surface} der Oberfläche und {volume} des Volumens sind vom Sternpunkt aus verdeckt und lassen sich durch keine Radiusfunktion wiedergeben.</translation>
   </message>
   <message>
+   <location filename="ui/pages/lecture/words.py" />
+   <source>{symbol} = {degree}: {shape}. The radius is missed by {missed:.1%} in the root mean square; errors against the particle: {errors}.</source>
+   <translation>{symbol} = {degree}: {shape}. Der Radius wird im quadratischen Mittel um {missed:.1%} verfehlt; Fehler gegen das Partikel: {errors}.</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/closing.py" />
    <source>{task} is running.</source>
    <translation>In Arbeit: {task}.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/studies/variation_panel.py" />
+   <source>{unmet} of {total} requests not met exactly</source>
+   <translation>{unmet} von {total} Wünschen nicht genau erfüllt</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/studies/change_table.py" />
+   <source>{value:+.3g} percentage points ({low:+.3g} to {high:+.3g})</source>
+   <translation>{value:+.3g} Prozentpunkte ({low:+.3g} bis {high:+.3g})</translation>
   </message>
   <message>
    <location filename="ui/dialogs/batch.py" />

@@ -21,6 +21,7 @@ from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
 
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.ui.application import make_application
+from regolith_studio.ui.translation.language import Translator, fall_silent, speak
 from regolith_studio.ui.wiring import Wiring
 
 
@@ -96,6 +97,30 @@ def shown(app):
         widget.close()
         widget.deleteLater()
     kept.clear()
+
+
+class Brackets(dict):
+    """Every message in brackets."""
+
+    def get(self, source, _default=None):
+        return f"⟦{source}⟧"
+
+
+@pytest.fixture
+def speaking(app):
+    """Lets the window speak a language, or that of brackets, until the test is over."""
+    installed = []
+
+    def begin(language):
+        if language == "brackets":
+            translator = Translator(Brackets(any="thing"))
+            app.installTranslator(translator)
+            installed.append(translator)
+        else:
+            installed.extend(speak(app, language))
+
+    yield begin
+    fall_silent(app, installed)
 
 
 @pytest.fixture

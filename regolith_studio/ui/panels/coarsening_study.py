@@ -7,11 +7,13 @@ from PySide6.QtWidgets import QVBoxLayout, QWidget
 from regolith_studio.coarsening.weights import JACCARD
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.ui.theme import Theme
+from regolith_studio.ui.translation import mark, tr, tr_count
+from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.heat_table import HeatTable
 from regolith_studio.ui.widgets.labels import plain_symbol
 from regolith_studio.ui.widgets.study_frame import StudyFrame
 
-WAITING = (
+WAITING = mark(
     "Root mean squared relative error of each descriptor, one row a loss function, as in Fig. 8 of the paper."
 )
 HEADERS = (*(plain_symbol(CATALOGUE[key].symbol) for key in LOSS_KEYS), "Jaccard")
@@ -25,7 +27,7 @@ class CoarseningStudyPanel(QWidget):
         super().__init__(parent)
         self.setObjectName("coarsening_study")
         self._study: Any = None
-        self.table = HeatTable(WAITING)
+        self.table = HeatTable(tr(WAITING))
         self.frame = StudyFrame("coarsening_study", self.table)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
@@ -39,12 +41,12 @@ class CoarseningStudyPanel(QWidget):
             self.frame.set_remark("")
             return
         self._study = study
-        self.table.set_values([row.label for row in study.rows], HEADERS, study.rmsre)
+        self.table.set_values([retold(row.label) for row in study.rows], HEADERS, study.rmsre)
         self._tell_bands()
-        count = f"RMSRE [%], {len(study.names)} particles"
+        count = tr_count("RMSRE [%], 1 particle", "RMSRE [%], {count} particles", len(study.names))
         if study.box_metric != "exact":
-            count += f", box of {study.box_metric}"
-        self.frame.set_remark(f"{count}; computed with other choices" if outdated else count)
+            count += ", " + tr("box of {name}", name=study.box_metric)
+        self.frame.set_remark(f"{count}; {tr('computed with other choices')}" if outdated else count)
 
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
@@ -62,6 +64,14 @@ class CoarseningStudyPanel(QWidget):
                 item = self.table.table.item(r, k)
                 if item is not None:
                     item.setToolTip(
-                        f"{row.label}, {header}: {100 * study.rmsre[r, k]:.3g} % "
-                        f"({low[r, k]:.3g} to {high[r, k]:.3g}; {study.confidence:.0%} bootstrap interval)"
+                        tr(
+                            "{row}, {column}: {value:.3g} % ({low:.3g} to {high:.3g}; {share:.0%} bootstrap"
+                            " interval)",
+                            row=retold(row.label),
+                            column=header,
+                            value=100 * study.rmsre[r, k],
+                            low=low[r, k],
+                            high=high[r, k],
+                            share=study.confidence,
+                        )
                     )

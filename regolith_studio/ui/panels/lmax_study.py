@@ -8,12 +8,14 @@ from PySide6.QtWidgets import QDoubleSpinBox, QHBoxLayout, QLabel, QVBoxLayout, 
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.scene.palette import DESCRIPTOR_COLOURS
 from regolith_studio.ui.theme import Theme
-from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation import mark, tr, tr_count
 from regolith_studio.ui.widgets.curve_plot import Curve, CurvePlot
 from regolith_studio.ui.widgets.labels import rich_symbol
 from regolith_studio.ui.widgets.study_frame import StudyFrame
 
-WAITING = "Root mean squared relative error of each descriptor against l_max, as in Fig. 3 of the paper."
+WAITING = mark(
+    "Root mean squared relative error of each descriptor against l<sub>max</sub>, as in Fig. 3 of the paper."
+)
 
 
 class LmaxStudyPanel(QWidget):
@@ -22,7 +24,7 @@ class LmaxStudyPanel(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setObjectName("lmax_study")
-        self.plot = CurvePlot("Maximum degree l<sub>max</sub>", "RMSRE [%]", WAITING)
+        self.plot = CurvePlot(tr("Maximum degree l<sub>max</sub>"), "RMSRE [%]", tr(WAITING))
         self.frame = StudyFrame("lmax_study", self.plot)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
@@ -52,8 +54,8 @@ class LmaxStudyPanel(QWidget):
             for number, key in enumerate(study.keys)
         ]
         self.plot.set_curves(curves)
-        count = f"{len(study.names)} particles"
-        self.frame.set_remark(f"{count}; computed with other choices" if outdated else count)
+        count = tr_count("1 particle", "{count} particles", len(study.names))
+        self.frame.set_remark(f"{count}; {tr('computed with other choices')}" if outdated else count)
         self._answer()
 
     def show_l_max(self, l_max: int) -> None:
@@ -79,7 +81,7 @@ class LmaxStudyPanel(QWidget):
         self._question = QWidget()
         row = QHBoxLayout(self._question)
         row.setContentsMargins(8, 0, 8, 6)
-        row.addWidget(QLabel("Smallest l<sub>max</sub> with every error below"))
+        row.addWidget(QLabel(tr("Smallest l<sub>max</sub> with every error below")))
         row.addWidget(self.tolerance)
         row.addWidget(self.answer)
         row.addStretch(1)
@@ -89,4 +91,4 @@ class LmaxStudyPanel(QWidget):
         self._question.setVisible(self._study is not None)
         if self._study is not None:
             found = self._study.smallest_l_max(self.tolerance.value() / 100)
-            self.answer.setText(f"<b>{found}</b>" if found is not None else "none of these")
+            self.answer.setText(f"<b>{found}</b>" if found is not None else tr("none of these"))

@@ -15,9 +15,15 @@ from pathlib import Path
 
 from regolith_studio.coarsening.methods import METHODS
 from regolith_studio.coarsening.weights import presets
+from regolith_studio.dataset.exporters import EXPORTERS
+from regolith_studio.dataset.parameters import GRAVITIES, ContactParameters, LiftingCylinderTest, ScriptTimes
+from regolith_studio.dem.engine_table import HEADINGS, engine_rows
+from regolith_studio.dem.engines import ENGINES
+from regolith_studio.dem.evaluation.settings import EvaluationSettings
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.resources import resource
 from regolith_studio.scene import cameras, sectioning, shapes
+from regolith_studio.studies.variations import VARIATIONS
 from regolith_studio.ui.translation import CONTEXT
 from regolith_studio.ui.translation.language import translation_file
 
@@ -34,7 +40,11 @@ ROWS: Mapping[str, Mapping[str, int]] = {
 """Which fields of a row are messages, and where they stand without their names."""
 TASKS = ("session/*.py", *(f"jobs/{name}.py" for name in ("coarsening", "fitting", "loading", "examining")))
 """Modules beside the window whose titles are seen in the status bar and in the list of tasks."""
+FORMS = (ContactParameters, LiftingCylinderTest, ScriptTimes, EvaluationSettings)
+"""Dataclasses whose fields are edited in the window."""
 SAID_BELOW = (
+    "As given",
+    "Chosen weights",
     "A closed mesh without faults.",
     "Being measured …",
     "Compiling",
@@ -85,11 +95,20 @@ def words_below() -> Iterator[str]:
     yield from SAID_BELOW
     for row in CATALOGUE.values():
         yield from (row.label, row.formula)
-    for method in METHODS.values():
-        yield method.label
-        for each in dataclasses.fields(method.Settings):
-            yield from (str(each.metadata[name]) for name in ("label", "tip") if each.metadata.get(name))
+    yield from (method.label for method in METHODS.values())
+    engines = tuple(engine.Settings for engine in ENGINES.values())
+    for settings in (*(method.Settings for method in METHODS.values()), *engines, *FORMS):
+        for each in dataclasses.fields(settings):
+            yield from (
+                str(each.metadata[name]) for name in ("label", "tip", "source") if each.metadata.get(name)
+            )
             yield from map(str, each.metadata.get("choices", ()))
+    yield from (*GRAVITIES, *HEADINGS.values())
+    yield from (str(row[key]) for row in engine_rows() for key in HEADINGS)
+    for exporter in EXPORTERS.values():
+        yield from (*exporter.carries, *exporter.loses, exporter.units, exporter.alters)
+    for variation in VARIATIONS.values():
+        yield from (variation.title, variation.asks)
     for preset in presets().values():
         yield from (preset.label, preset.origin)
     yield from (each.label for each in cameras.DIRECTIONS.values())

@@ -25,24 +25,39 @@ SENTENCES = (
         "No polyhedron with {faces} faces was found that meets all descriptors: {name} is off by {error} %;"
         " more faces or a weight of 0 would free it."
     ),
+    mark("{name} only"),
+    mark("{name} × {factor}"),
+    mark("{count} faces"),
+    mark("Overlap + {symbols}"),
 )
 """Fits and coarsenings say these; what is in braces stands there filled in."""
 
 
 def retold(sentence: str) -> str:
     """A sentence in the language of the window, with the numbers that it has; itself if it is not known."""
+    if (known := tr(sentence)) != sentence:
+        return known
     for template, form in _forms():
         if match := form.fullmatch(sentence):
             return tr(template, **{name: _word(value) for name, value in match.groupdict().items()})
-    return tr(sentence)
+    return sentence
 
 
 def _word(value: str) -> str:
-    """A name of the catalogue inside a sentence; numbers stay what they are."""
+    """A name of the catalogue inside a sentence; numbers stay what they are, sums are told term by term."""
+    if PLUS in value:
+        return PLUS.join(map(_word, value.split(PLUS)))
     if not value[:1].isalpha():
         return value
+    if (word := tr(value)) != value:
+        return word
     known = tr(value[:1].upper() + value[1:])
     return known if known.lower() != value else value
+
+
+PLUS = " + "
+PARTS = (mark("size"), mark("box"), mark("sphericity"))
+"""Terms of a loss as the study of the trade-off names them."""
 
 
 @cache

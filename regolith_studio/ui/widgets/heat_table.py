@@ -16,6 +16,7 @@ from PySide6.QtWidgets import (
 )
 
 from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.translation import tr
 
 _ROWS_SHARE = 0.33
 """Of the width, that the names of the rows take at most."""
@@ -38,7 +39,7 @@ class HeatTable(QWidget):
         super().__init__(parent)
         self._theme = current_theme()
         self._values: tuple[tuple[float, ...], ...] = ()
-        self.table = numbers_table("Table of errors", spare=7)
+        self.table = numbers_table(tr("Table of errors"), spare=11)
         self._stack = QStackedLayout(self)
         self._stack.addWidget(remark_in_the_middle(placeholder))
         self._stack.addWidget(self.table)

@@ -8,6 +8,7 @@ from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import QDoubleSpinBox, QFormLayout, QLabel, QWidget
 
 from regolith_studio.dataset.parameters import NOT_GIVEN
+from regolith_studio.ui.translation import tr
 
 
 class ParameterForm(QWidget):
@@ -33,11 +34,12 @@ class ParameterForm(QWidget):
         for each in dataclasses.fields(kind):
             editor = self._editors[each.name] = _editor(each.metadata)
             editor.setObjectName(f"{name}_{each.name}")
-            label = QLabel(str(each.metadata["label"]))
+            words = tr(str(each.metadata["label"]))
+            label = QLabel(words)
             missing = each.metadata["source"] == NOT_GIVEN
             if missing:
                 label.setText(f"{label.text()} *")
-            tip = f"{each.metadata['label']}: {each.metadata['source']}"
+            tip = f"{words}: {tr(str(each.metadata['source']))}"
             label.setToolTip(tip)
             editor.setToolTip(tip)
             editor.setAccessibleName(tip)

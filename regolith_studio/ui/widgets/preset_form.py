@@ -7,6 +7,7 @@ from PySide6.QtWidgets import QFormLayout, QWidget
 
 from regolith_studio.errors import InputError
 from regolith_studio.session.own_presets import OwnPresets
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.parameter_form import ParameterForm
 from regolith_studio.ui.widgets.preset_bar import PresetBar, PresetEntry
 
@@ -31,7 +32,7 @@ class PresetForm(ParameterForm):
         self._chosen = SHIPPED
         self._known: dict[str, dict[str, Any]] = {SHIPPED: {}}
         self._label = label
-        self.bar = PresetBar(f"{name}_preset", f"Preset of {label}")
+        self.bar = PresetBar(f"{name}_preset", tr("Preset of {label}", label=label))
         self.bar.reset.setObjectName(f"{name}_preset_reset")
         super().__init__(kind, name, parent)
         layout = self.layout()
@@ -77,10 +78,10 @@ class PresetForm(ParameterForm):
         self._known = {SHIPPED: {}} | {
             key: dict(values) for key, values in kept.items() if self._fits(values)
         }
-        tip = "As the paper gives them; a star where it gives none"
+        tip = tr("As the paper gives them; a star where it gives none")
         entries = [PresetEntry(SHIPPED, self._label, tip)]
         entries += [
-            PresetEntry(key, key.removeprefix("own:"), "Own preset", own=True)
+            PresetEntry(key, key.removeprefix("own:"), tr("Own preset"), own=True)
             for key in self._known
             if key != SHIPPED
         ]

@@ -9,6 +9,7 @@ from PySide6.QtCore import QEvent, QObject, QPointF, Qt, QTimer, Signal
 from PySide6.QtGui import QColor, QKeyEvent, QMouseEvent
 from PySide6.QtWidgets import QWidget
 
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.plot import Numbers, Plot
 
 THROTTLE = 30
@@ -33,12 +34,14 @@ class SpectrumEditor(Plot):
         self._editable = False
         self._chosen = 0
         self._items: list[pg.BarGraphItem] = []
-        super().__init__("Degree l", "Amplitude √A<sub>l</sub> / μ [%]", placeholder, parent)
+        super().__init__(tr("Degree l"), tr("Amplitude √A<sub>l</sub> / μ [%]"), placeholder, parent)
         self._timer = QTimer(self, interval=THROTTLE, singleShot=True)
         self._timer.timeout.connect(self._announce)
         self._due = False
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self.setAccessibleName("Spectrum of the model; left and right choose a degree, up and down change it")
+        self.setAccessibleName(
+            tr("Spectrum of the model; left and right choose a degree, up and down change it")
+        )
         self.canvas.viewport().installEventFilter(self)
 
     def value(self) -> NDArray[np.float64]:
@@ -104,8 +107,8 @@ class SpectrumEditor(Plot):
         self.canvas.setRange(
             xRange=(0.3, count + 0.7), yRange=(LOWEST, HIGHEST), padding=0.0, disableAutoRange=True
         )
-        entries = [(self.theme.fit, "drag the bars" if self._editable else "as fitted")]
-        self.set_legend([*entries, (self.theme.border, "as fitted")] if self.is_changed() else entries)
+        entries = [(self.theme.fit, tr("drag the bars") if self._editable else tr("as fitted"))]
+        self.set_legend([*entries, (self.theme.border, tr("as fitted"))] if self.is_changed() else entries)
 
     def value_at(self, place: QPointF) -> str:
         seen = self.canvas.plotItem.vb.mapSceneToView(place)
@@ -119,7 +122,7 @@ class SpectrumEditor(Plot):
             (degree, 100.0 * float(value), 100.0 * float(fitted))
             for degree, (value, fitted) in enumerate(zip(self._values, self._fitted, strict=True), start=1)
         ]
-        return ("l", "amplitude [%]", "as fitted [%]"), rows
+        return ("l", tr("amplitude [%]"), tr("as fitted [%]")), rows
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         if not self._editable or not isinstance(event, QMouseEvent) or not len(self._values):

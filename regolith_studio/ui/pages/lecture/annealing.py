@@ -16,6 +16,7 @@ from regolith_studio.ui.layout import side_by_side, stacked
 from regolith_studio.ui.pages.lecture import words
 from regolith_studio.ui.pages.lecture.transport import Transport
 from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.views.camera_link import CameraLink
 from regolith_studio.ui.views.factory import make_view
 from regolith_studio.ui.views.view_frame import ViewFrame
@@ -26,7 +27,7 @@ from regolith_studio.ui.widgets.labels import remark
 
 SEEN_THROUGH = 0.6
 """Opacity of a polyhedron with the edges of another one about it."""
-WAIT = "The particle is annealed …"
+WAIT = mark("The particle is annealed …")
 
 
 class AnnealingView(QWidget):
@@ -48,19 +49,19 @@ class AnnealingView(QWidget):
             name: ViewFrame(make_view(kind, ink), f"lecture_{name}") for name in ("annealing", "exact")
         }
         self.link = CameraLink([frame.view for frame in self.frames.values()])
-        self.sentence = remark(WAIT, role="")
+        self.sentence = remark(tr(WAIT), role="")
         self.sentence.setObjectName("annealing_sentence")
-        self.loss_formula = FormulaLabel("Eq. 9 with its numbers")
-        self.rule = FormulaLabel("The proposal, T(k) and the decision with their numbers")
-        self.exact_formula = FormulaLabel("Eq. 9 of the exact method")
-        self.loss = CurvePlot("Step k", "Loss L (Eq. 9)", WAIT)
-        self.chance = CurvePlot("Step k", "Probability", WAIT)
-        self.terms = BarPlot("Term of Eq. 9", "α ε", WAIT, unit="")
+        self.loss_formula = FormulaLabel(tr("Eq. 9 with its numbers"))
+        self.rule = FormulaLabel(tr("The proposal, T(k) and the decision with their numbers"))
+        self.exact_formula = FormulaLabel(tr("Eq. 9 of the exact method"))
+        self.loss = CurvePlot(tr("Step k"), tr("Loss L (Eq. 9)"), tr(WAIT))
+        self.chance = CurvePlot(tr("Step k"), tr("Probability"), tr(WAIT))
+        self.terms = BarPlot(tr("Term of Eq. 9"), "α ε", tr(WAIT), unit="")
         for plot, name in ((self.loss, "loss"), (self.chance, "chance"), (self.terms, "terms")):
             plot.setObjectName(f"annealing_{name}")
-        self.frames["annealing"].set_texts("Annealing")
-        self.frames["exact"].set_texts("Exact method")
-        self.transport = Transport("annealing", "step")
+        self.frames["annealing"].set_texts(tr("Annealing"))
+        self.frames["exact"].set_texts(tr("Exact method"))
+        self.transport = Transport("annealing", mark("step"))
         self.transport.stepChanged.connect(self._show_step)
         self._arrange()
 
@@ -77,7 +78,7 @@ class AnnealingView(QWidget):
 
     def wait(self, sentence: str = WAIT) -> None:
         """Say what is being done, or why nothing is."""
-        self.sentence.setText(sentence)
+        self.sentence.setText(tr(sentence))
 
     @property
     def step(self) -> AnnealingStep | None:
@@ -124,8 +125,13 @@ class AnnealingView(QWidget):
         self.frames["annealing"].view.draw(partial(self._fill_step, step))
         solid = step.polyhedron
         self.frames["annealing"].set_texts(
-            f"Annealing, step {step.number} of {len(lesson.steps) - 1}",
-            f"loss {step.evaluation.loss:.4g}; {solid.n_faces} facets of {lesson.n_faces} planes",
+            tr("Annealing, step {number} of {count}", number=step.number, count=len(lesson.steps) - 1),
+            tr(
+                "loss {loss:.4g}; {facets} facets of {planes} planes",
+                loss=step.evaluation.loss,
+                facets=solid.n_faces,
+                planes=lesson.n_faces,
+            ),
         )
         self._plot_loss(number)
         self._plot_chance(number)
@@ -151,7 +157,7 @@ class AnnealingView(QWidget):
         exact = lesson.exact if lesson is not None else None
         if lesson is None or exact is None:
             frame.view.draw(surfaces.clear)
-            frame.set_texts("Exact method", "being found …")
+            frame.set_texts(tr("Exact method"), tr("being found …"))
             self.exact_formula.set_lines()
             return
         veil = Shape(FIT, lesson.imitated)
@@ -164,7 +170,12 @@ class AnnealingView(QWidget):
 
         frame.view.draw(fill)
         frame.set_texts(
-            "Exact method", f"loss {exact.loss:.4g}; {exact.n_faces} facets; veil: what is imitated"
+            tr("Exact method"),
+            tr(
+                "loss {loss:.4g}; {facets} facets; veil: what is imitated",
+                loss=exact.loss,
+                facets=exact.n_faces,
+            ),
         )
         self.exact_formula.set_lines(*words.exact_lines(lesson))
 
@@ -174,11 +185,13 @@ class AnnealingView(QWidget):
             return
         seen = lesson.steps[: number + 1]
         k = tuple(float(step.number) for step in seen)
-        present = Curve("present", theme.polyhedron, k, tuple(step.evaluation.loss for step in seen))
+        present = Curve(tr("present"), theme.polyhedron, k, tuple(step.evaluation.loss for step in seen))
         curves = [present, *self._proposals(seen)]
         if lesson.exact is not None:
             ends = (0.0, float(len(lesson.steps) - 1))
-            curves.append(Curve("exact method", theme.particle, ends, (lesson.exact.loss,) * 2, dash=True))
+            curves.append(
+                Curve(tr("exact method"), theme.particle, ends, (lesson.exact.loss,) * 2, dash=True)
+            )
         self.loss.set_curves(curves)
         self.loss.set_marker(float(number))
         highest = max(step.evaluation.loss for step in lesson.steps)
@@ -188,9 +201,9 @@ class AnnealingView(QWidget):
     def _proposals(self, seen: tuple[AnnealingStep, ...]) -> list[Curve]:
         curves = []
         for mood, label, colour in (
-            (words.ACCEPTED, "better", self._theme.good),
-            (words.LUCKY, "worse, accepted", self._theme.fit),
-            (words.REFUSED, "refused", self._theme.bad),
+            (words.ACCEPTED, tr("better"), self._theme.good),
+            (words.LUCKY, tr("worse, accepted"), self._theme.fit),
+            (words.REFUSED, tr("refused"), self._theme.bad),
         ):
             chosen = [
                 (float(step.number), step.move.proposed.loss)
@@ -212,7 +225,7 @@ class AnnealingView(QWidget):
         self.chance.set_curves(
             [
                 Curve("T(k)", theme.fit, tuple(map(float, k)), chance),
-                Curve("drawn u", theme.muted, tuple(x), tuple(y), markers=True, line=False),
+                Curve(tr("drawn u"), theme.muted, tuple(x), tuple(y), markers=True, line=False),
             ]
         )
         self.chance.set_marker(float(number))
@@ -225,13 +238,13 @@ class AnnealingView(QWidget):
             return
         move = step.move
         before = words.terms_of(lesson.weights, move.before if move else step.evaluation)
-        series = [BarSeries("before", theme.particle, tuple(before.values()))]
+        series = [BarSeries(tr("before"), theme.particle, tuple(before.values()))]
         if move is not None and move.proposed is not None:
             proposed = words.terms_of(lesson.weights, move.proposed)
-            series.append(BarSeries("proposed", self.colour_of(step), tuple(proposed.values())))
+            series.append(BarSeries(tr("proposed"), self.colour_of(step), tuple(proposed.values())))
         if lesson.exact is not None:
             exact = words.exact_terms(lesson)
-            series.append(BarSeries("exact method", theme.polyhedron, tuple(exact.values())))
+            series.append(BarSeries(tr("exact method"), theme.polyhedron, tuple(exact.values())))
         self.terms.set_bars([words.plain(key) for key in before], series)
 
     def _arrange(self) -> None:
@@ -242,7 +255,7 @@ class AnnealingView(QWidget):
         column.addWidget(self.sentence)
         for each in (self.rule, self.loss_formula):
             column.addWidget(each)
-        column.addWidget(QLabel("Exact method:"))
+        column.addWidget(QLabel(tr("Exact method:")))
         column.addWidget(self.exact_formula)
         column.addStretch(1)
         above = side_by_side([*self.frames.values(), said], [500, 500, 560], stretch=2)

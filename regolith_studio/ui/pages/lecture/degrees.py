@@ -11,6 +11,7 @@ from regolith_studio.ui.layout import side_by_side
 from regolith_studio.ui.pages.lecture import words
 from regolith_studio.ui.pages.lecture.transport import Transport
 from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.translation import mark, tr, tr_count
 from regolith_studio.ui.views.camera_link import CameraLink
 from regolith_studio.ui.views.factory import make_view
 from regolith_studio.ui.views.view_frame import ViewFrame
@@ -18,7 +19,7 @@ from regolith_studio.ui.widgets.curve_plot import Curve, CurvePlot
 from regolith_studio.ui.widgets.formula import FormulaLabel
 from regolith_studio.ui.widgets.labels import remark
 
-WAIT = "The particle is fitted …"
+WAIT = mark("The particle is fitted …")
 
 
 class DegreesView(QWidget):
@@ -41,12 +42,12 @@ class DegreesView(QWidget):
             name: ViewFrame(make_view(kind, ink), f"degrees_{name}") for name in ("particle", "fit")
         }
         self.link = CameraLink([frame.view for frame in self.frames.values()])
-        self.sentence = remark(WAIT, role="")
+        self.sentence = remark(tr(WAIT), role="")
         self.sentence.setObjectName("degrees_sentence")
-        self.formula = FormulaLabel("Eq. 4 with its numbers")
-        self.errors = CurvePlot("Degree l<sub>max</sub>", "Error [%]", WAIT, log_y=True)
+        self.formula = FormulaLabel(tr("Eq. 4 with its numbers"))
+        self.errors = CurvePlot(tr("Degree l<sub>max</sub>"), tr("Error [%]"), tr(WAIT), log_y=True)
         self.errors.setObjectName("degrees_errors")
-        self.transport = Transport("degrees", "degree")
+        self.transport = Transport("degrees", mark("degree"))
         self.transport.stepChanged.connect(self._show_step)
         self._arrange()
 
@@ -55,11 +56,11 @@ class DegreesView(QWidget):
         self._particle, self._steps = mesh, ()
         self.transport.pause()
         self.transport.set_count(0)
-        self.frames["particle"].set_texts(f"CT particle, {name}")
-        self.frames["fit"].set_texts("Spherical-harmonics fit")
+        self.frames["particle"].set_texts(tr("CT particle, {name}", name=name))
+        self.frames["fit"].set_texts(tr("Spherical-harmonics fit"))
         self.frames["particle"].view.draw(lambda plotter: surfaces.show_particle(plotter, mesh))
         self.frames["fit"].view.draw(surfaces.clear)
-        self.sentence.setText(WAIT)
+        self.sentence.setText(tr(WAIT))
         self.link.frame(mesh.vertices)
 
     def show_steps(self, steps: tuple[DegreeStep, ...]) -> None:
@@ -94,10 +95,11 @@ class DegreesView(QWidget):
         self.sentence.setText(words.degree_sentence(step))
         self.formula.set_lines(*words.degree_lines(step))
         count = (step.l_max + 1) ** 2
+        degree = f"l<sub>max</sub>&nbsp;=&nbsp;{step.l_max}"
         self.frames["fit"].set_texts(
-            f"Spherical-harmonics fit, l<sub>max</sub>&nbsp;=&nbsp;{step.l_max}",
-            f"{count:,} coefficients" if count > 1 else "1 coefficient",
-            f"Fit, l<sub>max</sub>&nbsp;=&nbsp;{step.l_max}",
+            tr("Spherical-harmonics fit, {degree}", degree=degree),
+            tr_count("1 coefficient", "{count:,} coefficients", count),
+            tr("Fit, {degree}", degree=degree),
         )
         if mesh is None:
             self.frames["fit"].view.draw(surfaces.clear)
@@ -119,7 +121,7 @@ class DegreesView(QWidget):
             for place, key in enumerate(LOSS_KEYS)
         ]
         radial = tuple(max(100 * step.radial_error, 1e-4) for step in known)
-        curves.append(Curve("radius (rms)", self._theme.particle, x, radial, markers=True))
+        curves.append(Curve(tr("radius (rms)"), self._theme.particle, x, radial, markers=True))
         self.errors.set_curves(curves)
         self.errors.canvas.setXRange(0, max(len(self._steps) - 1, 1), padding=0.02)
 

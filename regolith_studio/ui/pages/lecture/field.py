@@ -12,6 +12,7 @@ from regolith_studio.scene.fields import show_field
 from regolith_studio.ui.layout import side_by_side
 from regolith_studio.ui.pages.lecture import words
 from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.camera_link import CameraLink
 from regolith_studio.ui.views.factory import make_view
 from regolith_studio.ui.views.view_frame import ViewFrame
@@ -45,13 +46,13 @@ class FieldView(QWidget):
         self.link = CameraLink([frame.view for frame in self.frames.values()])
         self.sentence = remark("", role="")
         self.sentence.setObjectName("field_sentence")
-        self.formula = FormulaLabel("The field with its amplitudes")
+        self.formula = FormulaLabel(tr("The field with its amplitudes"))
         self.material = ChoiceBox(
-            "field_material", "Material", {key: card.label for key, card in materials().items()}
+            "field_material", tr("Material"), {key: card.label for key, card in materials().items()}
         )
-        self.spectrum = SpectrumEditor("No material.")
+        self.spectrum = SpectrumEditor(tr("No material."))
         self.spectrum.setObjectName("field_spectrum")
-        self.reset, self.another = QPushButton("Reset the spectrum"), QPushButton("Draw anew")
+        self.reset, self.another = QPushButton(tr("Reset the spectrum")), QPushButton(tr("Draw anew"))
         self.reset.setObjectName("field_reset")
         self.another.setObjectName("field_another")
         self._arrange()
@@ -113,8 +114,12 @@ class FieldView(QWidget):
         self.frames["grain"].view.draw(
             lambda plotter: show_field(plotter, drawn.mesh, drawn.values, span, ink)
         )
-        self.frames["sphere"].set_texts("The field on the sphere", "ln(r / mean), blue inwards, red outwards")
-        self.frames["grain"].set_texts("The particle", f"equivalent radius {radius:.3g} µm")
+        self.frames["sphere"].set_texts(
+            tr("The field on the sphere"), tr("ln(r / mean), blue inwards, red outwards")
+        )
+        self.frames["grain"].set_texts(
+            tr("The particle"), tr("equivalent radius {radius:.3g} µm", radius=radius)
+        )
         if again:
             self.link.frame(drawn.mesh.vertices)
 
@@ -143,8 +148,12 @@ class FieldView(QWidget):
 def _sentence(drawn: DrawnField, amplitudes: FloatArray, seed: int) -> str:
     loudest = int(amplitudes.argmax()) + 1
     expected = float(np.sqrt(((2 * np.arange(1, len(amplitudes) + 1) + 1) * amplitudes**2).sum()))
-    return (
-        f"Draw {seed + 1}. The radius strays by {float(drawn.values.std()):.1%} from its mean; {expected:.1%}"
-        f" is expected over many draws. Degree {loudest} is the strongest:"
-        f" {100 * amplitudes[loudest - 1]:.2g} %."
+    return tr(
+        "Draw {number}. The radius strays by {found:.1%} from its mean; {expected:.1%} is expected over many"
+        " draws. Degree {loudest} is the strongest: {share:.2g} %.",
+        number=seed + 1,
+        found=float(drawn.values.std()),
+        expected=expected,
+        loudest=loudest,
+        share=100 * amplitudes[loudest - 1],
     )

@@ -16,6 +16,7 @@ from regolith_studio.ui.pages.lecture.degrees import DegreesView
 from regolith_studio.ui.pages.lecture.field import FieldView
 from regolith_studio.ui.pages.lecture.transport import Transport
 from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.choice_box import ChoiceBox
 
 LETTERS = 1.35
@@ -36,8 +37,8 @@ class LecturePage(PageWidget):
         self._seed = 0
         self.annealing, self.degrees = AnnealingView(context.views), DegreesView(context.views)
         self.field = FieldView(context.views)
-        self.particle = ChoiceBox("lecture_particle", "Particle", {})
-        self.another = QPushButton("Another seed")
+        self.particle = ChoiceBox("lecture_particle", tr("Particle"), {})
+        self.another = QPushButton(tr("Another seed"))
         self.another.setObjectName("lecture_another")
         self.request = QLabel()
         self.request.setProperty("role", "remark")
@@ -129,7 +130,7 @@ class LecturePage(PageWidget):
             if self.field.drawn is None:
                 self.field.take_material()
         elif entry is None:
-            self.annealing.wait("Open a particle first.")
+            self.annealing.wait(tr("Open a particle first."))
         elif self.lesson == "annealing":
             self._anneal(entry)
         else:
@@ -149,13 +150,24 @@ class LecturePage(PageWidget):
         self._made_for["annealing"] = wanted
         order = choices.replaced(method="annealing", settings=settings, seed=seed).order
         index = [each.id for each in self._session.particles].index(entry.id)
-        imitated = f"the fit at l<sub>max</sub> = {choices.l_max}" if fitted else "the particle"
-        self.request.setText(f"{choices.n_faces} planes, imitating {imitated}, seed {seed}")
+        imitated = (
+            tr("the fit at l<sub>max</sub> = {degree}", degree=choices.l_max)
+            if fitted
+            else tr("the particle")
+        )
+        self.request.setText(
+            tr(
+                "{count} planes, imitating {imitated}, seed {seed}",
+                count=choices.n_faces,
+                imitated=imitated,
+                seed=seed,
+            )
+        )
         self.annealing.wait()
         show = self.annealing.show_lesson
         job = Job(anneal_slowly, (mesh, order, index))
         self._context.start(
-            "Annealing step by step",
+            tr("Annealing step by step"),
             job,
             show,
             partial=show,
@@ -166,7 +178,7 @@ class LecturePage(PageWidget):
 
     def _stopped(self) -> None:
         self._made_for.pop("annealing", None)
-        self.annealing.wait("Stopped. Choose another seed, or come back to this page, to begin again.")
+        self.annealing.wait(tr("Stopped. Choose another seed, or come back to this page, to begin again."))
 
     def _refused(self, failure: Failed) -> None:
         self.annealing.wait(failure.sentence)
@@ -179,7 +191,7 @@ class LecturePage(PageWidget):
         self.degrees.show_particle(entry.particle.mesh, entry.id)
         show = self.degrees.show_steps
         job = Job(grow_fit, (entry.particle.mesh, fit))
-        self._context.start("Growing the fit", job, show, partial=show, lane="degrees")
+        self._context.start(tr("Growing the fit"), job, show, partial=show, lane="degrees")
 
     def _show_particles(self) -> None:
         ids = [entry.id for entry in self._session.particles]
@@ -214,7 +226,7 @@ class LecturePage(PageWidget):
         self.set_theme(current_theme())
 
     def _place(self) -> None:
-        titles = ("Annealing", "Degrees of the fit", "Random field")
+        titles = (tr("Annealing"), tr("Degrees of the fit"), tr("Random field"))
         for widget, title in zip((self.annealing, self.degrees, self.field), titles, strict=True):
             self.tabs.addTab(widget, title)
         row = QHBoxLayout()

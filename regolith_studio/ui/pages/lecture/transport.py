@@ -3,10 +3,17 @@
 from PySide6.QtCore import QSignalBlocker, Qt, QTimer, Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QSlider, QWidget
 
+from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
 
 SPEED = NumberSpec(
-    "Speed", "Steps a second", 0.5, 20.0, 0.5, suffix=" /s", tip="Steps a second while it plays by itself."
+    mark("Speed"),
+    mark("Steps a second"),
+    0.5,
+    20.0,
+    0.5,
+    suffix=" /s",
+    tip=mark("Steps a second while it plays by itself."),
 )
 USUAL_SPEED = 2.0
 
@@ -27,20 +34,20 @@ class Transport(QWidget):
     def __init__(self, name: str, noun: str, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._noun = noun
-        self.back, self.play, self.forward = QPushButton("◀"), QPushButton("Play"), QPushButton("▶")
+        self.back, self.play, self.forward = QPushButton("◀"), QPushButton(tr("Play")), QPushButton("▶")
         self.first = QPushButton("|◀")
         for button, key, words in (
-            (self.first, "first", "To the beginning"),
-            (self.back, "back", "One step back"),
-            (self.play, "play", "Play or pause"),
-            (self.forward, "forward", "One step"),
+            (self.first, "first", tr("To the beginning")),
+            (self.back, "back", tr("One step back")),
+            (self.play, "play", tr("Play or pause")),
+            (self.forward, "forward", tr("One step")),
         ):
             button.setObjectName(f"{name}_{key}")
             button.setAccessibleName(words)
             button.setToolTip(words)
         self.slider = QSlider(Qt.Orientation.Horizontal)
         self.slider.setObjectName(f"{name}_step")
-        self.slider.setAccessibleName(f"Which {noun}")
+        self.slider.setAccessibleName(tr("Which {noun}", noun=tr(noun)))
         self.speed = NumberSlider(SPEED)
         self.speed.setObjectName(f"{name}_speed")
         self.speed.setMaximumWidth(300)
@@ -92,13 +99,13 @@ class Transport(QWidget):
         elif self.slider.maximum() > 0:
             if self.step == self.slider.maximum():
                 self.slider.setValue(0)
-            self.play.setText("Pause")
+            self.play.setText(tr("Pause"))
             self._timer.start(self._interval())
 
     def pause(self) -> None:
         """Stand still."""
         self._timer.stop()
-        self.play.setText("Play")
+        self.play.setText(tr("Play"))
 
     def _interval(self) -> int:
         return round(1000 / max(float(self.speed.value()), 0.1))
@@ -114,7 +121,9 @@ class Transport(QWidget):
         self.stepChanged.emit(step)
 
     def _tell(self) -> None:
-        self.clock.setText(f"{self._noun} {self.step} of {self.slider.maximum()}")
+        self.clock.setText(
+            tr("{noun} {at} of {last}", noun=tr(self._noun), at=self.step, last=self.slider.maximum())
+        )
 
     def _arrange(self) -> None:
         row = QHBoxLayout(self)

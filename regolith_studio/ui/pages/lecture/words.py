@@ -7,6 +7,7 @@ from regolith_studio.coarsening.methods.annealing import AnnealingSettings
 from regolith_studio.coarsening.weights import JACCARD, LossWeights
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.jobs.lecturing import AnnealingLesson, AnnealingStep, DegreeStep
+from regolith_studio.ui.translation import tr
 
 TERMS = (JACCARD, *LOSS_KEYS)
 REFUSED, ACCEPTED, LUCKY, START = "refused", "accepted", "lucky", "start"
@@ -16,6 +17,12 @@ A_LINE = 4
 """Terms of the loss on one line."""
 GENERAL_LOSS = r"$L=\alpha_J\,J+\sum_i\alpha_i\,\varepsilon_i$"
 GENERAL_SERIES = r"$r(\theta,\varphi)=\sum_{l=0}^{l_{max}}\,\sum_{m=-l}^{l}c_{lm}\,Y_{lm}(\theta,\varphi)$"
+
+
+def in_a_sentence(label: str) -> str:
+    """A label in the middle of a sentence: small in English, as it is in languages whose nouns are not."""
+    shown = tr(label)
+    return shown.lower() if shown == label else shown
 
 
 def symbol(key: str) -> str:
@@ -74,13 +81,13 @@ def decision_line(step: AnnealingStep) -> str:
     """The comparison that decides."""
     move = step.move
     if move is None:
-        return r"$\Delta L<0\;$ or $\;u<T(k)\quad\Rightarrow\quad$ accept"
+        return r"$\Delta L<0\;$ or $\;u<T(k)\quad\Rightarrow\quad$ " + tr("accept")
     if move.proposed is None:
-        return r"no polyhedron $\quad\Rightarrow\quad$ refuse"
+        return tr("no polyhedron") + r" $\quad\Rightarrow\quad$ " + tr("refuse")
     change = move.proposed.loss - move.before.loss
     if move.better:
-        return rf"$\Delta L={_signed(change)}<0\quad\Rightarrow\quad$ accept"
-    sign, end = ("<", "accept") if move.accepted else (r"\geq ", "refuse")
+        return rf"$\Delta L={_signed(change)}<0\quad\Rightarrow\quad$ " + tr("accept")
+    sign, end = ("<", tr("accept")) if move.accepted else (r"\geq ", tr("refuse"))
     drawn = rf"u={_number(move.drawn)}{sign}T(k)"
     return rf"$\Delta L={_signed(change)}\geq 0,\quad {drawn}\quad\Rightarrow\quad$ {end}"
 
@@ -98,23 +105,46 @@ def sentence_of(step: AnnealingStep, lesson: AnnealingLesson) -> str:
     """What happened, in words."""
     move = step.move
     if move is None:
-        return (
-            f"The start: the convex hull, decimated to {lesson.n_faces} planes. In each step one plane is"
-            " moved at random, and the move is taken or not."
+        return tr(
+            "The start: the convex hull, decimated to {count} planes. In each step one plane is moved at"
+            " random, and the move is taken or not.",
+            count=lesson.n_faces,
         )
-    moved = f"Plane {move.plane + 1} of {len(move.points)} is moved by {step.distance:.3g} µm"
+    moved = tr(
+        "Plane {number} of {count} is moved by {distance:.3g} µm",
+        number=move.plane + 1,
+        count=len(move.points),
+        distance=step.distance,
+    )
     if step.facet is None:
-        moved += ", one that bounds no facet at the moment"
+        moved += tr(", one that bounds no facet at the moment")
     if move.proposed is None:
-        return f"{moved}: the half-spaces bound no polyhedron any more. Refused without asking T(k)."
-    losses = f"from {_number(move.before.loss)} to {_number(move.proposed.loss)}"
+        return tr(
+            "{moved}: the half-spaces bound no polyhedron any more. Refused without asking T(k).", moved=moved
+        )
+    losses = {"before": _number(move.before.loss), "after": _number(move.proposed.loss)}
     if move.better:
-        return f"{moved}: the loss falls {losses}. Better, so it is accepted."
-    how = "stays what it is" if move.proposed.loss == move.before.loss else f"rises {losses}"
+        return tr(
+            "{moved}: the loss falls from {before} to {after}. Better, so it is accepted.",
+            moved=moved,
+            **losses,
+        )
+    same = move.proposed.loss == move.before.loss
+    how = tr("stays what it is") if same else tr("rises from {before} to {after}", **losses)
     chance = f"{move.probability:.2%}"
     if move.accepted:
-        return f"{moved}: the loss {how}. Accepted all the same: luck, of which there was {chance}."
-    return f"{moved}: the loss {how}. Refused; there was a chance of {chance} that it would have been taken."
+        return tr(
+            "{moved}: the loss {how}. Accepted all the same: luck, of which there was {chance}.",
+            moved=moved,
+            how=how,
+            chance=chance,
+        )
+    return tr(
+        "{moved}: the loss {how}. Refused; there was a chance of {chance} that it would have been taken.",
+        moved=moved,
+        how=how,
+        chance=chance,
+    )
 
 
 def degree_lines(step: DegreeStep) -> tuple[str, ...]:
@@ -122,7 +152,7 @@ def degree_lines(step: DegreeStep) -> tuple[str, ...]:
     count = (step.l_max + 1) ** 2
     return (
         GENERAL_SERIES,
-        rf"$l_{{max}}={step.l_max}:\quad (l_{{max}}+1)^2={count}$ coefficients,"
+        rf"$l_{{max}}={step.l_max}:\quad (l_{{max}}+1)^2={count}$ " + tr("coefficients") + ","
         rf"$\quad \frac{{c_{{00}}}}{{\sqrt{{4\pi}}}}={_number(step.mean_radius)}\;\mu m$",
     )
 
@@ -130,13 +160,24 @@ def degree_lines(step: DegreeStep) -> tuple[str, ...]:
 def degree_sentence(step: DegreeStep) -> str:
     """What the fit keeps at a degree, in words."""
     if step.mesh is None:
-        return f"At {DEGREE} = {step.l_max} the series has a negative radius somewhere: it is no surface."
-    names = {0: "a sphere", 1: "a sphere that is shifted a little", 2: "nearly an ellipsoid"}
-    shape = names.get(step.l_max, "finer and finer bumps")
-    errors = ", ".join(f"{CATALOGUE[key].label.lower()} {value:.1%}" for key, value in step.errors.items())
-    return (
-        f"{DEGREE} = {step.l_max}: {shape}. The radius is missed by {step.radial_error:.1%} in the root mean"
-        f" square; errors against the particle: {errors}."
+        return tr(
+            "At {symbol} = {degree} the series has a negative radius somewhere: it is no surface.",
+            symbol=DEGREE,
+            degree=step.l_max,
+        )
+    names = {0: tr("a sphere"), 1: tr("a sphere that is shifted a little"), 2: tr("nearly an ellipsoid")}
+    shape = names.get(step.l_max, tr("finer and finer bumps"))
+    errors = ", ".join(
+        f"{in_a_sentence(tr(CATALOGUE[key].label))} {value:.1%}" for key, value in step.errors.items()
+    )
+    return tr(
+        "{symbol} = {degree}: {shape}. The radius is missed by {missed:.1%} in the root mean square; errors"
+        " against the particle: {errors}.",
+        symbol=DEGREE,
+        degree=step.l_max,
+        shape=shape,
+        missed=step.radial_error,
+        errors=errors,
     )
 
 

@@ -4,6 +4,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QTableWidget, QTableWidgetItem, QWidget
 
 from regolith_studio.dem.engine_table import HEADINGS, engine_rows
+from regolith_studio.ui.translation import tr
 
 
 class EnginePanel(QTableWidget):
@@ -13,14 +14,14 @@ class EnginePanel(QTableWidget):
         rows = engine_rows()
         super().__init__(len(HEADINGS) + 1, len(rows), parent)
         self.setObjectName("repose_engines")
-        self.setAccessibleName("Engines")
+        self.setAccessibleName(tr("Engines"))
         self.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
         self.setSelectionMode(QAbstractItemView.SelectionMode.NoSelection)
         self.setShowGrid(False)
         self.setHorizontalHeaderLabels([row["label"] for row in rows])
-        self.setVerticalHeaderLabels(["Found", *HEADINGS.values()])
+        self.setVerticalHeaderLabels([tr("Found"), *map(tr, HEADINGS.values())])
         for column, row in enumerate(rows):
-            texts = [row["version"] or row["problem"], *(row[key] for key in HEADINGS)]
+            texts = [row["version"] or row["problem"], *(tr(row[key]) for key in HEADINGS)]
             for at, text in enumerate(texts):
                 item = QTableWidgetItem(text)
                 item.setTextAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop)

@@ -11,15 +11,18 @@ from regolith_studio.errors import RegolithError
 from regolith_studio.readers.positions import read_positions
 from regolith_studio.session.outputs.staging import json_bytes, staged_folder
 from regolith_studio.studies.repose_figures import write_section_figure
+from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.toast import Toast
 
-POSITIONS = "Positions (*.npz *.csv *.txt *.dat *.xyz *.dump *.lammpstrj *.vtk *.vtp *.vtu);;All files (*)"
+POSITIONS = mark(
+    "Positions (*.npz *.csv *.txt *.dat *.xyz *.dump *.lammpstrj *.vtk *.vtp *.vtu);;All files (*)"
+)
 UNITS = ("m", "cm", "mm", "um")
 
 
 def export_measurement(parent: QWidget, toast: Toast, pile: Pile, measured: ReposeMeasurement) -> None:
     """Ask for a folder and write ``repose.json``, ``sections.png`` and ``sections.svg``."""
-    name = QFileDialog.getExistingDirectory(parent, "Export figure and JSON")
+    name = QFileDialog.getExistingDirectory(parent, tr("Export figure and JSON"))
     if not name:
         return
     try:
@@ -30,25 +33,31 @@ def export_measurement(parent: QWidget, toast: Toast, pile: Pile, measured: Repo
     except RegolithError as error:
         toast.problem(str(error))
         return
-    toast.note(f"Figure and JSON are in {name}.")
+    toast.note(tr("Figure and JSON are in {name}.", name=name))
 
 
 def read_other(parent: QWidget, toast: Toast) -> Pile | None:
     """Ask for a file of positions, its unit, and a diameter if it has none; or ``None``."""
-    name, _ = QFileDialog.getOpenFileName(parent, "Measure positions", "", POSITIONS)
+    name, _ = QFileDialog.getOpenFileName(parent, tr("Measure positions"), "", tr(POSITIONS))
     if not name:
         return None
     try:
         if name.endswith(".npz"):
             return read_pile(Path(name))
-        unit, sure = QInputDialog.getItem(parent, "Unit", "Length unit of the file:", UNITS, 0, False)
+        unit, sure = QInputDialog.getItem(parent, tr("Unit"), tr("Length unit of the file:"), UNITS, 0, False)
         if not sure:
             return None
         found = read_positions(name, unit)
         diameters = found.diameters
         if diameters is None:
             number, sure = QInputDialog.getDouble(
-                parent, "Diameter", "The file has no diameters; one for all, in mm:", 1.0, 1e-6, 1e6, 4
+                parent,
+                tr("Diameter"),
+                tr("The file has no diameters; one for all, in mm:"),
+                1.0,
+                1e-6,
+                1e6,
+                4,
             )
             if not sure:
                 return None

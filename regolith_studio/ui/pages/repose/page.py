@@ -33,6 +33,7 @@ from regolith_studio.ui.pages.repose.study import StudyPanel
 from regolith_studio.ui.pages.repose.study_desk import StudyDesk
 from regolith_studio.ui.pages.repose.words import angle_in_words, checks_in_words, duration
 from regolith_studio.ui.theme import Theme
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import remark
 
 PREVIEW_DELAY = 250
@@ -55,7 +56,7 @@ class ReposePage(PageWidget):
         self.setup = SetupPanel()
         self.player = Player(context.views)
         self.x_z, self.y_z = SectionPlot("x"), SectionPlot("y")
-        self.verdict = remark("No pile yet.")
+        self.verdict = remark(tr("No pile yet."))
         self.verdict.setObjectName("repose_verdict")
         self.runs, self.study, self.engines = RunsPanel(), StudyPanel(), EnginePanel()
         self.studies = StudyDesk(context, self.study, self.setup, self._show_study_run)
@@ -66,7 +67,7 @@ class ReposePage(PageWidget):
         self._place()
         self._connect()
         context.wiring.refresh("shelf", self._take_dataset)
-        self.setup.tell(["Open a dataset, or make one from the open particles."])
+        self.setup.tell([tr("Open a dataset, or make one from the open particles.")])
         self._list_runs()
 
     # --- the page of the window ----------------------------------------------------------------
@@ -89,7 +90,7 @@ class ReposePage(PageWidget):
 
     def busy(self) -> str:
         if self._running:
-            return "A simulation of the angle of repose would be stopped."
+            return tr("A simulation of the angle of repose would be stopped.")
         return self.studies.busy()
 
     def state(self) -> dict[str, Any]:
@@ -112,7 +113,9 @@ class ReposePage(PageWidget):
 
     def open_dataset(self) -> None:
         """Ask for a dataset folder."""
-        if name := QFileDialog.getExistingDirectory(self, "Open a dataset", str(self.setup.dataset or "")):
+        if name := QFileDialog.getExistingDirectory(
+            self, tr("Open a dataset"), str(self.setup.dataset or "")
+        ):
             self.setup.set_dataset(Path(name))
 
     def make_dataset(self) -> None:
@@ -120,20 +123,20 @@ class ReposePage(PageWidget):
         session = self._context.session
         particles = [entry.particle for entry in session.particles]
         if not particles:
-            self._context.toast.problem("No particles are open; open some, or the shipped sample.")
+            self._context.toast.problem(tr("No particles are open; open some, or the shipped sample."))
             return
         folder = self._folder / "datasets" / "open-particles"
         options = DatasetOptions(name="open particles", preset=session.choices.preset, overwrite=True)
         job = Job(build_dataset_folder, (particles, session.choices.order, folder, options))
         self._context.start(
-            "Making a dataset", job, lambda built: self.setup.set_dataset(built.folder), lane=BUILD
+            tr("Making a dataset"), job, lambda built: self.setup.set_dataset(built.folder), lane=BUILD
         )
 
     def run_test(self) -> None:
         """Simulate what the panel says."""
         dataset = self.setup.dataset
         if dataset is None:
-            self._context.toast.problem("There is no dataset yet: open one, or make one first.")
+            self._context.toast.problem(tr("There is no dataset yet: open one, or make one first."))
             return
         try:
             order = self.setup.order()
@@ -145,7 +148,7 @@ class ReposePage(PageWidget):
         folder = self._new_folder(f"{dataset.name}-{order.case.n_particles}")
         self._set_running(True)
         self._context.start(
-            f"Angle of repose, {order.case.n_particles:,} particles",
+            tr("Angle of repose, {count:,} particles", count=order.case.n_particles),
             Job(simulate_repose, (dataset, folder, order)),
             self._finished,
             partial=self._show_moment,
@@ -164,19 +167,21 @@ class ReposePage(PageWidget):
         if pile is not None:
             ball = (self.player_ball(),)
             self.player.set_scene(ball, True, LiftingCylinderTest())
-            self.player.show_moment(pile, "Imported particles", f"{len(pile):,} particles")
+            self.player.show_moment(
+                pile, tr("Imported particles"), tr("{count:,} particles", count=len(pile))
+            )
             self._measure(pile)
 
     def export_run(self) -> None:
         """Ask for a folder and write Fig. 9 and the measurement."""
         if self._pile is None or self._measured is None:
-            self._context.toast.problem("There is no measured pile to export yet.")
+            self._context.toast.problem(tr("There is no measured pile to export yet."))
             return
         export_measurement(self, self._context.toast, self._pile, self._measured)
 
     def choose_folder(self) -> None:
         """Ask where runs are kept."""
-        if name := QFileDialog.getExistingDirectory(self, "Folder of runs", str(self._folder)):
+        if name := QFileDialog.getExistingDirectory(self, tr("Folder of runs"), str(self._folder)):
             self.set_runs_folder(Path(name))
 
     def set_runs_folder(self, folder: Path) -> None:
@@ -214,7 +219,12 @@ class ReposePage(PageWidget):
             return
         if order.case.n_particles > MOST_PREVIEWED:
             self.setup.tell(
-                [f"More than {MOST_PREVIEWED:,} particles are for other programs: export the dataset."]
+                [
+                    tr(
+                        "More than {count:,} particles are for other programs: export the dataset.",
+                        count=MOST_PREVIEWED,
+                    )
+                ]
             )
             return
 
@@ -223,7 +233,7 @@ class ReposePage(PageWidget):
 
         job = Job(preview_repose, (dataset, order.case))
         self._context.start(
-            "Drawing particles",
+            tr("Drawing particles"),
             job,
             show,
             failed=lambda each: self.setup.tell([], each.sentence),
@@ -232,18 +242,20 @@ class ReposePage(PageWidget):
 
     def _show_preview(self, order: Any, prepared: Prepared, pile: Pile) -> None:
         seconds = engine_named(order.engine).seconds(prepared, order.settings)
-        time = f"About {duration(seconds)} on one core."
+        time = tr("About {time} on one core.", time=duration(seconds))
         self.setup.tell([time, *consequences(prepared).sentences])
         self.player.set_scene(prepared.shapes, order.case.shapes == "spheres", order.case.test)
         self.player.show_moment(
-            pile, "Before the fall", f"{len(pile):,} particles of {prepared.dataset_name}"
+            pile,
+            tr("Before the fall"),
+            tr("{count:,} particles of {name}", count=len(pile), name=prepared.dataset_name),
         )
 
     # --- a run ---------------------------------------------------------------------------------
 
     def _show_moment(self, moment: Any) -> None:
         if isinstance(moment, Moment):
-            self.player.show_moment(moment.pile, "Running", moment.message)
+            self.player.show_moment(moment.pile, tr("Running"), moment.message)
 
     def _finished(self, run: ReposeRun) -> None:
         self._set_running(False)
@@ -263,7 +275,7 @@ class ReposePage(PageWidget):
 
     def _set_running(self, running: bool) -> None:
         self._running = running
-        self.setup.run.setText("Running …" if running else "Run the test")
+        self.setup.run.setText(tr("Running …") if running else tr("Run the test"))
         self.setup.run.setEnabled(not running and self.setup.dataset is not None)
 
     # --- what a run left -----------------------------------------------------------------------
@@ -294,7 +306,9 @@ class ReposePage(PageWidget):
         if pile is not None:
             self._measure(pile)
         else:
-            self._show_measurement(NoPile(f"This run was not finished: {run.document['state']}."))
+            self._show_measurement(
+                NoPile(tr("This run was not finished: {state}.", state=run.document["state"]))
+            )
 
     def _measure(self, pile: Pile) -> None:
         self._pile = pile
@@ -308,12 +322,12 @@ class ReposePage(PageWidget):
         except RegolithError as error:
             self._context.toast.problem(str(error))
             return
-        self._context.start("Measuring the pile", job, self._show_measurement, lane=MEASURE)
+        self._context.start(tr("Measuring the pile"), job, self._show_measurement, lane=MEASURE)
 
     def _show_measurement(self, measured: ReposeMeasurement | NoPile) -> None:
         if isinstance(measured, NoPile) or self._pile is None:
             self._measured = None
-            self.verdict.setText("There is no angle of repose.")
+            self.verdict.setText(tr("There is no angle of repose."))
             for plot in (self.x_z, self.y_z):
                 plot.show_nothing(str(measured))
             return
@@ -338,16 +352,18 @@ class ReposePage(PageWidget):
         row.addWidget(self.y_z)
         measured = stacked([sections, padded(self.verdict, 10, 0, 10, 4)], [300, 40], stretch=0)
         pages = [
-            (measured, "Sections"),
-            (self.runs, "Runs"),
-            (self.study, "Study"),
-            (self.engines, "Engines"),
+            (measured, tr("Sections")),
+            (self.runs, tr("Runs")),
+            (self.study, tr("Study")),
+            (self.engines, tr("Engines")),
         ]
         below = tabs("repose_tabs", pages)
         pictures = stacked([self.player, below], [480, 340], stretch=0)
         pictures.setObjectName("repose_pictures")
         controls = scrolled_column([self.setup])
-        columns = side_by_side([padded(controls, 6, 0, 0, 0), pictures], [350, 1180], stretch=1)
+        columns = side_by_side(
+            [padded(controls, 6, 0, 0, 0), padded(pictures, 0, 10, 0, 0)], [350, 1180], stretch=1
+        )
         columns.setObjectName("repose_columns")
         layout = QHBoxLayout(self)
         layout.setContentsMargins(0, 0, 8, 8)

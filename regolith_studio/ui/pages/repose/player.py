@@ -14,6 +14,7 @@ from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.scene import heap
 from regolith_studio.scene.cameras import framing_pose
 from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.camera_link import CameraLink
 from regolith_studio.ui.views.factory import make_view
 from regolith_studio.ui.views.view_frame import ViewFrame
@@ -37,8 +38,8 @@ class Player(QWidget):
         self.pile: Pile | None = None
         self.slider = QSlider(Qt.Orientation.Horizontal)
         self.slider.setObjectName("repose_time")
-        self.slider.setAccessibleName("Time of the run")
-        self.button = QPushButton("Play")
+        self.slider.setAccessibleName(tr("Time of the run"))
+        self.button = QPushButton(tr("Play"))
         self.button.setObjectName("repose_play")
         self.clock = QLabel()
         self.clock.setProperty("role", "remark")
@@ -57,7 +58,7 @@ class Player(QWidget):
         column.setContentsMargins(0, 0, 0, 0)
         column.addWidget(self.frame, 1)
         column.addLayout(row)
-        self.frame.set_texts("Lifting cylinder", "Choose a dataset to see the cylinder filled.")
+        self.frame.set_texts(tr("Lifting cylinder"), tr("Choose a dataset to see the cylinder filled."))
         self._set_files([])
 
     def set_theme(self, theme: Theme) -> None:
@@ -99,13 +100,13 @@ class Player(QWidget):
         elif self._files:
             if self.slider.value() == self.slider.maximum():
                 self.slider.setValue(0)
-            self.button.setText("Pause")
+            self.button.setText(tr("Pause"))
             self._timer.start()
 
     def stop(self) -> None:
         """Pause."""
         self._timer.stop()
-        self.button.setText("Play")
+        self.button.setText(tr("Play"))
 
     def release(self) -> None:
         """Give the graphics memory back."""
@@ -135,7 +136,7 @@ class Player(QWidget):
 
     def _show(self, pile: Pile) -> None:
         self.pile = pile
-        self.clock.setText(f"{pile.time:.2f} s  {pile.phase}")
+        self.clock.setText(f"{pile.time:.2f} s  {tr(pile.phase)}")
         self._draw()
 
     def _draw(self) -> None:

@@ -18,19 +18,33 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.dem.run_folder import RunSummary
 from regolith_studio.ui.theme import Theme
+from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.curve_plot import Curve, CurvePlot
 
 AGAINST: Mapping[str, tuple[str, ...]] = {
-    "Static friction": ("case", "contact", "static_friction"),
-    "Facets a particle": ("particles", "mean_faces"),
-    "Rolling resistance": ("case", "contact", "rolling_friction"),
-    "Gravity [m/s²]": ("case", "test", "gravity"),
-    "Wall friction": ("case", "test", "wall_friction"),
-    "Lift speed [m/s]": ("case", "test", "lift_speed"),
-    "Number of particles": ("case", "n_particles"),
-    "Seed": ("case", "seed"),
+    mark("Static friction"): ("case", "contact", "static_friction"),
+    mark("Facets a particle"): ("particles", "mean_faces"),
+    mark("Rolling resistance"): ("case", "contact", "rolling_friction"),
+    mark("Gravity [m/s²]"): ("case", "test", "gravity"),
+    mark("Wall friction"): ("case", "test", "wall_friction"),
+    mark("Lift speed [m/s]"): ("case", "test", "lift_speed"),
+    mark("Number of particles"): ("case", "n_particles"),
+    mark("Seed"): ("case", "seed"),
 }
-HEADINGS = ("Run", "Angle", "Interval", "N", "Friction", "Shapes", "Gravity", "Seed", "Engine", "Checks")
+SHAPES = (mark("polyhedra"), mark("spheres"))
+"""What runs are told apart by."""
+HEADINGS = (
+    mark("Run"),
+    mark("Angle"),
+    mark("Interval"),
+    "N",
+    mark("Friction"),
+    mark("Shapes"),
+    mark("Gravity"),
+    mark("Seed"),
+    mark("Engine"),
+    mark("Checks"),
+)
 
 
 class RunsPanel(QWidget):
@@ -43,8 +57,8 @@ class RunsPanel(QWidget):
         self._runs: list[RunSummary] = []
         self.table = QTableWidget(0, len(HEADINGS))
         self.table.setObjectName("repose_runs")
-        self.table.setAccessibleName("Runs")
-        self.table.setHorizontalHeaderLabels(HEADINGS)
+        self.table.setAccessibleName(tr("Runs"))
+        self.table.setHorizontalHeaderLabels([tr(each) for each in HEADINGS])
         self.table.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
         self.table.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)
         self.table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
@@ -53,9 +67,12 @@ class RunsPanel(QWidget):
         self.table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
         self.against = QComboBox()
         self.against.setObjectName("repose_against")
-        self.against.setAccessibleName("Compare the angle against")
-        self.against.addItems(list(AGAINST))
-        self.plot = CurvePlot("Static friction", "Angle [°]", "Runs that became piles are compared here.")
+        self.against.setAccessibleName(tr("Compare the angle against"))
+        for label, path in AGAINST.items():
+            self.against.addItem(tr(label), path)
+        self.plot = CurvePlot(
+            tr("Static friction"), tr("Angle [°]"), tr("Runs that became piles are compared here.")
+        )
         right = QWidget()
         column = QVBoxLayout(right)
         column.setContentsMargins(0, 4, 0, 0)
@@ -98,18 +115,18 @@ class RunsPanel(QWidget):
             self.chosen.emit(run)
 
     def _compare(self) -> None:
-        key = self.against.currentText()
+        path = tuple(self.against.currentData())
         points = sorted(
             (float(value), run.angle, run.document["case"]["shapes"])
             for run in self._runs
-            if run.angle is not None and (value := _at(run.document, AGAINST[key])) is not None
+            if run.angle is not None and (value := _at(run.document, path)) is not None
         )
         colours = {"polyhedra": self.plot.theme.polyhedron, "spheres": self.plot.theme.fit}
-        self.plot.set_labels(key, "Angle [°]")
+        self.plot.set_labels(self.against.currentText(), tr("Angle [°]"))
         self.plot.set_curves(
             [
                 Curve(
-                    shapes,
+                    tr(shapes),
                     colour,
                     tuple(x for x, _, kind in points if kind == shapes),
                     tuple(angle for _, angle, kind in points if kind == shapes),
@@ -132,14 +149,14 @@ def _cells(run: RunSummary) -> tuple[str, ...]:
     return (
         run.folder.name,
         angle,
-        f"{interval[0]:.1f} to {interval[1]:.1f}" if interval else "",
+        tr("{low:.1f} to {high:.1f}", low=interval[0], high=interval[1]) if interval else "",
         f"{case['n_particles']:,}",
         f"{case['contact']['static_friction']:g}",
-        str(case["shapes"]),
+        tr(str(case["shapes"])),
         f"{case['test']['gravity']:g}",
         str(case["seed"]),
         str(document["engine"]["label"]),
-        "" if checks is None else "passed" if checks["passed"] else "see tip",
+        "" if checks is None else tr("passed") if checks["passed"] else tr("see tip"),
     )
 
 

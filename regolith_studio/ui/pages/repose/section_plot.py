@@ -9,6 +9,7 @@ from regolith_studio.dem.evaluation.profile import Discs, project
 from regolith_studio.dem.evaluation.section import Section
 from regolith_studio.dem.pile import Pile
 from regolith_studio.studies.repose_figures import framed
+from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.plot import Numbers, Plot
 
 MILLIMETRE = 1e3
@@ -16,6 +17,8 @@ LEFT, RIGHT, BOTH = "#0072b2", "#e69f00", "#009e73"
 """Left flank, right flank, symmetric model, as in the paper's figure."""
 REACH = 12.0
 """Pixels from a surface point at which it is still told."""
+LEFT_SIDE = mark("left flank: {z:.3g} mm, {angle:.1f}°")
+RIGHT_SIDE = mark("right flank: {z:.3g} mm, {angle:.1f}°")
 
 
 class SectionPlot(Plot):
@@ -32,7 +35,9 @@ class SectionPlot(Plot):
         self._items: list[pg.GraphicsObject] = []
         self._cuts: dict[str, pg.InfiniteLine] = {}
         self._discs: Discs | None = None
-        super().__init__(f"{axis} [mm]", "z [mm]", "Run a test or open positions to see its section.", parent)
+        super().__init__(
+            f"{axis} [mm]", "z [mm]", tr("Run a test or open positions to see its section."), parent
+        )
         self.canvas.setAspectLocked(True)
 
     @property
@@ -50,9 +55,9 @@ class SectionPlot(Plot):
         two, one = section.asymmetric, section.symmetric
         self.set_legend(
             [
-                (LEFT, f"left {two.left.angle:.1f}°"),
-                (RIGHT, f"right {two.right.angle:.1f}°"),
-                (BOTH, f"symmetric {one.angle:.1f}°"),
+                (LEFT, tr("left {angle:.1f}°", angle=two.left.angle)),
+                (RIGHT, tr("right {angle:.1f}°", angle=two.right.angle)),
+                (BOTH, tr("symmetric {angle:.1f}°", angle=one.angle)),
             ]
         )
         self.set_empty(False)
@@ -78,7 +83,7 @@ class SectionPlot(Plot):
             return (), []
         profile, used = self._section.profile, self._section.used
         rows = zip(MILLIMETRE * profile.u, MILLIMETRE * profile.height, used, strict=True)
-        columns = (self._labels[0], "surface z [mm]", "in the regression")
+        columns = (self._labels[0], tr("surface z [mm]"), tr("in the regression"))
         return columns, [(float(u), float(z), "yes" if taken else "no") for u, z, taken in rows if z == z]
 
     def redraw(self) -> None:
@@ -160,15 +165,20 @@ def surface_words(section: Section, u: float, z: float, reach: float) -> str:
     at = int(np.nanargmin(away))
     x, high = float(profile.u[at]), float(profile.height[at])
     two, one = section.asymmetric, section.symmetric
-    side, flank = ("left", two.left) if x < two.apex[0] else ("right", two.right)
+    side, flank = (LEFT_SIDE, two.left) if x < two.apex[0] else (RIGHT_SIDE, two.right)
     line = flank.slope * x + flank.intercept
     tent = one.apex[1] - one.slope * abs(x - one.apex[0])
-    taken = "between the cuts" if section.used[at] else "not used: outside the cuts"
+    taken = tr("between the cuts") if section.used[at] else tr("not used: outside the cuts")
     return "\n".join(
         (
-            f"surface at {MILLIMETRE * x:.3g} mm: {MILLIMETRE * high:.3g} mm ({taken})",
-            f"{side} flank: {MILLIMETRE * line:.3g} mm, {flank.angle:.1f}°",
-            f"symmetric model: {MILLIMETRE * tent:.3g} mm, {one.angle:.1f}°",
+            tr(
+                "surface at {x:.3g} mm: {z:.3g} mm ({taken})",
+                x=MILLIMETRE * x,
+                z=MILLIMETRE * high,
+                taken=taken,
+            ),
+            tr(side, z=MILLIMETRE * line, angle=flank.angle),
+            tr("symmetric model: {z:.3g} mm, {angle:.1f}°", z=MILLIMETRE * tent, angle=one.angle),
         )
     )
 
@@ -182,4 +192,10 @@ def grain_words(discs: Discs | None, u: float, z: float) -> str:
         return ""
     grain = over[np.argmin(discs.radius[over])]
     size = 2 * MILLIMETRE * discs.radius[grain]
-    return f"grain {grain + 1}: {size:.3g} mm at {MILLIMETRE * u:.3g}, {MILLIMETRE * z:.3g} mm"
+    return tr(
+        "grain {number}: {size:.3g} mm at {x:.3g}, {z:.3g} mm",
+        number=grain + 1,
+        size=size,
+        x=MILLIMETRE * u,
+        z=MILLIMETRE * z,
+    )

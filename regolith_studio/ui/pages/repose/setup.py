@@ -21,17 +21,18 @@ from regolith_studio.dem.engines import ENGINES, engine_named
 from regolith_studio.dem.evaluation.settings import EvaluationSettings
 from regolith_studio.errors import InputError
 from regolith_studio.jobs.repose import ReposeOrder
+from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.collapsible import Collapsible
 from regolith_studio.ui.widgets.labels import ElidedLabel, heading, remark
 from regolith_studio.ui.widgets.preset_form import PresetForm
 from regolith_studio.ui.widgets.settings_form import SettingsForm
 
-PRESETS = {"Teaching": 300, "Usual": 1000, "Fine": 5000}
-SHAPES = {"The dataset's polyhedra": "polyhedra", "Spheres of the same volumes": "spheres"}
+PRESETS = {mark("Teaching"): 300, mark("Usual"): 1000, mark("Fine"): 5000}
+SHAPES = {mark("The dataset's polyhedra"): "polyhedra", mark("Spheres of the same volumes"): "spheres"}
 COHESION = {
-    "None": "none",
-    "As given (experimental)": "given",
-    "Scaled with the size (experimental)": "scaled",
+    mark("None"): "none",
+    mark("As given (experimental)"): "given",
+    mark("Scaled with the size (experimental)"): "scaled",
 }
 
 
@@ -48,41 +49,42 @@ class SetupPanel(QWidget):
         super().__init__(parent)
         self.setObjectName("repose_setup")
         self._dataset: Path | None = None
-        self.dataset_label = ElidedLabel("No dataset yet")
-        self.open_button = _button("Open …", "repose_open", "Choose a dataset folder")
+        self.dataset_label = ElidedLabel(tr("No dataset yet"))
+        self.open_button = _button(tr("Open …"), "repose_open", tr("Choose a dataset folder"))
         self.sample_button = _button(
-            "From open particles", "repose_sample", "Coarsen the open particles first"
+            tr("From open particles"), "repose_sample", tr("Coarsen the open particles first")
         )
         self.particles = QSpinBox()
         self.particles.setObjectName("repose_particles")
-        self.particles.setAccessibleName("Number of particles")
+        self.particles.setAccessibleName(tr("Number of particles"))
         self.particles.setRange(40, 400_000)
         self.particles.setSingleStep(100)
         self.particles.setKeyboardTracking(False)
         self.particles.setValue(PRESETS["Teaching"])
         self.seed = QSpinBox()
         self.seed.setObjectName("repose_seed")
-        self.seed.setAccessibleName("Seed")
+        self.seed.setAccessibleName(tr("Seed"))
         self.seed.setRange(0, 2**31 - 1)
-        self.shapes = _choice(SHAPES, "repose_shapes", "Shapes")
-        self.cohesion = _choice(COHESION, "repose_cohesion", "Cohesion")
+        self.shapes = _choice(SHAPES, "repose_shapes", tr("Shapes"))
+        self.cohesion = _choice(COHESION, "repose_cohesion", tr("Cohesion"))
         self.engine = _choice(
-            {engine.label: key for key, engine in ENGINES.items()}, "repose_engine", "Engine"
+            {engine.label: key for key, engine in ENGINES.items()}, "repose_engine", tr("Engine")
         )
         self.gravity = _choice(
-            {f"{name} ({value:g} m/s²)": str(value) for name, value in GRAVITIES.items()} | {"Other": ""},
+            {f"{tr(name)} ({value:g} m/s²)": str(value) for name, value in GRAVITIES.items()}
+            | {tr("Other"): ""},
             "repose_gravity_of",
-            "Gravity of",
+            tr("Gravity of"),
         )
-        self.test = PresetForm(LiftingCylinderTest, "test", "Table 2 of the paper")
-        self.contact = PresetForm(ContactParameters, "contact", "Table 1 of the paper")
+        self.test = PresetForm(LiftingCylinderTest, "test", tr("Table 2 of the paper"))
+        self.contact = PresetForm(ContactParameters, "contact", tr("Table 1 of the paper"))
         self.evaluation = SettingsForm(EvaluationSettings)
         self._numerics = {key: SettingsForm(engine.Settings) for key, engine in ENGINES.items()}
         self.told = remark()
         self.told.setObjectName("repose_consequences")
         self.problem = remark(role="warning")
         self.problem.hide()
-        self.run = _button("Run the test", "repose_run", "Fill, lift, measure")
+        self.run = _button(tr("Run the test"), "repose_run", tr("Fill, lift, measure"))
         self.run.setDefault(True)
         self._place()
         self._connect()
@@ -100,7 +102,7 @@ class SetupPanel(QWidget):
     def set_dataset(self, folder: Path | None) -> None:
         """Choose a dataset."""
         self._dataset = folder
-        self.dataset_label.setText(str(folder) if folder else "No dataset yet")
+        self.dataset_label.setText(str(folder) if folder else tr("No dataset yet"))
         self.valueChanged.emit()
 
     def order(self) -> ReposeOrder:
@@ -182,37 +184,38 @@ class SetupPanel(QWidget):
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(8)
-        column.addWidget(heading("Dataset"))
+        column.addWidget(heading(tr("Dataset")))
         column.addWidget(self.dataset_label)
         column.addLayout(_row(self.open_button, self.sample_button))
-        column.addWidget(heading("Particles"))
+        column.addWidget(heading(tr("Particles")))
         presets = [
-            _button(name, f"repose_preset_{count}", f"{count:,} particles") for name, count in PRESETS.items()
+            _button(tr(name), f"repose_preset_{count}", tr("{count:,} particles", count=count))
+            for name, count in PRESETS.items()
         ]
         for button, count in zip(presets, PRESETS.values(), strict=True):
             button.clicked.connect(lambda _=False, count=count: self.particles.setValue(count))
         column.addLayout(_row(*presets))
         form = QFormLayout()
-        form.addRow("Number", self.particles)
-        form.addRow("Seed", self.seed)
-        form.addRow("Shapes", self.shapes)
-        form.addRow("Cohesion", self.cohesion)
-        form.addRow("Engine", self.engine)
-        form.addRow("Gravity of", self.gravity)
+        form.addRow(tr("Number"), self.particles)
+        form.addRow(tr("Seed"), self.seed)
+        form.addRow(tr("Shapes"), self.shapes)
+        form.addRow(tr("Cohesion"), self.cohesion)
+        form.addRow(tr("Engine"), self.engine)
+        form.addRow(tr("Gravity of"), self.gravity)
         column.addLayout(form)
         column.addWidget(self.run)
         column.addWidget(self.problem)
         column.addWidget(self.told)
-        column.addWidget(Collapsible("Test (Table 2)", self.test))
-        column.addWidget(Collapsible("Contact (Table 1)", self.contact))
-        column.addWidget(Collapsible("Evaluation (section 3.3)", self.evaluation))
+        column.addWidget(Collapsible(tr("Test (Table 2)"), self.test))
+        column.addWidget(Collapsible(tr("Contact (Table 1)"), self.contact))
+        column.addWidget(Collapsible(tr("Evaluation (section 3.3)"), self.evaluation))
         forms = QWidget()
         inside = QVBoxLayout(forms)
         inside.setContentsMargins(0, 0, 0, 0)
         for numerics in self._numerics.values():
             inside.addWidget(numerics)
-        column.addWidget(Collapsible("Numerics of the engine", forms))
-        column.addWidget(remark("* not given in the paper: a choice, yours to change."))
+        column.addWidget(Collapsible(tr("Numerics of the engine"), forms))
+        column.addWidget(remark(tr("* not given in the paper: a choice, yours to change.")))
 
     def _connect(self) -> None:
         self.open_button.clicked.connect(self.datasetWanted)
@@ -267,7 +270,7 @@ def _choice(entries: Mapping[str, str], name: str, spoken: str) -> QComboBox:
     box.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
     box.setMinimumContentsLength(10)
     for text, data in entries.items():
-        box.addItem(text, data)
+        box.addItem(tr(text), data)
     return box
 
 

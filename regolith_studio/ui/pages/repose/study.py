@@ -1,6 +1,6 @@
 """A study on the page: what is varied, start and stop, and a plot that grows with every run."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -24,24 +24,25 @@ from regolith_studio.coarsening.weights import presets
 from regolith_studio.jobs.repose_study import SHAPE_KEYS, values_in
 from regolith_studio.studies.repose import ReposeStudy, ReposeStudyRun
 from regolith_studio.ui.theme import Theme
+from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.curve_plot import Curve, CurvePlot
 from regolith_studio.ui.widgets.labels import remark
 
 VARIED: Mapping[str, tuple[str, str]] = {
-    "static_friction": ("Static friction", "0.2, 0.4, 0.8"),
-    "n_faces": ("Facets of the open particles", "8, 20, 60"),
-    "preset": ("Weights of the loss, open particles", "overlap, size, all"),
-    "rolling_friction": ("Rolling resistance", "0, 0.1, 0.3"),
-    "cohesion": ("Cohesion", "none, scaled"),
-    "shapes": ("Shapes", "polyhedra, spheres"),
-    "gravity": ("Gravity [m/s²]", "1.62, 3.71, 9.81"),
-    "plate_friction": ("Plate friction", "0.3, 0.8"),
-    "wall_friction": ("Wall friction", "0, 0.3, 0.8"),
-    "lift_speed": ("Lift speed [m/s]", "0.01, 0.03, 0.1"),
-    "n_particles": ("Number of particles", "300, 1000, 2000"),
+    "static_friction": (mark("Static friction"), "0.2, 0.4, 0.8"),
+    "n_faces": (mark("Facets of the open particles"), "8, 20, 60"),
+    "preset": (mark("Weights of the loss, open particles"), "overlap, size, all"),
+    "rolling_friction": (mark("Rolling resistance"), "0, 0.1, 0.3"),
+    "cohesion": (mark("Cohesion"), "none, scaled"),
+    "shapes": (mark("Shapes"), "polyhedra, spheres"),
+    "gravity": (mark("Gravity [m/s²]"), "1.62, 3.71, 9.81"),
+    "plate_friction": (mark("Plate friction"), "0.3, 0.8"),
+    "wall_friction": (mark("Wall friction"), "0, 0.3, 0.8"),
+    "lift_speed": (mark("Lift speed [m/s]"), "0.01, 0.03, 0.1"),
+    "n_particles": (mark("Number of particles"), "300, 1000, 2000"),
 }
 """What can be varied: label, and the values that are proposed."""
-HEADINGS = ("Value", "Seed", "Angle", "Interval")
+HEADINGS = (mark("Value"), mark("Seed"), mark("Angle"), mark("Interval"))
 
 
 class StudyPanel(QWidget):
@@ -57,22 +58,22 @@ class StudyPanel(QWidget):
         self._study: ReposeStudy | None = None
         self.key = QComboBox()
         self.key.setObjectName("repose_study_key")
-        self.key.setAccessibleName("What is varied")
+        self.key.setAccessibleName(tr("What is varied"))
         for name, (label, _) in VARIED.items():
-            self.key.addItem(label, name)
+            self.key.addItem(tr(label), name)
         self.values = QLineEdit(VARIED["static_friction"][1])
         self.values.setObjectName("repose_study_values")
-        self.values.setAccessibleName("Values, with commas between them")
+        self.values.setAccessibleName(tr("Values, with commas between them"))
         self.repeats = QSpinBox()
         self.repeats.setObjectName("repose_study_repeats")
-        self.repeats.setAccessibleName("Runs of each value, with other seeds")
+        self.repeats.setAccessibleName(tr("Runs of each value, with other seeds"))
         self.repeats.setRange(1, 100)
-        self.start, self.stop = QPushButton("Start or go on"), QPushButton("Stop")
+        self.start, self.stop = QPushButton(tr("Start or go on")), QPushButton(tr("Stop"))
         self.start.setObjectName("repose_study_start")
-        self.start.setToolTip("Runs that are there already are not run again")
+        self.start.setToolTip(tr("Runs that are there already are not run again"))
         self.stop.setObjectName("repose_study_stop")
         self.table = self._table()
-        self.plot = CurvePlot("Static friction", "Angle [°]", "Each run adds a point.")
+        self.plot = CurvePlot(tr("Static friction"), tr("Angle [°]"), tr("Each run adds a point."))
         self.said = remark()
         self.said.setObjectName("repose_study_said")
         self._place()
@@ -144,9 +145,9 @@ class StudyPanel(QWidget):
             return
         numeric = all(isinstance(value, int | float) for value in study.values)
         places = {value: float(value) if numeric else float(k) for k, value in enumerate(study.values, 1)}
-        label = VARIED[study.runs[0].varied][0]
+        label = tr(VARIED[study.runs[0].varied][0])
         names = "" if numeric else ": " + ", ".join(f"{k} {value}" for k, value in enumerate(places, 1))
-        self.plot.set_labels(label + names, "Angle [°]")
+        self.plot.set_labels(label + names, tr("Angle [°]"))
         found = [(places[run.value], run.angle) for run in study.runs if run.angle is not None]
         means = sorted(
             (places[value], float(np.mean(study.angles(value))))
@@ -156,7 +157,7 @@ class StudyPanel(QWidget):
         theme = self.plot.theme
         self.plot.set_curves(
             [
-                Curve("mean", theme.fit, *_columns(means), line=numeric),
+                Curve(tr("mean"), theme.fit, *_columns(means), line=numeric),
                 Curve("run", theme.polyhedron, *_columns(found), markers=True, line=False),
             ]
             if found
@@ -166,8 +167,8 @@ class StudyPanel(QWidget):
     def _table(self) -> QTableWidget:
         table = QTableWidget(0, len(HEADINGS))
         table.setObjectName("repose_study_runs")
-        table.setAccessibleName("Runs of the study")
-        table.setHorizontalHeaderLabels(HEADINGS)
+        table.setAccessibleName(tr("Runs of the study"))
+        table.setHorizontalHeaderLabels([tr(each) for each in HEADINGS])
         table.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
         table.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)
         table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
@@ -180,9 +181,9 @@ class StudyPanel(QWidget):
     def _place(self) -> None:
         form = QFormLayout()
         form.setContentsMargins(8, 6, 0, 0)
-        form.addRow("Vary", self.key)
-        form.addRow("Values", self.values)
-        form.addRow("Runs of each", self.repeats)
+        form.addRow(tr("Vary"), self.key)
+        form.addRow(tr("Values"), self.values)
+        form.addRow(tr("Runs of each"), self.repeats)
         buttons = QHBoxLayout()
         buttons.addWidget(self.start)
         buttons.addWidget(self.stop)
@@ -209,9 +210,9 @@ class StudyPanel(QWidget):
     def _propose(self) -> None:
         key = str(self.key.currentData())
         self.values.setText(VARIED[key][1])
-        tip = f"Names of presets: {', '.join(presets())}" if key == "preset" else ""
+        tip = tr("Names of presets: {names}", names=", ".join(presets())) if key == "preset" else ""
         self.values.setToolTip(tip)
-        self.tell("A dataset is made of the open particles for every value." if key in SHAPE_KEYS else "")
+        self.tell(tr("A dataset is made of the open particles for every value.") if key in SHAPE_KEYS else "")
 
     def _announce(self) -> None:
         rows = self.table.selectionModel().selectedRows()
@@ -228,10 +229,14 @@ def _cells(run: ReposeStudyRun) -> tuple[str, ...]:
     interval = measurement.get("interval_deg")
     value = f"{run.value:g}" if isinstance(run.value, int | float) else run.value
     angle = str(measurement["status"]) if run.angle is None else f"{run.angle:.1f}°"
-    return value, str(run.seed), angle, f"{interval[0]:.1f} to {interval[1]:.1f}" if interval else ""
+    return value, str(run.seed), angle, _interval(interval)
+
+
+def _interval(ends: Sequence[float] | None) -> str:
+    return tr("{low:.1f} to {high:.1f}", low=ends[0], high=ends[1]) if ends else ""
 
 
 def _why(run: ReposeStudyRun) -> str:
     measurement = run.document.get("measurement") or {}
-    said = [run.document.get("problem"), measurement.get("reason"), "Choose it to see the run."]
+    said = [run.document.get("problem"), measurement.get("reason"), tr("Choose it to see the run.")]
     return "\n".join(str(each) for each in said if each)

@@ -11,6 +11,7 @@ from regolith_studio.studies.repose import ReposeStudy, ReposeStudyRun
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.repose.setup import SetupPanel
 from regolith_studio.ui.pages.repose.study import StudyPanel
+from regolith_studio.ui.translation import tr
 
 LANE = "study"
 
@@ -41,7 +42,11 @@ class StudyDesk:
 
     def busy(self) -> str:
         """What would be lost if the window closed now."""
-        return "A study of the angle of repose would be stopped; it can go on later." if self._running else ""
+        return (
+            tr("A study of the angle of repose would be stopped; it can go on later.")
+            if self._running
+            else ""
+        )
 
     def start(self, runs: Path) -> None:
         """Run what the panel says, or go on with it, in a folder of its own below `runs`."""
@@ -56,9 +61,9 @@ class StudyDesk:
         self._folder, self._running = runs / "studies" / f"{wish.key}-{name}", True
         self._panel.show_study(None)
         self._panel.set_running(True)
-        self._panel.tell(f"Every run is kept in {self._folder}.")
+        self._panel.tell(tr("Every run is kept in {folder}.", folder=self._folder))
         self._context.start(
-            "Angle of repose: study",
+            tr("Angle of repose: study"),
             Job(study_wish, (wish, self._folder)),
             self._finished,
             partial=self._panel.show_study,
@@ -81,14 +86,16 @@ class StudyDesk:
 
     def _finished(self, study: ReposeStudy) -> None:
         self._panel.show_study(study)
-        self._over(f"{len(study.runs)} runs; tables and figure are in {self._folder}.")
+        self._over(
+            tr("{count} runs; tables and figure are in {folder}.", count=len(study.runs), folder=self._folder)
+        )
 
     def _failed(self, failure: Failed) -> None:
         self._over(failure.sentence)
         self._context.toast.problem(failure.sentence, failure.details)
 
     def _stopped(self) -> None:
-        self._over("Stopped; what is finished is kept, and the start button goes on there.")
+        self._over(tr("Stopped; what is finished is kept, and the start button goes on there."))
 
     def _over(self, text: str) -> None:
         self._running = False

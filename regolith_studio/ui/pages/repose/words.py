@@ -2,6 +2,7 @@
 
 from regolith_studio.dem.repose import ReposeMeasurement
 from regolith_studio.dem.run_folder import RunSummary
+from regolith_studio.ui.translation import tr
 
 
 def checks_in_words(run: RunSummary) -> str:
@@ -12,7 +13,11 @@ def checks_in_words(run: RunSummary) -> str:
     if checks["problems"]:
         return " ".join(checks["problems"])
     overlap = 100 * checks["largest_overlap"]
-    return f"Checked: {checks['particles_out']:,} particles, overlap at most {overlap:.1f} % of d"
+    return tr(
+        "Checked: {count:,} particles, overlap at most {overlap:.1f} % of d",
+        count=checks["particles_out"],
+        overlap=overlap,
+    )
 
 
 def duration(seconds: float) -> str:
@@ -30,8 +35,16 @@ def angle_in_words(measured: ReposeMeasurement) -> str:
     """The result as rich text."""
     low, high = measured.interval
     return (
-        f"<b>Angle of repose {measured.angle:.1f}°</b> ({low:.1f}° to {high:.1f}°, "
-        f"{len(measured.sections)} sections); the paper's two sections: asymmetric "
-        f"{measured.paper_asymmetric.mean:.1f}°, symmetric {measured.paper_symmetric.mean:.1f}°. "
+        tr(
+            "<b>Angle of repose {angle:.1f}°</b> ({low:.1f}° to {high:.1f}°, {count} sections); the paper's"
+            " two sections: asymmetric {asymmetric:.1f}°, symmetric {symmetric:.1f}°.",
+            angle=measured.angle,
+            low=low,
+            high=high,
+            count=len(measured.sections),
+            asymmetric=measured.paper_asymmetric.mean,
+            symmetric=measured.paper_symmetric.mean,
+        )
+        + " "
         + " ".join(measured.warnings[:2])
     )

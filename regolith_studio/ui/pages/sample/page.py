@@ -15,8 +15,9 @@ from regolith_studio.ui.layout import side_by_side, stacked
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.sample.scatter import ScatterPanel
 from regolith_studio.ui.pages.sample.statistics import StatisticsPanel
-from regolith_studio.ui.pages.sample.table import SampleTable
+from regolith_studio.ui.pages.sample.table import FORM_WORDS, HEALTH_WORDS, SampleTable
 from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.camera_link import CameraLink
 from regolith_studio.ui.views.factory import make_view
 from regolith_studio.ui.views.view_frame import ViewFrame
@@ -30,11 +31,11 @@ class SamplePage(PageWidget):
         super().__init__()
         self.setObjectName("sample")
         self._context, self._session = context, context.session
-        self.title = heading("Sample")
+        self.title = heading(tr("Sample"))
         self.filter = QLineEdit()
         self.filter.setObjectName("sample_filter")
-        self.filter.setAccessibleName("Filter of the table")
-        self.filter.setPlaceholderText("Filter: words and comparisons, such as  flat S<0.8 AR>1.5")
+        self.filter.setAccessibleName(tr("Filter of the table"))
+        self.filter.setPlaceholderText(tr("Filter: words and comparisons, such as  flat S<0.8 AR>1.5"))
         self.filter.setClearButtonEnabled(True)
         self.verdict = remark(role="warning")
         self.verdict.hide()
@@ -77,7 +78,7 @@ class SamplePage(PageWidget):
     def export_table(self) -> None:
         """Ask for a file and write the rows that are seen, every descriptor with its unit."""
         start = str(Path.home() / "particles.csv")
-        name, _ = QFileDialog.getSaveFileName(self, "Export table", start, "Tables (*.csv)")
+        name, _ = QFileDialog.getSaveFileName(self, tr("Export table"), start, tr("Tables (*.csv)"))
         if not name:
             return
         entries = self.table.visible_entries()
@@ -86,19 +87,19 @@ class SamplePage(PageWidget):
         except RegolithError as error:
             self._context.toast.problem(str(error))
             return
-        self._context.toast.note(f"{len(entries)} particles are in {name}.")
+        self._context.toast.note(tr("{count} particles are in {name}.", count=len(entries), name=name))
 
     def copy_table(self) -> None:
         """Put the rows that are seen onto the clipboard, as a spreadsheet takes them."""
         text = csv_text(sample_table(self.table.visible_entries()))
         QApplication.clipboard().setText(text.replace(",", "\t"))
-        self._context.toast.note("The table is on the clipboard.")
+        self._context.toast.note(tr("The table is on the clipboard."))
 
     def keep_chosen(self) -> None:
         """Close every particle but the chosen rows."""
         chosen = set(self.table.chosen())
         if not any(entry.id in chosen for entry in self._session.particles):
-            self._context.toast.problem("Choose the rows to keep first.")
+            self._context.toast.problem(tr("Choose the rows to keep first."))
             return
         self._session.keep(chosen)
 
@@ -129,7 +130,7 @@ class SamplePage(PageWidget):
 
     def _filter(self, text: str) -> None:
         try:
-            keeps = filter_of(text) if text.strip() else None
+            keeps = filter_of(in_english(text)) if text.strip() else None
         except RegolithError as error:
             self.verdict.setText(str(error))
             self.verdict.show()
@@ -146,7 +147,11 @@ class SamplePage(PageWidget):
 
     def _count(self) -> None:
         seen, total = len(self.table.visible_entries()), len(self._session.particles)
-        self.title.setText(f"Sample ({total})" if seen == total else f"Sample ({seen} of {total})")
+        self.title.setText(
+            tr("Sample ({total})", total=total)
+            if seen == total
+            else tr("Sample ({seen} of {total})", seen=seen, total=total)
+        )
 
     def _show_pictures(self) -> None:
         seen = self.table.visible_entries()
@@ -164,7 +169,9 @@ class SamplePage(PageWidget):
             self.table.choose([entry.id], entry.id)
             self._show_pictures()
         mesh = entry.particle.mesh
-        self.frame.set_texts(f"CT particle, {entry.id}", health_sentences(entry).replace("\n", " "))
+        self.frame.set_texts(
+            tr("CT particle, {name}", name=entry.id), " ".join(map(tr, health_sentences(entry).split("\n")))
+        )
         if mesh is not self._shown:
             self._shown = mesh
             self.frame.view.draw(lambda plotter: surfaces.show_particle(plotter, mesh))
@@ -178,3 +185,9 @@ class SamplePage(PageWidget):
         self.table.choose([*self.table.chosen(), name] if adding else [name], name)
         self._show_pictures()
         self._select(name)
+
+
+def in_english(text: str) -> str:
+    """A filter whose words on form and health are the English ones, in whatever language they are read."""
+    known = {tr(word).lower(): word for word in (*HEALTH_WORDS, *FORM_WORDS)}
+    return " ".join(known.get(word.lower(), word) for word in text.split())

@@ -14,6 +14,7 @@ from regolith_studio.descriptors.zingg import THRESHOLD
 from regolith_studio.scene.palette import DESCRIPTOR_COLOURS
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.ui.theme import Theme
+from regolith_studio.ui.translation import mark, tr, tr_count
 from regolith_studio.ui.widgets.labels import rich_symbol
 from regolith_studio.ui.widgets.log_axes import set_log_mode
 from regolith_studio.ui.widgets.plot import Plot
@@ -21,7 +22,7 @@ from regolith_studio.ui.widgets.plot import Plot
 ZINGG = ("flatness", "elongation")
 SYMBOLS = ("o", "s", "t", "d", "star", "p", "h", "+")
 _UNITS = {0: "", 1: " [µm]", 2: " [µm²]", 3: " [µm³]", 5: " [µm⁵]"}
-_CORNERS = (("blade", 0, 0), ("rod", 1, 0), ("disc", 0, 1), ("equant", 1, 1))
+_CORNERS = ((mark("blade"), 0, 0), (mark("rod"), 1, 0), (mark("disc"), 0, 1), (mark("equant"), 1, 1))
 """Zingg's classes, and whether flatness and elongation are above the threshold."""
 
 
@@ -36,15 +37,15 @@ class ScatterPanel(QWidget):
         self._entries: tuple[ParticleEntry, ...] = ()
         self._chosen: frozenset[str] = frozenset()
         self._items: list[Any] = []
-        self.across = _descriptor_box("scatter_x", "Horizontal axis")
-        self.up = _descriptor_box("scatter_y", "Vertical axis")
-        self.log = QCheckBox("Logarithmic")
+        self.across = _descriptor_box("scatter_x", tr("Horizontal axis"))
+        self.up = _descriptor_box("scatter_y", tr("Vertical axis"))
+        self.log = QCheckBox(tr("Logarithmic"))
         self.log.setObjectName("scatter_log")
         self.zingg = QToolButton()
         self.zingg.setText("Zingg")
         self.zingg.setObjectName("scatter_zingg")
-        self.zingg.setToolTip("Flatness against elongation, with Zingg's classes of form")
-        self.plot = Plot("", "", "The plot appears when the particles are measured.")
+        self.zingg.setToolTip(tr("Flatness against elongation, with Zingg's classes of form"))
+        self.plot = Plot("", "", tr("The plot appears when the particles are measured."))
         self._arrange()
         self.set_axes(*ZINGG)
 
@@ -76,7 +77,7 @@ class ScatterPanel(QWidget):
         row = QHBoxLayout()
         row.setContentsMargins(8, 6, 8, 0)
         row.addWidget(self.up, 1)
-        row.addWidget(QLabel("against"))
+        row.addWidget(QLabel(tr("against")))
         row.addWidget(self.across, 1)
         row.addWidget(self.log)
         row.addWidget(self.zingg)
@@ -109,7 +110,7 @@ class ScatterPanel(QWidget):
         named = [(DESCRIPTOR_COLOURS[n % len(DESCRIPTOR_COLOURS)], g) for n, g in enumerate(groups) if g]
         self.plot.set_legend(named if len(groups) > 1 else [])
         count = len(self._entries)
-        self.plot.set_remark("1 particle" if count == 1 else f"{count} particles")
+        self.plot.set_remark(tr_count("1 particle", "{count} particles", count))
         canvas.enableAutoRange()
 
     def _draw_group(self, members: Sequence[ParticleEntry], number: int) -> None:
@@ -145,7 +146,7 @@ class ScatterPanel(QWidget):
             self.plot.canvas.addItem(line, ignoreBounds=True)
             self._items.append(line)
         for name, right, upper in _CORNERS:
-            word = pg.TextItem(name, color=self.plot.theme.muted, anchor=(1 - right, upper))
+            word = pg.TextItem(tr(name), color=self.plot.theme.muted, anchor=(1 - right, upper))
             word.setPos(1.0 if right else THRESHOLD - 0.01, 1.0 if upper else THRESHOLD - 0.01)
             word.setAnchor((1, 0))
             self.plot.canvas.addItem(word, ignoreBounds=True)
@@ -165,10 +166,10 @@ def _descriptor_box(name: str, accessible: str) -> QComboBox:
     box.setMinimumContentsLength(8)
     for key, row in CATALOGUE.items():
         if not row.costly and row.dimension in _UNITS:
-            box.addItem(row.label, key)
+            box.addItem(tr(row.label), key)
     return box
 
 
 def _axis_label(key: str) -> str:
     row = CATALOGUE[key]
-    return f"{row.label} {rich_symbol(row.symbol)}{_UNITS[row.dimension]}"
+    return f"{tr(row.label)} {rich_symbol(row.symbol)}{_UNITS[row.dimension]}"

@@ -21,8 +21,19 @@ from regolith_studio.descriptors.distributions import WEIGHTINGS
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import UNITS, has_weights, statistics_table
 from regolith_studio.studies.tables import Column, Table
+from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.widgets.number_text import short_number
 
-_WEIGHTING_LABELS = {"number": "each counts once", "volume": "weighted by volume"}
+_WEIGHTING_LABELS = {"number": mark("each counts once"), "volume": mark("weighted by volume")}
+_SHORT = {
+    "group": mark("group"),
+    "count": mark("count"),
+    "mean": mark("mean"),
+    "standard deviation": mark("std. dev."),
+}
+QUANTILE = " quantile"
+GROUPS = (mark("all"), mark("(no group)"))
+"""Names of groups that are no names of samples."""
 
 
 class StatisticsPanel(QWidget):
@@ -34,32 +45,35 @@ class StatisticsPanel(QWidget):
         self._entries: tuple[ParticleEntry, ...] = ()
         self.key = QComboBox()
         self.key.setObjectName("statistics_key")
-        self.key.setAccessibleName("Descriptor of the statistics")
+        self.key.setAccessibleName(tr("Descriptor of the statistics"))
         for key, row in CATALOGUE.items():
             if not row.costly and row.dimension in UNITS:
-                self.key.addItem(row.label, key)
+                self.key.addItem(tr(row.label), key)
         self.weighting = QComboBox()
         self.weighting.setObjectName("statistics_weighting")
-        self.weighting.setAccessibleName("Weighting of the statistics")
+        self.weighting.setAccessibleName(tr("Weighting of the statistics"))
         for weighting in WEIGHTINGS:
-            self.weighting.addItem(_WEIGHTING_LABELS[weighting], weighting)
-        self.border = QCheckBox("undo the loss at the border")
+            self.weighting.addItem(tr(_WEIGHTING_LABELS[weighting]), weighting)
+        self.border = QCheckBox(tr("undo the loss at the border"))
         self.border.setObjectName("statistics_border")
         self.border.setToolTip(
-            "Grains that the border of the scan cuts were left out, large ones more often than small ones. "
-            "Each of the others counts a little more for it (weights of Miles and Lantuéjoul)."
+            tr(
+                "Grains that the border of the scan cuts were left out, large ones more often than small"
+                " ones. "
+                "Each of the others counts a little more for it (weights of Miles and Lantuéjoul)."
+            )
         )
         self.border.setChecked(True)
         self.border.hide()
         self.table = QTableWidget()
-        self.table.setAccessibleName("Statistics of groups")
+        self.table.setAccessibleName(tr("Statistics of groups"))
         self.table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
         self.table.setShowGrid(False)
         self.table.verticalHeader().hide()
         self.table.verticalHeader().setDefaultSectionSize(self.table.fontMetrics().height() + 8)
         self.table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
         row_ = QHBoxLayout()
-        row_.addWidget(QLabel("Statistics of"))
+        row_.addWidget(QLabel(tr("Statistics of")))
         row_.addWidget(self.key)
         row_.addWidget(self.weighting)
         row_.addWidget(self.border)
@@ -91,15 +105,22 @@ class StatisticsPanel(QWidget):
         self.table.setHorizontalHeaderLabels([_two_lines(each) for each in shown.columns])
         for at, row in enumerate(shown.rows):
             for column, cell in enumerate(row):
-                item = QTableWidgetItem(f"{cell:.4g}" if isinstance(cell, float) else str(cell))
+                item = QTableWidgetItem(short_number(cell) if isinstance(cell, float) else _word(cell))
                 if column:
                     item.setTextAlignment(Qt.AlignmentFlag.AlignCenter)
                 self.table.setItem(at, column, item)
 
 
+def _word(cell: object) -> str:
+    """A name of a group, of which those that are ours are translated."""
+    return tr(str(cell))
+
+
 def _two_lines(column: Column) -> str:
     """Name above unit, short enough for a narrow window; the file has them in full."""
-    name = column.name.replace("standard deviation", "std. dev.").replace("quantile", "quant.")
+    name = tr(_SHORT.get(column.name, column.name))
+    if column.name.endswith(QUANTILE):
+        name = tr("{share} quant.", share=column.name.removesuffix(QUANTILE))
     unit = column.unit
     for plain, sign in (("um", "µm"), ("^2", "²"), ("^3", "³"), ("^5", "⁵")):
         unit = unit.replace(plain, sign)

@@ -20,16 +20,22 @@ from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import Filter, form_of, has_weights, health_sentences, health_word
 from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.health_icons import health_pixmaps
 from regolith_studio.ui.widgets.labels import plain_symbol
+from regolith_studio.ui.widgets.number_text import short_number
 from regolith_studio.ui.widgets.table import ListTable
 
 Index = QModelIndex | QPersistentModelIndex
 NOWHERE = QModelIndex()
 SORT_ROLE = Qt.ItemDataRole.UserRole + 1
 _UNITS = {0: "", 1: " [µm]", 2: " [µm²]", 3: " [µm³]", 5: " [µm⁵]"}
-HEALTH = "health"
+HEALTH, FORM = "health", "form"
 WEIGHT = "weight"
+HEALTH_WORDS = (
+    *(mark("sound"), mark("coarse"), mark("mended"), mark("doubtful"), mark("unsound"), mark("unknown")),
+)
+FORM_WORDS = (mark("equant"), mark("disc"), mark("rod"), mark("blade"))
 WORDS = 4
 """Columns of words; those of numbers follow."""
 RIGHT = int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
@@ -49,10 +55,15 @@ class Column:
 def columns() -> tuple[Column, ...]:
     """Name, health, group and form, the descriptors of the catalogue that are at hand, and the weight."""
     words: tuple[tuple[str, str, str, Callable[[ParticleEntry], str]], ...] = (
-        ("name", "Particle", "Name of the file or of the grain", lambda entry: entry.id),
-        (HEALTH, "Health", "Of the mesh; the tool tip of a cell says what was found and mended", health_word),
-        ("group", "Group", "Sample or size fraction", lambda entry: entry.particle.group),
-        ("form", "Form", "Zingg's class: equant, disc, rod or blade", form_of),
+        ("name", tr("Particle"), tr("Name of the file or of the grain"), lambda entry: entry.id),
+        (
+            HEALTH,
+            tr("Health"),
+            tr("Of the mesh; the tool tip of a cell says what was found and mended"),
+            health_word,
+        ),
+        ("group", tr("Group"), tr("Sample or size fraction"), lambda entry: entry.particle.group),
+        (FORM, tr("Form"), tr("Zingg's class: equant, disc, rod or blade"), form_of),
     )
     numbers = [row for row in CATALOGUE.values() if not row.costly and row.dimension in _UNITS]
     return (
@@ -61,7 +72,7 @@ def columns() -> tuple[Column, ...]:
             Column(
                 row.key,
                 plain_symbol(row.symbol) + _UNITS[row.dimension],
-                f"{row.label}: {row.formula}",
+                f"{tr(row.label)}: {tr(row.formula)}",
                 _Number(row.key),
                 _Formatted(row.key),
             )
@@ -69,8 +80,8 @@ def columns() -> tuple[Column, ...]:
         ),
         Column(
             WEIGHT,
-            "weight",
-            "How many grains it stands for, since large ones were lost at the border of the scan",
+            tr("weight"),
+            tr("How many grains it stands for, since large ones were lost at the border of the scan"),
             lambda entry: entry.particle.weight,
             lambda entry: f"{entry.particle.weight:.3g}",
         ),
@@ -89,7 +100,7 @@ class _Formatted(_Number):
     def __call__(self, entry: ParticleEntry) -> str:  # type: ignore[override]
         if not entry.descriptors:
             return "…"
-        return f"{entry.descriptors[self._key]:.4g}".replace("e+0", "e").replace("e-0", "e-")
+        return short_number(entry.descriptors[self._key])
 
 
 class SampleModel(QAbstractTableModel):
@@ -126,11 +137,11 @@ class SampleModel(QAbstractTableModel):
         entry, column = self.entries[index.row()], self.columns[index.column()]
         match role:
             case Qt.ItemDataRole.DisplayRole:
-                return column.text(entry)
+                return tr(column.text(entry)) if column.key in (HEALTH, FORM) else column.text(entry)
             case Qt.ItemDataRole.DecorationRole if column.key == HEALTH:
                 return self._icons.get(health_word(entry))
             case Qt.ItemDataRole.ToolTipRole:
-                return health_sentences(entry) if column.key == HEALTH else column.text(entry)
+                return _tip(entry) if column.key == HEALTH else column.text(entry)
             case Qt.ItemDataRole.TextAlignmentRole if index.column() >= WORDS:
                 return RIGHT
         return column.value(entry) if role == SORT_ROLE else None
@@ -147,6 +158,10 @@ class SampleModel(QAbstractTableModel):
                 case Qt.ItemDataRole.TextAlignmentRole if section >= WORDS:
                     return RIGHT
         return None
+
+
+def _tip(entry: ParticleEntry) -> str:
+    return "\n".join(map(tr, health_sentences(entry).split("\n")))
 
 
 class _Filtered(QSortFilterProxyModel):
@@ -172,7 +187,7 @@ class SampleTable(ListTable):
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("sample_table")
-        self.setAccessibleName("All particles")
+        self.setAccessibleName(tr("All particles"))
         self.setSelectionMode(QAbstractItemView.SelectionMode.ExtendedSelection)
         self.model_ = SampleModel(self)
         self.model_.set_theme(current_theme())

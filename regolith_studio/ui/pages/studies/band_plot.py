@@ -8,6 +8,7 @@ import pyqtgraph as pg
 from PySide6.QtCore import QPointF
 from PySide6.QtWidgets import QWidget
 
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.curve_plot import REACH, Curve, CurvePlot
 from regolith_studio.ui.widgets.plot import Numbers
 from regolith_studio.ui.widgets.plot_files import plain_text
@@ -105,13 +106,17 @@ class BandPlot(CurvePlot):
 
     def _words(self, s: Series, n: int) -> str:
         x, y = (plain_text(label) for label in self._labels)
-        across = f" ({s.left[n]:.4g} to {s.right[n]:.4g})" if s.left else ""
+        across = " " + _interval(s.left[n], s.right[n]) if s.left else ""
         return (
             f"{plain_text(s.label)}\n{x}: {s.x[n]:.4g}{across}\n"
-            f"{y}: {s.y[n]:.4g} ({s.low[n]:.4g} to {s.high[n]:.4g})"
+            f"{y}: {s.y[n]:.4g} {_interval(s.low[n], s.high[n])}"
         )
 
     def _draw_bars(self, colour: str, x: "np.typing.NDArray[np.float64]", y: object) -> None:
         bar = self.canvas.plot(np.asarray(x, dtype=float), np.asarray(y, dtype=float), connect="pairs")
         bar.setPen(self.pen(colour))
         self._bars.append(bar)
+
+
+def _interval(low: float, high: float) -> str:
+    return tr("({low:.4g} to {high:.4g})", low=low, high=high)

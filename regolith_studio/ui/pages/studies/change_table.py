@@ -8,6 +8,8 @@ from PySide6.QtWidgets import QStackedLayout, QTableWidgetItem, QWidget
 from regolith_studio.studies.coarsening import CoarseningStudy
 from regolith_studio.studies.variations import beyond_chance, change_text, changes
 from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.heat_table import numbers_table, remark_in_the_middle
 
 ROWS_SHARE = 0.33
@@ -21,7 +23,7 @@ class ChangeTable(QWidget):
         super().__init__(parent)
         self._theme, self._headers = current_theme(), headers
         self._study: CoarseningStudy | None = None
-        self.table = numbers_table("Changes of errors in percentage points", spare=5)
+        self.table = numbers_table(tr("Changes of errors in percentage points"), spare=10)
         self.table.setTextElideMode(Qt.TextElideMode.ElideNone)
         self.table.setWordWrap(False)
         self._stack = QStackedLayout(self)
@@ -48,7 +50,7 @@ class ChangeTable(QWidget):
         if study is None:
             self.table.setRowCount(0)
             return
-        labels = [row.label for row in study.rows[1:]]
+        labels = [retold(row.label) for row in study.rows[1:]]
         values, (low, high) = (100 * each for each in changes(study))
         sure, given = beyond_chance(study), 100 * study.rmsre
         top = float(np.abs(values).max(initial=0.0)) or 1.0
@@ -64,9 +66,21 @@ class ChangeTable(QWidget):
                 item.setTextAlignment(Qt.AlignmentFlag.AlignCenter)
                 item.setBackground(self._ground(value / top))
                 item.setToolTip(
-                    f"{label}, {header}: {given[0, k]:.3g} % becomes {given[r + 1, k]:.3g} %\n"
-                    f"{value:+.3g} percentage points ({low[r, k]:+.3g} to {high[r, k]:+.3g})"
-                    + ("" if sure[r, k] else "\nThis may be chance.")
+                    tr(
+                        "{row}, {column}: {before:.3g} % becomes {after:.3g} %",
+                        row=label,
+                        column=header,
+                        before=given[0, k],
+                        after=given[r + 1, k],
+                    )
+                    + "\n"
+                    + tr(
+                        "{value:+.3g} percentage points ({low:+.3g} to {high:+.3g})",
+                        value=value,
+                        low=low[r, k],
+                        high=high[r, k],
+                    )
+                    + ("" if sure[r, k] else "\n" + tr("This may be chance."))
                 )
                 self.table.setItem(r, k, item)
 

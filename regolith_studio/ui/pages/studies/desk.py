@@ -14,6 +14,7 @@ from regolith_studio.studies.variations import VARIATIONS
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.studies.rows_bar import RowsBar
 from regolith_studio.ui.pages.studies.variation_panel import VariationPanel
+from regolith_studio.ui.translation import tr
 
 
 class VariationDesk:
@@ -60,7 +61,7 @@ class VariationDesk:
                 self._context.toast.problem(str(error))
             return
         if not particles:
-            self._context.toast.problem("No particle is open; open a mesh first.")
+            self._context.toast.problem(tr("No particle is open; open a mesh first."))
             return
         options = {"rows": rows, "box_metric": self._bar.box.value()}
         job = Job(study_coarsening, (particles, choices.order), options)

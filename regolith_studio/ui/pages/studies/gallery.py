@@ -7,6 +7,7 @@ from PySide6.QtGui import QIcon
 from PySide6.QtWidgets import (
     QAbstractItemView,
     QHeaderView,
+    QStackedLayout,
     QStyledItemDelegate,
     QStyleOptionViewItem,
     QTableWidget,
@@ -15,14 +16,18 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.session.solids import Solid
 from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.widgets.heat_table import remark_in_the_middle
 from regolith_studio.ui.widgets.study_frame import StudyFrame
 from regolith_studio.ui.widgets.thumbnails import picture_of
 
 SIZE = 96
 LETTERS = 22
 """Pixels below a picture."""
+WAITING = mark("The polyhedra of six particles as each loss function makes them, as in Fig. 7 of the paper.")
 Index = QModelIndex | QPersistentModelIndex
 COLUMNS = 6
 """Particles that are shown at most."""
@@ -37,7 +42,7 @@ class SolidGallery(QWidget):
         self._solids: tuple[Solid, ...] = ()
         self._colour = current_theme().polyhedron
         self.table = QTableWidget()
-        self.table.setAccessibleName("Polyhedra by loss function and particle")
+        self.table.setAccessibleName(tr("Polyhedra by loss function and particle"))
         self.table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
         self.table.setSelectionMode(QAbstractItemView.SelectionMode.NoSelection)
         self.table.setShowGrid(False)
@@ -49,8 +54,12 @@ class SolidGallery(QWidget):
         self.table.verticalHeader().setDefaultAlignment(
             Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter | Qt.TextFlag.TextWordWrap
         )
-        self.frame = StudyFrame("solids", self.table)
-        self.frame.set_remark("for the particle on screen and those after it, one row a loss function")
+        self._parts = QWidget()
+        self._stack = QStackedLayout(self._parts)
+        self._stack.addWidget(remark_in_the_middle(tr(WAITING)))
+        self._stack.addWidget(self.table)
+        self.frame = StudyFrame("solids", self._parts)
+        self.frame.set_remark(tr("for the particle on screen and those after it, one row a loss function"))
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(self.frame, 1)
@@ -58,6 +67,7 @@ class SolidGallery(QWidget):
     def begin(self, names: Sequence[str], labels: Sequence[str]) -> None:
         """Empty cells for these particles and losses."""
         self._solids = ()
+        self._stack.setCurrentWidget(self.table)
         self.table.clear()
         self.table.setRowCount(len(labels))
         self.table.setColumnCount(len(names))
@@ -90,10 +100,15 @@ class SolidGallery(QWidget):
             return item
         item.setIcon(QIcon(picture_of(found.mesh, self._colour, SIZE)))
         item.setText(f"J {found.jaccard_distance:.3f}")
-        worst = "\n".join(f"{key}: {error:.2%}" for key, error in found.errors.items())
+        worst = "\n".join(f"{tr(CATALOGUE[key].label)}: {error:.2%}" for key, error in found.errors.items())
         item.setToolTip(
-            f"{found.n_faces} facets, Jaccard distance J = {found.jaccard_distance:.3f}, loss of this row "
-            f"{found.loss:.3g}\n{worst}"
+            tr(
+                "{count} facets, Jaccard distance J = {distance:.3f}, loss of this row {loss:.3g}",
+                count=found.n_faces,
+                distance=found.jaccard_distance,
+                loss=found.loss,
+            )
+            + f"\n{worst}"
         )
         return item
 

@@ -25,11 +25,13 @@ from regolith_studio.ui.pages.studies.variation_panel import VariationPanel
 from regolith_studio.ui.panels.coarsening_study import CoarseningStudyPanel
 from regolith_studio.ui.panels.lmax_study import LmaxStudyPanel
 from regolith_studio.ui.theme import Theme
+from regolith_studio.ui.translation import mark, tr, tr_count
+from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.labels import heading
 
-LMAX_TITLE = "Error against l_max (Fig. 3)"
-COARSENING_TITLE = "Error of coarsened particles"
-TABS = {"faces": "Faces", "tradeoff": "Overlap or descriptors", "sensitivity": "Weights"}
+LMAX_TITLE = mark("Error against l<sub>max</sub> (Fig. 3)")
+COARSENING_TITLE = mark("Error of coarsened particles")
+TABS = {"faces": mark("Faces"), "tradeoff": mark("Overlap or descriptors"), "sensitivity": mark("Weights")}
 """Behind the losses of Fig. 8."""
 
 
@@ -83,7 +85,7 @@ class StudiesPage(PageWidget):
     def run_all(self) -> None:
         """Start all studies that the choices allow, and the gallery."""
         if not self._session.particles:
-            self._context.toast.problem("No particle is open; open a mesh first.")
+            self._context.toast.problem(tr("No particle is open; open a mesh first."))
             return
         for kind in KINDS:
             self.start(kind)
@@ -106,16 +108,16 @@ class StudiesPage(PageWidget):
         """Coarsen the particle on screen and those after it once for each loss function."""
         entries = self._session.particles
         if not entries:
-            self._context.toast.problem("No particle is open; open a mesh first.")
+            self._context.toast.problem(tr("No particle is open; open a mesh first."))
             return
         ids = [entry.id for entry in entries]
         first = ids.index(self._session.choices.selected) if self._session.choices.selected in ids else 0
         shown = [*entries[first:], *entries[:first]][:COLUMNS]
         rows = chosen_rows(self.bar.names(), self._session.choices)
-        self.gallery.begin([entry.id for entry in shown], [row.label for row in rows])
+        self.gallery.begin([entry.id for entry in shown], [retold(row.label) for row in rows])
         job = Job(draw_solids, (tuple(entry.particle for entry in shown), self._session.choices.order, rows))
         show = self.gallery.show_solids
-        self._context.start("Coarsening for the gallery", job, show, partial=show, lane="gallery")
+        self._context.start(tr("Coarsening for the gallery"), job, show, partial=show, lane="gallery")
 
     def save(self) -> None:
         """Ask for a folder and write tables and figures of the studies that are there."""
@@ -123,19 +125,21 @@ class StudiesPage(PageWidget):
         found |= {f"{key}_study": study for key, study in self.desk.found.items() if study.names}
         done = tuple((kind, study) for kind, study in found.items() if study is not None)
         if not done:
-            self._context.toast.problem("Compute a study first.")
+            self._context.toast.problem(tr("Compute a study first."))
             return
         start = str(self._context.recall("folder", str(Path.home())))
-        name = QFileDialog.getExistingDirectory(self, "Folder of figures and tables", start)
+        name = QFileDialog.getExistingDirectory(self, tr("Folder of figures and tables"), start)
         if not name:
             return
         self._context.remember("folder", name)
         job = Job(write_studies, (done, Path(name)))
-        self._context.start("Writing figures", job, self._tell_written, lane="save")
+        self._context.start(tr("Writing figures"), job, self._tell_written, lane="save")
 
     def _tell_written(self, paths: tuple[Path, ...]) -> None:
         listed = "\n".join(str(path) for path in paths)
-        self._context.toast.note(f"{len(paths)} files were written to {paths[0].parent}.", listed)
+        self._context.toast.note(
+            tr("{count} files were written to {folder}.", count=len(paths), folder=paths[0].parent), listed
+        )
 
     def _wire(self, kind: Kind, panel: LmaxStudyPanel | CoarseningStudyPanel) -> None:
         session, wiring = self._session, self._context.wiring
@@ -162,20 +166,26 @@ class StudiesPage(PageWidget):
     def _name_gallery_button(self) -> None:
         count = len(self._session.particles)
         self.gallery.frame.set_count(count)
-        self.gallery.frame.start.setText(f"Draw the polyhedra of {min(count, COLUMNS)} particles")
+        self.gallery.frame.start.setText(
+            tr_count(
+                "Draw the polyhedra of this particle",
+                "Draw the polyhedra of {count} particles",
+                min(count, COLUMNS),
+            )
+        )
 
     def _tabs(self) -> QTabWidget:
-        pages = [(self.variations[key], title) for key, title in TABS.items()]
-        return tabs("studies_coarsening", [(self.coarsening_study, "Losses (Fig. 8)"), *pages])
+        pages = [(self.variations[key], tr(title)) for key, title in TABS.items()]
+        return tabs("studies_coarsening", [(self.coarsening_study, tr("Losses (Fig. 8)")), *pages])
 
     def _place(self) -> None:
         above = side_by_side(
-            [_titled(LMAX_TITLE, _framed(self.lmax_study)), _titled(COARSENING_TITLE, self.tabs)],
+            [_titled(tr(LMAX_TITLE), _framed(self.lmax_study)), _titled(tr(COARSENING_TITLE), self.tabs)],
             [480, 900],
             stretch=1,
         )
         above.setObjectName("studies_figures")
-        below = _titled("What the polyhedra look like (Fig. 7)", _framed(self.gallery))
+        below = _titled(tr("What the polyhedra look like (Fig. 7)"), _framed(self.gallery))
         rows = stacked([above, below], [370, 500], stretch=1)
         rows.setObjectName("studies_rows")
         layout = QVBoxLayout(self)

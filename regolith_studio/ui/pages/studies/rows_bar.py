@@ -9,11 +9,13 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QMenu, QToolButton, QWidget
 
 from regolith_studio.session.variations import loss_names
 from regolith_studio.studies.loss_rows import ALONE, PAPER_ROWS
+from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.choice_box import ChoiceBox
 
 ARROW = "  ▾"
-BOXES = {"exact": "exact minimum volume", "trimesh": "trimesh's heuristic (paper)"}
-BOX_TIP = (
+BOXES = {"exact": mark("exact minimum volume"), "trimesh": mark("trimesh's heuristic (paper)")}
+BOX_TIP = mark(
     "Diameters and aspect ratio come from this box. The heuristic of the paper's program is no minimum; "
     "it is here to compare numbers."
 )
@@ -30,20 +32,20 @@ class RowsBar(QWidget):
         self._actions: dict[str, QAction] = {}
         self.rows = QToolButton()
         self.rows.setObjectName("study_rows")
-        self.rows.setAccessibleName("Losses of figures 7 and 8")
-        self.rows.setToolTip("Losses that are the rows of figures 7 and 8")
+        self.rows.setAccessibleName(tr("Losses of figures 7 and 8"))
+        self.rows.setToolTip(tr("Losses that are the rows of figures 7 and 8"))
         self.menu = self._menu()
         self.rows.clicked.connect(self._open)
-        self.box = ChoiceBox("study_box", "Bounding box of the diameters", BOXES)
-        self.box.setMinimumContentsLength(max(map(len, BOXES.values())))
-        self.box.setToolTip(BOX_TIP)
+        self.box = ChoiceBox("study_box", tr("Bounding box of the diameters"), BOXES)
+        self.box.setMinimumContentsLength(max(len(tr(each)) for each in BOXES.values()))
+        self.box.setToolTip(tr(BOX_TIP))
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 4)
         row.setSpacing(8)
-        row.addWidget(QLabel("Losses"))
+        row.addWidget(QLabel(tr("Losses")))
         row.addWidget(self.rows)
         row.addSpacing(16)
-        row.addWidget(QLabel("Bounding box"))
+        row.addWidget(QLabel(tr("Bounding box")))
         row.addWidget(self.box)
         row.addStretch(1)
         self.box.currentIndexChanged.connect(lambda _index: self.valueChanged.emit())
@@ -66,13 +68,13 @@ class RowsBar(QWidget):
         menu = _StayingMenu(self)
         menu.setObjectName("study_rows_menu")
         for words, names in (
-            ("Those of Fig. 8", PAPER_ROWS),
-            ("Each term alone", ("overlap", *(name for name in loss_names() if name.startswith(ALONE)))),
+            (tr("Those of Fig. 8"), PAPER_ROWS),
+            (tr("Each term alone"), ("overlap", *(name for name in loss_names() if name.startswith(ALONE)))),
         ):
             menu.addAction(words).triggered.connect(partial(self._choose, names))
         menu.addSeparator()
         for name, label in loss_names().items():
-            action = menu.addAction(label)
+            action = menu.addAction(retold(label))
             action.setCheckable(True)
             action.toggled.connect(partial(self._toggled, name))
             self._actions[name] = action
@@ -95,9 +97,9 @@ class RowsBar(QWidget):
 
     def _tell(self) -> None:
         names = self.names()
-        words = f"{len(names)} losses"
+        words = tr("{count} losses", count=len(names))
         if names == tuple(name for name in self._actions if name in PAPER_ROWS):
-            words = "Rows of Fig. 8"
+            words = tr("Rows of Fig. 8")
         elif len(names) == 1:
             words = self._actions[names[0]].text()
         self.rows.setText(words + ARROW)

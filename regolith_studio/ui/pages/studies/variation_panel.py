@@ -14,12 +14,14 @@ from regolith_studio.studies.variations import VARIATIONS, descriptor_error, eff
 from regolith_studio.ui.pages.studies.band_plot import BandPlot, Series
 from regolith_studio.ui.pages.studies.change_table import ChangeTable
 from regolith_studio.ui.theme import Theme
+from regolith_studio.ui.translation import mark, tr, tr_count
+from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.curve_plot import Curve
 from regolith_studio.ui.widgets.labels import plain_symbol, rich_symbol
 from regolith_studio.ui.widgets.study_frame import StudyFrame
 
 OVERLAP = "Jaccard"
-ON_AND_OFF = "The method keeps descriptors exactly: each is asked for or not, whatever its weight."
+ON_AND_OFF = mark("The method keeps descriptors exactly: each is asked for or not, whatever its weight.")
 
 
 class Shown(Protocol):
@@ -34,9 +36,9 @@ class FacesPlot(BandPlot):
 
     def __init__(self) -> None:
         super().__init__(
-            "Faces",
-            f"RMSRE [%], at least {LEAST_DRAWN:g}",
-            "Root mean squared relative error of each descriptor against the number of faces.",
+            tr("Faces"),
+            tr("RMSRE [%], at least {least:g}", least=LEAST_DRAWN),
+            tr("Root mean squared relative error of each descriptor against the number of faces."),
             log_y=True,
         )
 
@@ -50,7 +52,9 @@ class FacesPlot(BandPlot):
         self.set_series(
             [
                 Series(
-                    f"{OVERLAP} (mean)" if key == JACCARD else rich_symbol(CATALOGUE[key].symbol),
+                    tr("{name} (mean)", name=OVERLAP)
+                    if key == JACCARD
+                    else rich_symbol(CATALOGUE[key].symbol),
                     DESCRIPTOR_COLOURS[k % len(DESCRIPTOR_COLOURS)],
                     x,
                     tuple(values[:, k]),
@@ -67,9 +71,9 @@ class TradeoffPlot(BandPlot):
 
     def __init__(self) -> None:
         super().__init__(
-            "Mean Jaccard distance [%]",
-            "Mean RMSRE of six descriptors [%]",
-            "What overlap costs in descriptors, and descriptors in overlap: lower left is better.",
+            tr("Mean Jaccard distance [%]"),
+            tr("Mean RMSRE of six descriptors [%]"),
+            tr("What overlap costs in descriptors, and descriptors in overlap: lower left is better."),
         )
 
     def show_study(self, study: CoarseningStudy | None) -> None:
@@ -81,10 +85,12 @@ class TradeoffPlot(BandPlot):
         y = 100 * descriptor_error(study.rmsre)
         low, high = 100 * study.band_of(descriptor_error(study.resampled))
         front = list(efficient(study))
-        line = Curve("none is better in both", self.theme.muted, tuple(x[front]), tuple(y[front]), dash=True)
+        line = Curve(
+            tr("none is better in both"), self.theme.muted, tuple(x[front]), tuple(y[front]), dash=True
+        )
         series = [
             Series(
-                row.label,
+                retold(row.label),
                 DESCRIPTOR_COLOURS[r % len(DESCRIPTOR_COLOURS)],
                 (float(x[r]),),
                 (float(y[r]),),
@@ -103,7 +109,7 @@ def sensitivity_part() -> ChangeTable:
     """The table of a sensitivity."""
     headers = (*(plain_symbol(CATALOGUE[key].symbol) for key in LOSS_KEYS), OVERLAP)
     return ChangeTable(
-        "What each error becomes when one weight of the loss is changed: which weights matter.", headers
+        tr("What each error becomes when one weight of the loss is changed: which weights matter."), headers
     )
 
 
@@ -126,11 +132,11 @@ class VariationPanel(QWidget):
         self._variation = VARIATIONS[key]
         self.values = QLineEdit(", ".join(f"{value:g}" for value in self._variation.values))
         self.values.setObjectName(f"{key}_values")
-        self.values.setAccessibleName(self._variation.asks)
-        self.values.setToolTip("Numbers with commas between them; Return starts the study")
-        self.asked = QLabel(self._variation.asks)
+        self.values.setAccessibleName(tr(self._variation.asks))
+        self.values.setToolTip(tr("Numbers with commas between them; Return starts the study"))
+        self.asked = QLabel(tr(self._variation.asks))
         self.part = PARTS[key]()
-        self.part.setAccessibleName(self._variation.title)
+        self.part.setAccessibleName(tr(self._variation.title))
         self.frame = StudyFrame(key, self.part)
         asking = QHBoxLayout()
         asking.setContentsMargins(8, 6, 8, 0)
@@ -149,7 +155,7 @@ class VariationPanel(QWidget):
         """Ask for values where the method makes something of them."""
         takes = self._variation.takes_values(method)
         self.values.setVisible(takes)
-        self.asked.setText(self._variation.asks if takes else ON_AND_OFF)
+        self.asked.setText(tr(self._variation.asks if takes else ON_AND_OFF))
 
     def show_study(self, study: CoarseningStudy | None, outdated: bool) -> None:
         """Show what was found, or nothing."""
@@ -165,11 +171,17 @@ class VariationPanel(QWidget):
 
 def said_of(study: CoarseningStudy, outdated: bool) -> str:
     """Particles, box, requests that could not be met, and whether the choices have moved on."""
-    words = [f"{len(study.names)} particles" if len(study.names) != 1 else "1 particle"]
+    words = [tr_count("1 particle", "{count} particles", len(study.names))]
     if study.box_metric != "exact":
-        words.append(f"box of {study.box_metric}")
+        words.append(tr("box of {name}", name=study.box_metric))
     if study.failures:
-        words.append(f"{len(study.failures)} left out")
+        words.append(tr("{count} left out", count=len(study.failures)))
     if unmet := sum(study.n_unmet):
-        words.append(f"{unmet} of {len(study.names) * len(study.rows)} requests not met exactly")
-    return "; ".join([", ".join(words), *(["computed with other choices"] if outdated else [])])
+        words.append(
+            tr(
+                "{unmet} of {total} requests not met exactly",
+                unmet=unmet,
+                total=len(study.names) * len(study.rows),
+            )
+        )
+    return "; ".join([", ".join(words), *([tr("computed with other choices")] if outdated else [])])
