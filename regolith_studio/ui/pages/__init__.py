@@ -44,7 +44,9 @@ and ``page.py``::
 
 What a page can rely on
 -----------------------
-* It is built at its first visit, in the thread of the window, and kept until the window closes.
+* It is built at its first visit, in the thread of the window, and kept until the window closes. Its module
+  ``page`` has been imported in the background by then, as a rule; ``Page(prepare=...)`` names what else takes
+  long and touches no widget.
 * **State**: ``context.session`` is the one truth: ``particles``, ``choices``, ``results``,
   ``choose(...)``, ``adopt(particles)`` for particles made by a page (they replace or join the open
   ones and are measured and shown everywhere), ``shelf`` for anything else that pages hand to each
