@@ -6,9 +6,9 @@ is therefore the grain's volume, whatever blur the scanner has added: blurring m
 loses none. A mask at any level has no such property; a blur of 0.8 voxels takes 2 to 4 % of the
 volume of a grain of 24 voxels in diameter, a threshold nearer to one mineral than to another more.
 
-The shape is the contour at half the way from b to g, after as much of the blur is undone as the
-noise permits (or a little is added, so that noise makes no warts), smoothed as masks are, and scaled
-to that volume.
+The shape is the contour at half the way from b to g, moved until it looks through the same blur as
+the grain does (:mod:`~regolith_studio.imaging.surface_fit`), the more smoothly the more noise there
+is, and scaled to that volume.
 """
 
 from typing import Any
@@ -24,6 +24,7 @@ from regolith_studio.imaging.bodies import largest_body, pores_filled
 from regolith_studio.imaging.contour import contour
 from regolith_studio.imaging.label_table import GrainCrop
 from regolith_studio.imaging.smoothing import windowed_sinc, with_volume
+from regolith_studio.imaging.surface_fit import FitSettings, fitted
 
 MARGIN = 7
 """Voxels about a grain's box that are looked at."""
@@ -34,9 +35,10 @@ _REACH = 4.0
 _FEWEST = 30
 _NOISIEST = 0.35
 _STRANGEST = 2.0
-_MOST_STEPS = 8
-_NOISE_OF_MOST = 0.03
 _CALMING = 0.42
+_STEPS = 12
+_WIDENING, _POWER = 1.05, 0.6
+_WIDEST = 1.5
 _SPECK = 8
 
 Floats = NDArray[np.float32]
@@ -57,7 +59,7 @@ def grey_mesh(crop: GrainCrop, body: BoolArray, iterations: int = 20, pass_band:
     body
         The grain's voxels that count: of one piece, without pores.
     iterations, pass_band
-        Of the smoothing.
+        Of the smoothing; without any iteration the surface is the contour alone.
     """
     others, values = crop.others | (crop.own & ~body), crop.values.astype(np.float32)
     inside, outside = _depth(body), _depth(~body)
@@ -65,15 +67,16 @@ def grey_mesh(crop: GrainCrop, body: BoolArray, iterations: int = 20, pass_band:
     if isinstance(levels, str):
         return levels
     share, noise = levels
-    rim = _rim(share, others, inside, outside)
+    rim, told = _rim(share, others, inside, outside)
     volume = float(rim.sum(dtype=np.float64))
     if not 1.0 / _STRANGEST < volume / np.count_nonzero(body) < _STRANGEST:
         return "its brightness and its number of voxels tell different volumes"
-    if steps := _steps(noise):
-        shape = _sharpened(rim, _blur(rim, noise, _contoured(rim).surface_area), steps)
-    else:
-        shape = ndimage.gaussian_filter(rim, _CALMING)
-    return with_volume(windowed_sinc(_contoured(shape), iterations, pass_band), volume)
+    mesh = windowed_sinc(_contoured(ndimage.gaussian_filter(rim, _CALMING)), iterations, pass_band)
+    if iterations:
+        wider = min(_WIDENING * pass_band / max(noise, 1e-6) ** _POWER, _WIDEST)
+        blur = _blur(rim, noise, mesh.surface_area)
+        mesh = fitted(mesh, rim, told, blur, FitSettings(_STEPS, iterations, wider))
+    return with_volume(mesh, volume)
 
 
 def _levels(values: Floats, others: BoolArray, inside: Floats, outside: Floats) -> tuple[Floats, float] | str:
@@ -96,27 +99,26 @@ def _levels(values: Floats, others: BoolArray, inside: Floats, outside: Floats) 
     return np.asarray((values - dark) / span), noise / contrast
 
 
-def _rim(share: Floats, others: BoolArray, inside: Floats, outside: Floats) -> Floats:
-    """Share of the grain in each voxel: 1 deep inside, 0 far outside, in other grains and nearer to them."""
-    rim = share.copy()
+def _rim(share: Floats, others: BoolArray, inside: Floats, outside: Floats) -> tuple[Floats, BoolArray]:
+    """Share of the grain in each voxel: 1 deep inside, 0 far outside, in other grains and nearer to them.
+
+    And where it tells the surface: not deep inside, not far outside, not where other grains touch.
+    """
+    rim, told = share.copy(), (inside <= _RIM) & (outside <= _RIM)
     rim[inside > _RIM] = 1.0
     body = inside > 0.0
     strange = (share >= 0.5) & (outside > _CRUMB)
     others = others | np.asarray(_without_specks(strange.view(np.uint8), _SPECK) > 0)
     if others.any():
         away = _depth(~others)
-        rim[body & (away <= _CONTACT)] = 1.0
+        touched = body & (away <= _CONTACT)
+        rim[touched] = 1.0
         rim[~body & (away == outside)] *= 0.5
         rim[~body & (away < outside)] = 0.0
+        if touched.any():
+            told &= _depth(~touched) > _RIM
     rim[outside > _RIM] = 0.0
-    return rim
-
-
-def _steps(noise: float) -> int:
-    """How many steps of sharpening the noise permits; each of them makes more of it."""
-    if noise <= _NOISE_OF_MOST:
-        return _MOST_STEPS
-    return int(_MOST_STEPS * (_NOISE_OF_MOST / noise) ** 2)
+    return rim, told
 
 
 def _blur(rim: Floats, noise: float, area: float) -> float:
@@ -127,15 +129,6 @@ def _blur(rim: Floats, noise: float, area: float) -> float:
     uncertain = rim[(rim != 0.0) & (rim != 1.0)].astype(np.float64)
     total = float((uncertain * (1.0 - uncertain) + noise**2).sum())
     return float(np.clip(np.sqrt(np.pi) * total / area, 0.1, 2.0))
-
-
-def _sharpened(rim: Floats, blur: float, steps: int) -> Floats:
-    """Van Cittert's iteration, held between 0 and 1: what blurs to the shares that were seen."""
-    sharp = rim
-    for _ in range(steps):
-        seen = ndimage.gaussian_filter(sharp, blur, mode="nearest", truncate=3.0)
-        sharp = np.clip(sharp + (rim - seen), 0.0, 1.0)
-    return sharp
 
 
 def _contoured(share: Floats) -> Mesh:
