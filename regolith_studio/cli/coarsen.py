@@ -10,6 +10,7 @@ from regolith_studio.cli.options import (
     Jobs,
     Json,
     LMax,
+    MaxError,
     Meshes,
     Method,
     Preset,
@@ -19,6 +20,7 @@ from regolith_studio.cli.options import (
     Settings,
     StarPoint,
     Target,
+    Triangles,
     Unit,
     Weights,
     as_bad_use,
@@ -29,11 +31,16 @@ from regolith_studio.cli.options import (
 if TYPE_CHECKING:
     from regolith_studio.session.choices import Choices
 
+FACES = 20
+"""Of the command; the options tell by it whether another number was asked for."""
+
 
 def coarsen(
     meshes: Meshes,
     output: Folder,
-    faces: Faces = 20,
+    faces: Faces = FACES,
+    triangles: Triangles = None,
+    max_error: MaxError = None,
     method: Method = "",
     preset: Preset = "",
     weight: Weights = None,
@@ -49,24 +56,45 @@ def coarsen(
     seed: Seed = 0,
 ) -> None:
     """Coarsen meshes to convex polyhedra that keep the chosen descriptors (section 2.4)."""
+    from dataclasses import replace
+
     from regolith_studio.cli.inputs import exit_code, read_inputs
-    from regolith_studio.cli.terminal import complain, follow, print_json
+    from regolith_studio.cli.terminal import complain, follow, print_json, print_table
     from regolith_studio.jobs.coarsening import coarsen_sample
-    from regolith_studio.session.outputs.coarsening import coarsening_document, write_coarsening
+    from regolith_studio.session.outputs.coarsening import coarsening_document, error_table, write_coarsening
     from regolith_studio.session.outputs.staging import staged_folder
 
+    faces = faces_from(faces, triangles, max_error)
     wish = choices_from(faces, method, preset, weight, set_, target, l_max, seed, star_point, rule, reference)
+    order = replace(wish.order, largest_error=None if max_error is None else max_error / 100.0)
     loaded = read_inputs(meshes, unit)
-    done = follow(coarsen_sample(loaded.particles, wish.order, jobs))
+    done = follow(coarsen_sample(loaded.particles, order, jobs))
     with staged_folder(output) as stage:
-        write_coarsening(stage, wish.order, done)
+        write_coarsening(stage, order, done)
     failed = [each for each in done if each.coarsened is None]
     complain(f"{each.name}: {each.problem}" for each in failed)
     if json:
-        print_json(coarsening_document(wish.order, done))
+        print_json(coarsening_document(order, done))
     else:
+        if len(done) > len(failed):
+            print_table(error_table(done))
+        results = [(each.name, each.coarsened) for each in done if each.coarsened]
+        complain(f"{name}: {coarse.reason}" for name, coarse in results if coarse.reason)
         typer.echo(f"{len(done) - len(failed)} of {len(done)} particles coarsened in {output}")
     raise typer.Exit(exit_code(meshes, loaded, len(failed)))
+
+
+def faces_from(faces: int, triangles: int | None, max_error: float | None) -> int:
+    """The number of facets that the options ask for; more than one of them is bad use."""
+    from regolith_studio.coarsening.budgets import faces_for_triangles
+    from regolith_studio.errors import InputError
+
+    with as_bad_use():
+        if (faces != FACES) + (triangles is not None) + (max_error is not None) > 1:
+            raise InputError("Only one of --faces, --triangles and --max-error can say how fine to be.")
+        if max_error is not None and not max_error > 0.0:
+            raise InputError(f"The largest error must be above 0 per cent, got {max_error:g}.")
+        return faces if triangles is None else faces_for_triangles(triangles)
 
 
 def choices_from(
@@ -83,6 +111,7 @@ def choices_from(
     reference: str,
 ) -> "Choices":
     """The choices that the options of a coarsening stand for; a bad one is bad use."""
+    from regolith_studio.coarsening.coarsen import DEFAULT_PRESET
     from regolith_studio.coarsening.weights import LossWeights
     from regolith_studio.session.choices import Choices
 
@@ -104,6 +133,8 @@ def choices_from(
         named = numbers(weight, "weight")
         if named and preset:
             changes["weights"] = LossWeights.from_preset(preset).replaced(**named)
+        elif named and not any(named.values()):
+            changes["weights"] = LossWeights.from_preset(DEFAULT_PRESET).replaced(**named)
         elif named:
             changes["weights"] = LossWeights.of(**named)
         return Choices().replaced(**changes)

@@ -84,13 +84,31 @@ Reference = Annotated[
 Degrees = Annotated[str, typer.Option("--degrees", help="Values of l_max: 1,2,5 or 1-20.", metavar="LIST")]
 Level = Annotated[int, typer.Option("--level", help="Subdivisions of the fits' surface.", metavar="N")]
 Faces = Annotated[int, typer.Option("--faces", help="Facets of each polyhedron.", metavar="N")]
+Triangles = Annotated[
+    int | None,
+    typer.Option("--triangles", help="Most triangles of each polyhedron, instead of facets.", metavar="N"),
+]
+MaxError = Annotated[
+    float | None,
+    typer.Option(
+        "--max-error",
+        help="The fewest facets whose weighted errors are all below this, beyond what none can avoid.",
+        metavar="PERCENT",
+    ),
+]
 Method = Annotated[str, typer.Option("--method", help="Coarsening method.", metavar="NAME")]
 Target = Annotated[
     str, typer.Option("--target", help="What is imitated: fit (paper) or particle.", metavar="T")
 ]
 Preset = Annotated[str, typer.Option("--preset", help="Weights of the loss by name.", metavar="NAME")]
 Weights = Annotated[
-    list[str] | None, typer.Option("--weight", help="One weight of the loss.", metavar="KEY=VALUE")
+    list[str] | None,
+    typer.Option(
+        "--weight",
+        help="One weight of the loss: those that are named are the only ones, or change a preset; 0 takes one"
+        " out of the preset.",
+        metavar="KEY=VALUE",
+    ),
 ]
 Settings = Annotated[
     list[str] | None, typer.Option("--set", help="One setting of the method.", metavar="KEY=VALUE")

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
+from regolith_studio.coarsening.budgets import fewest_faces
 from regolith_studio.coarsening.coarsen import DEFAULT_METHOD, coarsening_steps
 from regolith_studio.coarsening.result import Coarsened
 from regolith_studio.coarsening.target import Target
@@ -37,6 +38,8 @@ class CoarseningOrder:
         ``particle``: the mesh itself.
     expansion
         How the fit is made, to degree 30 or `l_max`.
+    largest_error
+        Where given, the fewest facets whose weighted errors are all below it, instead of `n_faces`.
     """
 
     weights: LossWeights
@@ -48,6 +51,7 @@ class CoarseningOrder:
     l_max: int = 10
     level: int = 4
     expansion: Expansion = USUAL
+    largest_error: float | None = None
 
 
 @dataclass(frozen=True)
@@ -143,6 +147,8 @@ def _target(mesh: Mesh) -> Target:
 
 
 def _told(mesh: Mesh, order: CoarseningOrder, index: int) -> Generator[Step, None, Any]:
+    if order.largest_error is not None:
+        return (yield from _tried(mesh, order, order.largest_error, index))
     steps = coarsening_steps(
         _target(mesh),
         n_faces=order.n_faces,
@@ -159,3 +165,24 @@ def _told(mesh: Mesh, order: CoarseningOrder, index: int) -> Generator[Step, Non
             return end.value
         yield Partial(step)
         yield Progress(step.step, step.steps)
+
+
+def _tried(mesh: Mesh, order: CoarseningOrder, limit: float, index: int) -> Generator[Step, None, Any]:
+    """Ever other numbers of facets until the fewest are known that meet the limit."""
+    trials = fewest_faces(
+        _target(mesh),
+        limit,
+        method=order.method,
+        weights=order.weights,
+        seed=order.seed,
+        particle_index=index,
+        settings=dict(order.settings),
+    )
+    done = 0
+    while True:
+        try:
+            trial = next(trials)
+        except StopIteration as end:
+            return end.value
+        done += 1
+        yield Progress(done, 0, f"{trial.n_faces} faces: {100 * trial.largest_error:.2g} %")

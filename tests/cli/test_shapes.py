@@ -102,6 +102,11 @@ def test_that_the_number_of_processes_changes_no_byte(command, grains: Path, tmp
     "options",
     [
         ("--faces", 2),
+        ("--triangles", 4),
+        ("--max-error", 0),
+        ("--max-error", "nan"),
+        ("--faces", 30, "--triangles", 100),
+        ("--triangles", 100, "--max-error", 1),
         ("--method", "magic"),
         ("--preset", "favourites"),
         ("--weight", "volume"),
@@ -131,6 +136,45 @@ def test_that_a_single_weight_is_the_only_one_and_beside_a_preset_changes_it(
     assert {key: value for key, value in alone.items() if value} == {"volume": 2.0}
     assert beside["volume"] == 2.0
     assert beside["sphericity"] == 1.0
+
+
+def test_that_a_weight_of_zero_alone_is_taken_out_of_the_usual_ones(
+    command, grains: Path, tmp_path: Path
+) -> None:
+    common = ("coarsen", grains / "grain-b.stl", "--method", "quadric", "-o", tmp_path, "--json")
+    weights = command(*common, "--weight", "sphericity=0").json["order"]["weights"]
+    assert {key for key, value in weights.items() if not value} == {"sphericity"}
+
+
+def test_that_a_budget_of_triangles_is_kept(command, grains: Path, tmp_path: Path) -> None:
+    said = command("coarsen", grains / "grain-b.stl", "-o", tmp_path, "--triangles", 59, "--json")
+    (entry,) = said.json["particles"]
+    assert entry["n_faces"] == 17
+    assert len(trimesh.load_mesh(tmp_path / "grain-b.stl").faces) == 56
+
+
+def test_that_the_fewest_facets_below_an_error_are_found(command, grains: Path, tmp_path: Path) -> None:
+    common = ("coarsen", grains / "grain-b.stl", "--target", "particle", "--json")
+    said = command(*common, "-o", tmp_path / "few", "--max-error", 1)
+    (entry,) = said.json["particles"]
+    assert said.json["order"]["largest_error"] == 0.01
+    kept = ("volume", "sphericity", "min_diameter", "max_diameter", "aspect_ratio")
+    assert max(entry["errors"][key] for key in kept) <= 0.01
+    if entry["n_faces"] > 5:
+        fewer = command(*common, "-o", tmp_path / "fewer", "--faces", entry["n_faces"] - 1)
+        assert max(fewer.json["particles"][0]["errors"][key] for key in kept) > 0.01
+
+
+def test_that_errors_bounds_and_reasons_are_shown(command, grains: Path, tmp_path: Path) -> None:
+    said = command("coarsen", grains / "grain-b.stl", "-o", tmp_path, "--faces", 5, "--json")
+    (entry,) = said.json["particles"]
+    shown = command("coarsen", grains / "grain-b.stl", "-o", tmp_path, "--faces", 5)
+    for word in ("facets", "vertices", "triangles", "Jaccard"):
+        assert word in shown.out
+    if entry["bounds"]["convex_hull_volume"] > 1e-6:
+        assert f">= {100 * entry['bounds']['convex_hull_volume']:.2g}" in shown.out
+    assert (entry["reason"] or "") in shown.err
+    assert shown.out.splitlines()[-1] == f"1 of 1 particles coarsened in {tmp_path}"
 
 
 def test_that_a_particle_that_fails_does_not_stop_the_others(command, grains: Path, tmp_path: Path) -> None:

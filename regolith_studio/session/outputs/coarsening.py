@@ -5,10 +5,14 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from regolith_studio.coarsening.exact.request import EXACT
 from regolith_studio.coarsening.result import Coarsened
+from regolith_studio.coarsening.weights import JACCARD
+from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.imaging.stl import stl_bytes
 from regolith_studio.jobs.coarsening import CoarsenedParticle, CoarseningOrder
 from regolith_studio.session.outputs.staging import json_bytes, write_bytes
+from regolith_studio.studies.tables import Cell, Column, Table
 
 STL_HEADER = "Regolith Studio, convex polyhedron, micrometres"
 
@@ -44,8 +48,36 @@ def document_head(order: CoarseningOrder) -> dict[str, Any]:
 
 
 def order_document(order: CoarseningOrder) -> dict[str, Any]:
-    """An order as plain JSON values."""
-    return asdict(order) | {"weights": dict(order.weights), "settings": dict(order.settings)}
+    """An order as plain JSON values; the largest error only where one was asked for."""
+    values = asdict(order) | {"weights": dict(order.weights), "settings": dict(order.settings)}
+    if order.largest_error is None:
+        del values["largest_error"]
+    return values
+
+
+def error_table(done: Sequence[CoarsenedParticle]) -> Table:
+    """Facets, vertices, triangles and the errors of each particle, with what no polyhedron can do better."""
+    symbols = [Column(CATALOGUE[key].symbol, "%") for key in LOSS_KEYS]
+    columns = (Column("name"), Column("facets"), Column("vertices"), Column("triangles"), *symbols)
+    rows: list[tuple[Cell, ...]] = [
+        (
+            each.name,
+            coarse.n_faces,
+            coarse.n_vertices,
+            coarse.n_triangles,
+            *[_per_cent(coarse.errors[key], coarse.bounds[key]) for key in LOSS_KEYS],
+            _per_cent(coarse.jaccard_distance, coarse.bounds[JACCARD]),
+        )
+        for each in done
+        if (coarse := each.coarsened)
+    ]
+    return Table("", (*columns, Column("Jaccard", "%")), tuple(rows))
+
+
+def _per_cent(error: float, bound: float) -> str:
+    """An error with its bound in brackets where there is one; below 1e-6 it counts as none."""
+    shown = f"{100 * error:.2g}" if error > EXACT else "0"
+    return f"{shown} (>= {100 * bound:.2g})" if bound > EXACT else shown
 
 
 def coarsening_entry(each: CoarsenedParticle, coarse: Coarsened) -> dict[str, Any]:
