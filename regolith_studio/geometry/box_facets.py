@@ -6,9 +6,10 @@ import numpy as np
 
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
 from regolith_studio.geometry.box_curve import unit
-from regolith_studio.geometry.box_widths import SpanTable, between, lowest, span_near
+from regolith_studio.geometry.box_widths import SpanTable, between, ends_along_each, span_near
 from regolith_studio.geometry.compiled import kernel, leaf
 from regolith_studio.geometry.hull_graph import HullGraph, after
+from regolith_studio.geometry.inlined import inlined
 from regolith_studio.geometry.vectors import Vector, cross, dot, length, mixed, row
 
 QUARTER_TURNS = 24
@@ -63,11 +64,15 @@ def arcs_of(facets: Facets) -> FloatArray:
     its ends are from there; shape (e, 11).
     """
     points, normals, edges = facets
-    arcs = np.empty((len(edges), 11))
+    arcs, between_facets = np.empty((len(edges), 11)), np.empty((3, len(edges)))
+    for e in range(len(edges)):
+        for c in range(3):
+            between_facets[c, e] = normals[edges[e, 2], c] + normals[edges[e, 3], c]
+    lowest = ends_along_each(points, between_facets)[1]
     for e in range(len(edges)):
         one, two = row(normals, edges[e, 2]), row(normals, edges[e, 3])
         direction = unit(between(points, edges[e, 1], edges[e, 0]))
-        span = between(points, edges[e, 0], lowest(points, mixed(one, 1.0, two, 1.0)))
+        span = between(points, edges[e, 0], lowest[e])
         middle = unit(mixed(one, 1.0, two, 1.0))
         for c in range(3):
             arcs[e, c], arcs[e, 3 + c], arcs[e, 7 + c] = direction[c], span[c], middle[c]
@@ -106,17 +111,21 @@ def worth_asking(facets: Facets, arcs: FloatArray, table: SpanTable, limit: floa
     """
     _, normals, edges = facets
     worth = np.zeros(len(edges), np.bool_)
+    cosines, sines = np.empty(QUARTER_TURNS), np.empty(QUARTER_TURNS)
+    for step in range(QUARTER_TURNS):
+        angle = np.pi / 2.0 / QUARTER_TURNS * step
+        cosines[step], sines[step] = np.cos(angle), np.sin(angle)
     for e in range(len(edges)):
         one, two = row(normals, edges[e, 2]), row(normals, edges[e, 3])
         axis, first = unit(mixed(one, 1.0, two, 1.0)), row(arcs, e)
         second = cross(axis, first)
         turn = np.arccos(min(1.0, dot(axis, one))) + np.pi / 4.0 / QUARTER_TURNS
+        cosine, sine = np.cos(turn), np.sin(turn)
         for step in range(QUARTER_TURNS):
-            angle = np.pi / 2.0 / QUARTER_TURNS * step
-            b = mixed(first, np.cos(angle), second, np.sin(angle))
-            c = mixed(first, -np.sin(angle), second, np.cos(angle))
-            wide = _after_turn(span_near(table, b), b, turn)
-            high = _after_turn(span_near(table, c), c, turn)
+            b = mixed(first, cosines[step], second, sines[step])
+            c = mixed(first, -sines[step], second, cosines[step])
+            wide = _after_turn(span_near(table, b), b, cosine, sine)
+            high = _after_turn(span_near(table, c), c, cosine, sine)
             if min(wide, high) <= 0.0 or arcs[e, 6] * wide * high < limit:
                 worth[e] = True
                 break
@@ -133,9 +142,9 @@ def with_all_edges(facets: Facets, worth: BoolArray) -> BoolArray:
     return asked
 
 
-@leaf
-def _after_turn(span: Vector, direction: Vector, angle: float) -> float:
-    """Least length of a span along a direction that turns by at most `angle`."""
+@inlined
+def _after_turn(span: Vector, direction: Vector, cosine: float, sine: float) -> float:
+    """Least length of a span along a direction that turns by at most an angle of this cosine and sine."""
     here = abs(dot(span, direction))
     across = np.sqrt(max(0.0, dot(span, span) - here * here))
-    return float(here * np.cos(angle) - np.sin(angle) * across)
+    return float(here * cosine - sine * across)

@@ -50,7 +50,8 @@ SIDEWAYS = 1e-9
 
 
 MANY_FACETS, FIRST_FACETS = 100, 16
-"""Of solids with more facets, edges are first ruled out one by one, after so many facets were looked at."""
+"""Of solids with more facets, edges are first ruled out one by one, after so many facets were looked at, and
+once more after all facets that are left."""
 MANY_EDGES, LEAST_SLACK, MOST_SLACK = 8000, 1e-7, 1e-3
 """With more edges left, boxes smaller by a share of 1e-6 to 1e-3 are given up: see `minimum_box`."""
 
@@ -119,6 +120,9 @@ def boxes_near_least(facets: Facets, margin: float, known: float) -> Found:
         asked = with_all_edges(facets, worth)
         facets, arcs = Facets(points, normals, edges[worth]), arcs[worth]
     _on_facets(facets, arcs, table, work, asked, 1, margin, found)
+    if n > MANY_FACETS:
+        worth = worth_asking(facets, arcs, table, found.record[0] * (1.0 + margin))
+        facets, arcs = Facets(points, normals, facets.edges[worth]), arcs[worth]
     _on_curves(facets, arcs, table, work, margin, found)
     drop_far(margin, found)
     return found

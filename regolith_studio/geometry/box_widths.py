@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.compiled import kernel, leaf
 from regolith_studio.geometry.inlined import inlined
 from regolith_studio.geometry.vectors import Vector
@@ -12,6 +12,8 @@ from regolith_studio.geometry.vectors import Vector
 FEWEST_CELLS, MOST_CELLS = 9, 64
 """Directions are told apart by a grid of so many cells along the edge of a cube: as many as the square root
 of the number of vertices."""
+BLOCK = 256
+"""Directions that are looked along side by side."""
 
 
 class SpanTable(NamedTuple):
@@ -27,18 +29,6 @@ class SpanTable(NamedTuple):
 
     spans: FloatArray
     cells: int
-
-
-@leaf
-def lowest(points: FloatArray, direction: Vector) -> int:
-    """The vertex that is farthest against `direction`; points of shape (3, n)."""
-    x, y, z = direction
-    low, at = np.inf, 0
-    for i in range(points.shape[1]):
-        here = points[0, i] * x + points[1, i] * y + points[2, i] * z
-        if here < low:
-            low, at = here, i
-    return at
 
 
 @leaf
@@ -62,18 +52,51 @@ def between(points: FloatArray, one: int, two: int) -> Vector:
 
 
 @kernel
+def ends_along_each(points: FloatArray, directions: FloatArray) -> IntArray:
+    """:func:`ends_along` for all directions, shape (3, m), several at once: shape (2, m), top and bottom."""
+    m = directions.shape[1]
+    ends = np.empty((2, m), np.int64)
+    one, two, three = np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)
+    low, high, bottom, top = np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)
+    for start in range(0, m, BLOCK):
+        count = min(BLOCK, m - start)
+        for k in range(count):
+            one[k], two[k], three[k] = (
+                directions[0, start + k],
+                directions[1, start + k],
+                directions[2, start + k],
+            )
+            low[k], high[k], bottom[k], top[k] = np.inf, -np.inf, 0.0, 0.0
+        for i in range(points.shape[1]):
+            x, y, z, number = points[0, i], points[1, i], points[2, i], float(i)
+            for k in range(count):
+                here = x * one[k] + y * two[k] + z * three[k]
+                bottom[k] = number if here < low[k] else bottom[k]
+                low[k] = min(low[k], here)
+                top[k] = number if here > high[k] else top[k]
+                high[k] = max(high[k], here)
+        for k in range(count):
+            ends[0, start + k], ends[1, start + k] = int(top[k]), int(bottom[k])
+    return ends
+
+
+@kernel
 def span_table(points: FloatArray) -> SpanTable:
     """Look along the middle of every cell; points of shape (3, n)."""
     cells = min(MOST_CELLS, max(FEWEST_CELLS, int(np.sqrt(points.shape[1]))))
-    table = np.empty((3 * cells * cells, 3))
+    directions = np.empty((3, 3 * cells * cells))
     for k in range(3):
         for i in range(cells):
             for j in range(cells):
-                u, v = (2.0 * i + 1.0) / cells - 1.0, (2.0 * j + 1.0) / cells - 1.0
-                direction = (1.0, u, v) if k == 0 else ((v, 1.0, u) if k == 1 else (u, v, 1.0))
-                top, bottom = ends_along(points, direction)
-                for c in range(3):
-                    table[(k * cells + i) * cells + j, c] = points[c, top] - points[c, bottom]
+                at = (k * cells + i) * cells + j
+                directions[k, at] = 1.0
+                directions[(k + 1) % 3, at] = (2.0 * i + 1.0) / cells - 1.0
+                directions[(k + 2) % 3, at] = (2.0 * j + 1.0) / cells - 1.0
+    ends = ends_along_each(points, directions)
+    table = np.empty((3 * cells * cells, 3))
+    for at in range(len(table)):
+        for c in range(3):
+            table[at, c] = points[c, ends[0, at]] - points[c, ends[1, at]]
     return SpanTable(table, cells)
 
 

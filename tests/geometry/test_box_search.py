@@ -22,7 +22,7 @@ from regolith_studio.geometry.box_curve import (
 from regolith_studio.geometry.box_facets import arcs_of, facets_of, least_third, with_all_edges
 from regolith_studio.geometry.box_record import note, nothing_below
 from regolith_studio.geometry.box_search import boxes_near_least, minimum_box
-from regolith_studio.geometry.box_widths import ends_along, span_near, span_table
+from regolith_studio.geometry.box_widths import ends_along, ends_along_each, span_near, span_table
 from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.hull_graph import hull_graph
 from regolith_studio.geometry.mesh import Mesh
@@ -185,3 +185,13 @@ def test_that_no_box_is_narrower_than_the_bound_on_its_third_side() -> None:
             assert np.ptp(c @ facets.points) >= bound * (1.0 - 1e-12)
             useful += 1
     assert useful > 100
+
+
+@pytest.mark.parametrize("m", [1, 256, 700])
+def test_that_looking_along_many_directions_finds_the_ends_of_each(m: int) -> None:
+    rng = np.random.default_rng(m)
+    points, directions = rng.normal(size=(3, 50)), rng.normal(size=(3, m))
+    reach = directions.T @ points
+    top, bottom = ends_along_each(points, directions)
+    assert top.tolist() == reach.argmax(axis=1).tolist()
+    assert bottom.tolist() == reach.argmin(axis=1).tolist()
