@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numba import int64
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from regolith_studio.geometry.arrays import BoolArray, IntArray
 from regolith_studio.geometry.compiled import kernel
@@ -123,3 +125,16 @@ def walk_bodies(across: IntArray, forward: BoolArray) -> tuple[IntArray, BoolArr
                     conflicts += 1
         count += 1
     return body, turned, conflicts // 2  # type: ignore[return-value]
+
+
+def pinched_corners(faces: IntArray, table: EdgeTable) -> int:
+    """How many corners a closed mesh lacks because parts of its surface touch in a point and share it."""
+    start, half = faces.ravel(), np.arange(faces.size)
+    stop = half - half % 3 + (half + 1) % 3
+    across = neighbours(table)
+    here, there = half[across >= 0], across[across >= 0]
+    same = start[here] == start[there]
+    joined = np.concatenate([np.where(same, there, stop[there]), np.where(same, stop[there], there)])
+    links = (np.ones(len(joined), dtype=np.int8), (np.concatenate([here, stop[here]]), joined))
+    fans = connected_components(coo_array(links, shape=(faces.size, faces.size)), directed=False)[0]
+    return int(fans - len(np.unique(start)))

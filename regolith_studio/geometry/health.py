@@ -8,7 +8,7 @@ import numpy as np
 
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
 from regolith_studio.geometry.connectivity import Connectivity
-from regolith_studio.geometry.edges import EdgeTable
+from regolith_studio.geometry.edges import EdgeTable, pinched_corners
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.self_intersection import count_self_intersections
 from regolith_studio.geometry.star_shape import is_star_shaped
@@ -57,6 +57,9 @@ class MeshHealth:
         Pairs of triangles that cross; ``None`` where they were not searched for.
     problems
         One plain sentence each.
+    pinched_corners
+        How often parts of a watertight surface touch in a single corner, which lowers the Euler number by 1
+        without any handle.
     """
 
     faces: int
@@ -74,6 +77,7 @@ class MeshHealth:
     seam_vertices: int
     self_intersections: int | None
     problems: tuple[str, ...] = ()
+    pinched_corners: int = 0
 
     @property
     def sound(self) -> bool:
@@ -86,7 +90,8 @@ class MeshHealth:
     @property
     def handles(self) -> int:
         """Number of handles or tunnels of a watertight mesh."""
-        return max(0, self.bodies - self.euler_number // 2) if self.watertight else 0
+        euler = self.euler_number + self.pinched_corners
+        return max(0, self.bodies - euler // 2) if self.watertight else 0
 
     def as_dict(self) -> dict[str, Any]:
         """Findings as numbers, truth values and lists, ready for JSON."""
@@ -110,6 +115,8 @@ def inspect(mesh: Mesh, *, self_intersections: bool = True) -> MeshHealth:
     crossing = None
     if self_intersections and len(faces) <= MOST_FACES_SEARCHED:
         crossing = 0 if _surely_simple(mesh, links) else count_self_intersections(vertices, faces)
+    euler_number = used - len(table.ends) + len(faces)
+    odd = links.closed and euler_number != 2 * links.parts.count
     found = MeshHealth(
         faces=len(faces),
         vertices=used,
@@ -117,7 +124,7 @@ def inspect(mesh: Mesh, *, self_intersections: bool = True) -> MeshHealth:
         watertight=links.closed,
         consistent_winding=links.agrees,
         volume=0.0 if abs(share) < LEAST_VOLUME else mesh.volume,
-        euler_number=used - len(table.ends) + len(faces),
+        euler_number=euler_number,
         degenerate_faces=int(np.count_nonzero(degenerate(vertices, faces))),
         duplicate_faces=links.duplicate_faces,
         open_edges=table.open_edges,
@@ -127,6 +134,7 @@ def inspect(mesh: Mesh, *, self_intersections: bool = True) -> MeshHealth:
         else _inverted(vertices, faces, links.parts.body, table),
         seam_vertices=_seam_vertices(vertices, faces, used),
         self_intersections=crossing,
+        pinched_corners=pinched_corners(faces, table) if odd else 0,
     )
     problems = tuple(_sentences(found, searched=self_intersections))
     return MeshHealth(**{**found.__dict__, "problems": problems})
@@ -219,6 +227,10 @@ def _sentences(found: MeshHealth, searched: bool) -> Sequence[str]:
             0 < found.inverted_bodies < found.bodies,
             f"{_count(found.inverted_bodies, 'closed body is', 'closed bodies are')} turned inwards: "
             "cavities or nested shells.",
+        ),
+        (
+            found.pinched_corners > 0,
+            f"Its surface touches itself in {_count(found.pinched_corners, 'corner', 'corners')}.",
         ),
         (
             found.handles > 0,

@@ -252,3 +252,24 @@ def test_that_a_hopeless_search_for_crossings_is_given_up_and_said():
     assert time.perf_counter() - start < 5.0
     assert health.self_intersections is None
     assert any("not searched" in problem for problem in health.problems)
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_that_cones_that_meet_in_their_tips_touch_in_a_corner_and_have_no_tunnel(turned) -> None:
+    """Two tetrahedra that share a vertex have one corner less than two spheres."""
+    corners = np.array([[0, 0, 0], [1, 0, 1], [0, 1, 1], [-1, -1, 1.0]])
+    faces = np.array([[0, 2, 1], [0, 3, 2], [0, 1, 3], [1, 2, 3]])
+    both = np.vstack([corners, -corners[1:]])
+    mirrored = np.where(faces == 0, 0, faces + 3)[:, ::-1]
+    found = inspect(Mesh(both, np.vstack([faces, mirrored[:, ::-1] if turned else mirrored])))
+    assert (found.euler_number, found.pinched_corners, found.handles) == (3, 1, 0)
+    assert "Its surface touches itself in 1 corner." in found.problems
+
+
+def test_that_one_body_may_touch_itself_in_a_corner() -> None:
+    """Two opposite corners of a ball made one: Euler number 1, and not a tunnel."""
+    ball = icosphere(2)
+    far = int(np.argmin(ball.vertices @ ball.vertices[0]))
+    found = inspect(Mesh(ball.vertices, np.where(ball.faces == far, 0, ball.faces)))
+    assert (found.euler_number, found.pinched_corners, found.handles, found.bodies) == (1, 1, 0, 1)
+    assert not any("tunnel" in problem for problem in found.problems)
