@@ -40,7 +40,7 @@ def cut_texts(table):
 
 
 @pytest.mark.usefixtures("app")
-@pytest.mark.parametrize("width", [268, 700])
+@pytest.mark.parametrize("width", [268, 360, 495, 700])
 def test_that_the_table_of_descriptors_shows_every_number_whole(width, shown, wait):
     values = describe(icosphere(2).moved(scale=63.0))
     panel = shown(DescriptorTablePanel())

@@ -22,7 +22,9 @@ from regolith_studio.ui.widgets.number_text import short_number
 _UNITS = {0: "", 1: " [µm]", 2: " [µm²]", 3: " [µm³]", 5: " [µm⁵]"}
 COLUMNS = (mark("Particle"), mark("Fit"), mark("Polyhedron"))
 NARROW_COLUMNS = (mark("Particle"), mark("Fit"), mark("Solid"))
-_ROOM_FOR_LABELS = 440
+_ROOM_FOR_LABELS = 490
+_LETTERS = 44
+"""Width below which heads and numbers are short, in digits."""
 _RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
 DIGITS, NARROW_DIGITS = 4, 3
 """Of the numbers; the tool tip of a cell has them all."""
@@ -66,7 +68,7 @@ class DescriptorTablePanel(QWidget):
 
     @property
     def _narrow(self) -> bool:
-        return self.width() <= _ROOM_FOR_LABELS
+        return self.width() < self.fontMetrics().horizontalAdvance("0" * _LETTERS)
 
     def _fill(self) -> None:
         digits = NARROW_DIGITS if self._narrow else DIGITS
@@ -83,7 +85,7 @@ class DescriptorTablePanel(QWidget):
         for number, key in enumerate(self._keys):
             row = CATALOGUE[key]
             short = plain_symbol(row.symbol) + _UNITS[row.dimension]
-            item = QTableWidgetItem(short if self._narrow else f"{tr(row.label)} {short}")
+            item = QTableWidgetItem(f"{tr(row.label)} {short}" if self.width() > _ROOM_FOR_LABELS else short)
             item.setToolTip(f"{tr(row.label)}: {tr(row.formula)}")
             self.table.setVerticalHeaderItem(number, item)
 
