@@ -1,0 +1,200 @@
+"""The course of the whole method: starts until one meets all conditions, and compromises if none does."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from regolith_studio.coarsening.bounds import sphericity_reason
+from regolith_studio.coarsening.core.box_search import DENSE_ANGLE, FINE_ANGLE, SAMPLE_ANGLE
+from regolith_studio.coarsening.core.cuts import SMALLEST_FACET
+from regolith_studio.coarsening.evaluation import LossFunction
+from regolith_studio.coarsening.exact.compromise import compromise, with_facets_back
+from regolith_studio.coarsening.exact.course import Attempt, course, densely_checked, start_planes
+from regolith_studio.coarsening.exact.growth import grown, numbers_to_grow_from, with_waiting
+from regolith_studio.coarsening.exact.problem import SPHERICITY, Problem
+from regolith_studio.coarsening.exact.record import Record
+from regolith_studio.coarsening.exact.request import CONDITION_KEYS, EXACT, Request, reason_for
+from regolith_studio.coarsening.polyhedra import facet_areas, polyhedron_of
+from regolith_studio.coarsening.progress import MethodStep
+from regolith_studio.coarsening.result import MethodResult
+from regolith_studio.coarsening.target import Target
+from regolith_studio.coarsening.weights import LossWeights
+from regolith_studio.descriptors.catalogue import LOSS_KEYS
+from regolith_studio.descriptors.describe import describe
+from regolith_studio.errors import GeometryError
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.half_spaces import HalfSpaces
+
+
+@dataclass(frozen=True)
+class Level:
+    """Effort: starts, polyhedra with few facets at each to grow many from, steps of both descents."""
+
+    starts: int
+    few_starts: int
+    free_steps: int
+    bound_steps: int
+
+
+LEVELS = {"fast": Level(1, 2, 12, 16), "best": Level(3, 3, 20, 40)}
+COMPROMISES = (12, 20)
+"""Facets to start from, besides all, where conditions cannot be met together."""
+ROUND_STARTS = 2
+"""Starts from which polyhedra as round as can be are sought where the particle is rounder than the first."""
+OUT_OF_REACH = 4e-3
+"""Where they miss the sphericity by more (in logarithms, added up), no further start is tried."""
+STARTS_FOR_FACETS = 3
+"""Further starts where all conditions are met, but a half-space bounds no facet."""
+
+
+class Search:
+    """Starts of the exact method, one after the other, and the best of what they lead to.
+
+    Parameters
+    ----------
+    retries
+        Further starts where those of the level do not meet all conditions.
+    seed
+        Of all starts.
+    """
+
+    def __init__(
+        self,
+        target: Target,
+        weights: LossWeights,
+        n_faces: int,
+        level: Level,
+        retries: int,
+        seed: np.random.SeedSequence,
+    ) -> None:
+        request = Request.of(target, weights)
+        self._target, self._request, self._n_faces, self._level = target, request, n_faces, level
+        self._rng = np.random.default_rng(seed)
+        self._free = request.problem(target.rays, SAMPLE_ANGLE, only_volume=True)
+        self._full = request.problem(target.rays, SAMPLE_ANGLE)
+        self._rest = request.problem(target.rays, SAMPLE_ANGLE, sphericity=False)
+        self._checks = tuple(request.problem(target.rays, angle) for angle in (FINE_ANGLE, DENSE_ANGLE))
+        self._judge = LossFunction(target, weights, everything=True)
+        self._round_asked = bool(request.asked[SPHERICITY])
+        wanted = target.descriptors["sphericity"]
+        self._hopeless = self._round_asked and sphericity_reason(wanted, n_faces) is not None
+        self._total = ROUND_STARTS if self._hopeless else level.starts + retries
+        self._numbers = (
+            (n_faces,) if self._hopeless else numbers_to_grow_from(target, n_faces, self._round_asked)
+        )
+        self._record = Record(self._judge, self._total)
+        self._planes: tuple[FloatArray, FloatArray]
+        self._misses: list[float] = []
+        self._tried = 0
+
+    def from_starts(self) -> Iterator[MethodStep]:
+        """A step for each better polyhedron until one is good enough; the first is the first start itself."""
+        for tried in range(1, self._total + 1):
+            self._tried = tried
+            self._planes = start_planes(self._target, self._n_faces, self._rng)
+            if tried == 1:
+                value = self._judge.value(*self._planes, SAMPLE_ANGLE)
+                yield MethodStep(0, self._total, value, HalfSpaces(*self._planes))
+            yield from self._record.told(tried, self._solved())
+            if self._round_asked and not self._record.met and tried <= ROUND_STARTS:
+                yield from self._as_round_as_can_be()
+            if self._record.best is None:
+                yield from self._record.told(tried, self._all_at_once())
+            if self._good_enough() or sum(self._misses) > OUT_OF_REACH:
+                break
+
+    def compromises(self) -> Iterator[MethodStep]:
+        """A step for each polyhedron with less loss, where no start could meet all conditions together."""
+        best = self._found()
+        if not self._round_asked or self._record.met or self._misses:
+            return
+        few_planes = [
+            with_waiting(*start_planes(self._target, few, self._rng), self._n_faces)
+            for few in COMPROMISES
+            if few < self._n_faces
+        ]
+        for planes in (self._planes, (best.normals, best.offsets), *few_planes):
+            yield from self._record.told(self._total, self._compromise(planes))
+
+    def result(self) -> MethodResult:
+        """The best polyhedron without half-spaces that bound nothing, and a reason where it is not as asked.
+
+        Raises
+        ------
+        GeometryError
+            If no start bounds a polyhedron; so does :meth:`compromises`.
+        """
+        outcome = self._record.outcome or self._found()
+        planes = real_planes(with_facets_back(self._target, self._full, outcome))
+        found = describe(polyhedron_of(planes), LOSS_KEYS)
+        reason = reason_for(self._target, self._request, self._n_faces, len(planes), found)
+        counts = {"starts": float(self._tried), "exact": float(self._record.met)}
+        return MethodResult(planes, tuple(self._record.history), reason, counts)
+
+    def _solved(self) -> Iterator[Attempt]:
+        """From few facets or from all at once, in turns; nothing where the sphericity is above its bound."""
+        few = self._numbers[(self._tried - 1) % len(self._numbers)]
+        if few < self._n_faces:
+            sizes = self._n_faces, few, self._level.few_starts
+            yield from grown(self._target, self._free, self._full, *sizes, self._rng, *self._steps)
+        elif not self._hopeless:
+            yield from self._all_at_once()
+
+    def _all_at_once(self) -> Iterator[Attempt]:
+        return course(self._target, self._free, self._full, self._planes, *self._steps)
+
+    def _as_round_as_can_be(self) -> Iterator[MethodStep]:
+        """The way to the sphericity from below; it is noted by how much it is missed."""
+        rounder = list(self._compromise(self._planes, only_rounder=True))
+        yield from self._record.told(self._tried, rounder)
+        self._misses += [rounder[-1].worst] if rounder else []
+
+    def _compromise(
+        self, planes: tuple[FloatArray, FloatArray], only_rounder: bool = False
+    ) -> Iterator[Attempt]:
+        steps = self._level.bound_steps
+        return compromise(self._target, self._full, self._rest, planes, steps, only_rounder)
+
+    def _good_enough(self) -> bool:
+        """Whether public descriptors say that all is met, with all facets or after enough starts for them."""
+        best = self._record.best
+        if self._tried < self._level.starts or best is None or not best.exact:
+            return False
+        best = self._record.best = confirmed(self._request, self._checks, best)
+        all_facets = best.n_facets == self._n_faces
+        return best.exact and (all_facets or self._tried >= self._level.starts + STARTS_FOR_FACETS)
+
+    @property
+    def _steps(self) -> tuple[int, int]:
+        return self._level.free_steps, self._level.bound_steps
+
+    def _found(self) -> Attempt:
+        if self._record.best is None:
+            raise GeometryError("No start of the exact method bounds a polyhedron.")
+        return self._record.best
+
+
+def confirmed(request: Request, problems: tuple[Problem, ...], found: Attempt) -> Attempt:
+    """The attempt, polished with ever finer searches for boxes until the public descriptors agree.
+
+    Its residual is the largest error of the public descriptors where they never do.
+    """
+    wanted = dict(zip(CONDITION_KEYS, request.values, strict=True))
+    for problem in problems:
+        found = densely_checked(problem, found)
+        if not found.exact:
+            return found
+        values = describe(polyhedron_of(real_planes(found)), CONDITION_KEYS)
+        worst = max((abs(values[key] / wanted[key] - 1.0) for key in request.keys), default=0.0)
+        if worst <= EXACT / 2:  # so that the ratio of two diameters has no more than EXACT
+            return found
+    return replace(found, worst=worst)
+
+
+def real_planes(found: Attempt) -> HalfSpaces:
+    """Half-spaces whose facets are more than rounding."""
+    planes = HalfSpaces(found.normals, found.offsets)
+    areas = facet_areas(planes)
+    kept = areas >= SMALLEST_FACET
+    return planes if kept.all() else HalfSpaces(found.normals[kept], found.offsets[kept])
