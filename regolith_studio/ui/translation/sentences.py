@@ -25,6 +25,14 @@ SENTENCES = (
         "No polyhedron with {faces} faces was found that meets all descriptors: {name} is off by {error} %;"
         " more faces or a weight of 0 would free it."
     ),
+    mark(
+        "No polyhedron with {faces} faces was found that meets all descriptors: {name} is off by {error} %;"
+        " a convex shape with the other descriptors has less surface, so a weight of 0 would free it."
+    ),
+    mark(
+        "The result has {real} facets instead of {faces}: no place was found where the other half-spaces"
+        " bound a facet and all descriptors are met."
+    ),
     mark("{name} only"),
     mark("{name} × {factor}"),
     mark("{count} faces"),
