@@ -16,6 +16,7 @@ from regolith_studio.cli.options import (
     Preset,
     RadiusRule,
     Reference,
+    Repair,
     Seed,
     Settings,
     StarPoint,
@@ -51,6 +52,7 @@ def coarsen(
     rule: RadiusRule = "volume",
     reference: Reference = "sphere",
     unit: Unit = "um",
+    repair: Repair = True,
     json: Json = False,
     jobs: Jobs = 1,
     seed: Seed = 0,
@@ -67,7 +69,7 @@ def coarsen(
     faces = faces_from(faces, triangles, max_error)
     wish = choices_from(faces, method, preset, weight, set_, target, l_max, seed, star_point, rule, reference)
     order = replace(wish.order, largest_error=None if max_error is None else max_error / 100.0)
-    loaded = read_inputs(meshes, unit)
+    loaded = read_inputs(meshes, unit, repair)
     done = follow(coarsen_sample(loaded.particles, order, jobs))
     with staged_folder(output) as stage:
         write_coarsening(stage, order, done)

@@ -17,6 +17,7 @@ from regolith_studio.cli.options import (
     Preset,
     RadiusRule,
     Reference,
+    Repair,
     Seed,
     Settings,
     StarPoint,
@@ -80,6 +81,7 @@ def build(
     name: Annotated[str, typer.Option("--name", help="Name of the dataset; the folder's if left out.")] = "",
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace what is in the folder.")] = False,
     unit: Unit = "um",
+    repair: Repair = True,
     json: Json = False,
     jobs: Jobs = 1,
     seed: Seed = 0,
@@ -100,7 +102,7 @@ def build(
         parse_sizes(sizes)
         chosen = RepresentativesOrder.of(representatives or 10, weighting, size_importance, seed)
     check_place(output, overwrite)
-    loaded = read_inputs(meshes, unit)
+    loaded = read_inputs(meshes, unit, repair)
     if quality_curve is not None:
         population = follow(measure_population(loaded.particles, jobs))
         curve = follow(measure_quality(population, chosen))

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from regolith_studio.cli.options import Jobs, Json, Meshes, Seed, Unit
+from regolith_studio.cli.options import Jobs, Json, Meshes, Repair, Seed, Unit
 
 if TYPE_CHECKING:
     from regolith_studio.session.results import ParticleEntry
@@ -39,6 +39,7 @@ def describe(
     border_weights: BorderWeights = True,
     csv: Csv = None,
     unit: Unit = "um",
+    repair: Repair = True,
     json: Json = False,
     jobs: Jobs = 1,
     seed: Seed = 0,
@@ -55,7 +56,7 @@ def describe(
     from regolith_studio.session.results import ParticleEntry
 
     del seed  # taken by every command; nothing here is random
-    loaded = read_inputs(meshes, unit)
+    loaded = read_inputs(meshes, unit, repair)
     facts = follow(examine_sample(loaded.particles, workers=jobs))
     pairs = list(zip(loaded.particles, facts, strict=True))
     entries = [ParticleEntry(p.name, p, each.health, each.descriptors) for p, each in pairs]

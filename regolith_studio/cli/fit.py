@@ -13,6 +13,7 @@ from regolith_studio.cli.options import (
     Meshes,
     RadiusRule,
     Reference,
+    Repair,
     Seed,
     StarPoint,
     Unit,
@@ -50,6 +51,7 @@ def fit(
     surfaces: Surfaces = None,
     level: Level = 4,
     unit: Unit = "um",
+    repair: Repair = True,
     json: Json = False,
     jobs: Jobs = 1,
     seed: Seed = 0,
@@ -66,7 +68,7 @@ def fit(
         Choices(l_max=l_max, seed=seed, level=level)
         order = FitOrder(l_max, Expansion(star_point, rule, reference))
     stem = output.with_suffix("") if output.suffix in (".json", ".npz") else output
-    loaded = read_inputs(meshes, unit)
+    loaded = read_inputs(meshes, unit, repair)
     sample = FittedSample.of(loaded.particles, follow(fit_sample(loaded.particles, order, jobs)))
     complain(f"{name}: {sentence}" for name, sentence in sample.failed)
     holes: dict[str, str] = {}

@@ -12,6 +12,7 @@ from regolith_studio.cli.options import (
     Meshes,
     RadiusRule,
     Reference,
+    Repair,
     StarPoint,
     Unit,
     as_bad_use,
@@ -36,6 +37,7 @@ def gallery(
     rule: RadiusRule = "volume",
     reference: Reference = "sphere",
     unit: Unit = "um",
+    repair: Repair = True,
     json: Json = False,
 ) -> None:
     """Draw each particle and its fits at several l_max (Fig. 2)."""
@@ -50,7 +52,7 @@ def gallery(
     wanted = whole_numbers(degrees, 0, FIT_DEGREE)
     with as_bad_use():
         order = FitOrder(max(wanted), Expansion(star_point, rule, reference))
-    loaded = read_inputs(meshes, unit)
+    loaded = read_inputs(meshes, unit, repair)
     fits = follow(fit_sample(loaded.particles, order))
     drawn: list[str] = []
     failed = 0

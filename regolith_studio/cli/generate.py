@@ -5,7 +5,18 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from regolith_studio.cli.options import Folder, Jobs, Json, Level, Seed, Settings, Unit, as_bad_use, values
+from regolith_studio.cli.options import (
+    Folder,
+    Jobs,
+    Json,
+    Level,
+    Repair,
+    Seed,
+    Settings,
+    Unit,
+    as_bad_use,
+    values,
+)
 
 if TYPE_CHECKING:
     from regolith_studio.jobs.generating import GenerateOrder
@@ -66,6 +77,7 @@ def generate(
     names: Names = "",
     save_model: ModelFile = None,
     unit: Unit = "um",
+    repair: Repair = True,
     json: Json = False,
     jobs: Jobs = 1,
     seed: Seed = 0,
@@ -82,7 +94,7 @@ def generate(
         order = GenerateOrder(model, tuple(values(set_, "setting").items()), l_max, n, seed, size_range)
         if format_ not in ("stl", "npz"):
             raise typer.BadParameter(f"The format must be stl or npz, got {format_!r}.")
-    source = shape_source(sources, unit, order, jobs)
+    source = shape_source(sources, unit, order, jobs, repair)
     complain(source.notes)
     fitted = _named(follow(fit_model(source, order)), names)
     draws = follow(draw(fitted, order))
@@ -100,7 +112,11 @@ def generate(
 
 
 def shape_source(
-    sources: list[str], unit: str, order: "GenerateOrder | None" = None, jobs: int = 1
+    sources: list[str],
+    unit: str,
+    order: "GenerateOrder | None" = None,
+    jobs: int = 1,
+    repair: bool = True,
 ) -> "ShapeSource":
     """What the arguments of a command name: one fit, card or model, or meshes, which are expanded.
 
@@ -119,7 +135,7 @@ def shape_source(
         raise typer.BadParameter(f"Give one fit, card or model, or meshes only; {named[0]} is not a mesh.")
     if named:
         return read_shape_source(named[0])
-    loaded = read_inputs([Path(source) for source in sources], unit)
+    loaded = read_inputs([Path(source) for source in sources], unit, repair)
     found: ShapeSource = follow(sample_of_meshes(loaded.particles, expansion_of(order), jobs))
     return found
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from regolith_studio.jobs.loading import Loaded
 
 
-def read_inputs(paths: Sequence[Path], unit: str) -> "Loaded":
+def read_inputs(paths: Sequence[Path], unit: str, repair: bool = True) -> "Loaded":
     """The particles in files and folders; what cannot be read is a sentence on stderr.
 
     Raises
@@ -27,7 +27,7 @@ def read_inputs(paths: Sequence[Path], unit: str) -> "Loaded":
 
     with as_bad_use():
         unit_factor(unit)
-    loaded: Loaded = follow(load_particles(tuple(paths), unit))
+    loaded: Loaded = follow(load_particles(tuple(paths), unit, repair))
     complain(problem.with_path for problem in loaded.problems)
     return loaded
 

@@ -25,6 +25,11 @@ Unit = Annotated[
     ),
 ]
 
+Repair = Annotated[
+    bool,
+    typer.Option("--repair/--no-repair", help="Mend what is wrong with meshes, and say what was done."),
+]
+
 
 def usable(folder: Path | None) -> Path | None:
     """The folder, if it is one that can be written or made: said before hours of work and not after them.

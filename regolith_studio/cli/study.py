@@ -18,6 +18,7 @@ from regolith_studio.cli.options import (
     Method,
     RadiusRule,
     Reference,
+    Repair,
     Seed,
     Settings,
     StarPoint,
@@ -90,6 +91,7 @@ def lmax(
     rule: RadiusRule = "volume",
     reference: Reference = "sphere",
     unit: Unit = "um",
+    repair: Repair = True,
     json: Json = False,
     jobs: Jobs = 1,
     seed: Seed = 0,
@@ -105,7 +107,7 @@ def lmax(
     with as_bad_use():
         Choices(level=level, seed=seed)
         expansion = Expansion(star_point, rule, reference)
-    loaded = read_inputs(meshes, unit)
+    loaded = read_inputs(meshes, unit, repair)
     steps = study_lmax(loaded.particles, jobs, seed, degrees=wanted, level=level, expansion=expansion)
     study = conclude("lmax_study", steps, output, json)
     if not json:
@@ -129,6 +131,7 @@ def coarsening(
     reference: Reference = "sphere",
     box: BoxMetric = "exact",
     unit: Unit = "um",
+    repair: Repair = True,
     json: Json = False,
     jobs: Jobs = 1,
     seed: Seed = 0,
@@ -144,7 +147,7 @@ def coarsening(
     names = tuple(loss or (PAPER_ROWS if not weight else (*PAPER_ROWS, CHOSEN)))
     with as_bad_use():
         rows = chosen_rows(names, wish)
-    loaded = read_inputs(meshes, unit)
+    loaded = read_inputs(meshes, unit, repair)
     study = study_coarsening(loaded.particles, wish.order, jobs, rows=rows, box_metric=box)
     conclude("coarsening_study", study, output, json)
     raise typer.Exit(exit_code(meshes, loaded))
@@ -161,6 +164,7 @@ def population(
     repeats: Repeats = 5,
     descriptors: DescriptorKeys = "",
     unit: Unit = "um",
+    repair: Repair = True,
     json: Json = False,
     jobs: Jobs = 1,
     seed: Seed = 0,
@@ -178,7 +182,7 @@ def population(
 
     with as_bad_use():
         order = GenerateOrder(l_max=l_max, seed=seed)
-    source = shape_source(sources, unit, order, jobs)
+    source = shape_source(sources, unit, order, jobs, repair)
     complain(source.notes)
     if not isinstance(source.content, Sample):
         raise InputError(

@@ -18,6 +18,7 @@ from regolith_studio.cli.options import (
     Preset,
     RadiusRule,
     Reference,
+    Repair,
     Seed,
     Settings,
     StarPoint,
@@ -68,13 +69,14 @@ def faces(
     reference: Reference = "sphere",
     box: BoxMetric = "exact",
     unit: Unit = "um",
+    repair: Repair = True,
     json: Json = False,
     jobs: Jobs = 1,
     seed: Seed = 0,
 ) -> None:
     """RMSRE of the descriptors against the number of faces."""
     wish = choices_from(20, method, preset, weight, set_, target, l_max, seed, star_point, rule, reference)
-    _vary("faces", faces, wish, meshes, output, box, unit, json, jobs)
+    _vary("faces", faces, wish, meshes, output, box, (unit, repair), json, jobs)
 
 
 def tradeoff(
@@ -93,13 +95,14 @@ def tradeoff(
     reference: Reference = "sphere",
     box: BoxMetric = "exact",
     unit: Unit = "um",
+    repair: Repair = True,
     json: Json = False,
     jobs: Jobs = 1,
     seed: Seed = 0,
 ) -> None:
     """Overlap against descriptors: what one costs the other."""
     wish = choices_from(faces, method, preset, weight, set_, target, l_max, seed, star_point, rule, reference)
-    _vary("tradeoff", factors, wish, meshes, output, box, unit, json, jobs)
+    _vary("tradeoff", factors, wish, meshes, output, box, (unit, repair), json, jobs)
 
 
 def sensitivity(
@@ -118,13 +121,14 @@ def sensitivity(
     reference: Reference = "sphere",
     box: BoxMetric = "exact",
     unit: Unit = "um",
+    repair: Repair = True,
     json: Json = False,
     jobs: Jobs = 1,
     seed: Seed = 0,
 ) -> None:
     """What changing one weight of the loss changes in every descriptor."""
     wish = choices_from(faces, method, preset, weight, set_, target, l_max, seed, star_point, rule, reference)
-    _vary("sensitivity", factors, wish, meshes, output, box, unit, json, jobs)
+    _vary("sensitivity", factors, wish, meshes, output, box, (unit, repair), json, jobs)
 
 
 def _vary(
@@ -134,7 +138,7 @@ def _vary(
     meshes: Sequence[Path],
     output: Path,
     box: str,
-    unit: str,
+    reading: tuple[str, bool],
     json: bool,
     jobs: int,
 ) -> None:
@@ -145,7 +149,7 @@ def _vary(
     check_box(box)
     with as_bad_use():
         rows = varied_rows(key, wish, values)
-    loaded = read_inputs(meshes, unit)
+    loaded = read_inputs(meshes, *reading)
     study = study_coarsening(loaded.particles, wish.order, jobs, rows=rows, box_metric=box)
     conclude(f"{key}_study", study, output, json)
     raise typer.Exit(exit_code(meshes, loaded))

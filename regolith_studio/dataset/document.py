@@ -190,7 +190,7 @@ def record_of(representative: Representative, file: str, content: bytes) -> dict
             "scale_um": frame.scale,
         },
         "fidelity": None if fidelity is None else _plain(vars(fidelity)),
-        "source": None if source is None else _plain(vars(source)),
+        "source": source and {"path": source.path, "sha256": source.sha256, "unit": source.unit},
     }
 
 

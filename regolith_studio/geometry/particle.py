@@ -17,11 +17,14 @@ class Source:
         Of the file's bytes, hexadecimal.
     unit
         Length unit that the file's numbers were taken in: ``um``, ``mm``, ``m``, ``voxel`` ...
+    repaired
+        Whether what was wrong with the mesh was mended as it was read.
     """
 
     path: str
     sha256: str
     unit: str
+    repaired: bool = True
 
 
 @dataclass(frozen=True)

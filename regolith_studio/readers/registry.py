@@ -143,7 +143,7 @@ def _read_mesh(file: MeshFile, unit: str, repair: bool, guard: Guard | None) -> 
             notes += inspect(mesh).problems
     except GeometryError as error:
         raise GeometryError(sentence_about(path, f"holds no particle: {_lower(str(error))}")) from None
-    source = Source(str(path), answer.header["sha256"], unit)
+    source = Source(str(path), answer.header["sha256"], unit, repair)
     return Particle(path.stem, mesh, file.group, source, notes, file.weight)
 
 

@@ -83,7 +83,10 @@ class _Places:
     def __init__(self, recipe: Recipe, base: Path, prepared: "Prepared") -> None:
         from regolith_studio.session.batch.prepared import read_index, resolved
 
-        named = (Files(tuple(str(base / file) for file in files), unit) for files, unit in recipe.openings)
+        named = (
+            Files(tuple(str(base / file) for file in files), unit, repair)
+            for files, unit, repair in recipe.openings
+        )
         self._files = {key: each for each in named for key, _, _ in each.members()}
         self._volumes = {
             folder: Grains(

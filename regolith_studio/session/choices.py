@@ -49,6 +49,8 @@ class Choices:
         What the coarsening imitates: ``fit`` (section 3.2 of the paper) or ``particle``.
     unit
         Length unit in which files without one are read.
+    repair
+        Whether what is wrong with meshes is mended as they are read.
     box_metric
         How the minimum-volume box of the descriptors is found.
 
@@ -72,6 +74,7 @@ class Choices:
     seed: int = 0
     target: str = "fit"
     unit: str = "um"
+    repair: bool = True
     box_metric: str = "exact"
 
     def __post_init__(self) -> None:

@@ -40,10 +40,13 @@ class Files:
         As they were named, absolute.
     unit
         Of those without one.
+    repair
+        Whether what was wrong with meshes was mended.
     """
 
     paths: tuple[str, ...]
     unit: str
+    repair: bool = True
 
     def members(self) -> tuple[Known, ...]:
         """All files that are there now, in order; also those that cannot be read."""
@@ -159,4 +162,4 @@ def place_by_source(particle: Particle) -> Place | None:
         return Place(Shipped(), name)
     if Path(source.path).suffix.lower() not in {*mesh_suffixes(), *TABLE_SUFFIXES, *TEXT_SUFFIXES}:
         return None
-    return Place(Files((source.path,), source.unit), source.path)
+    return Place(Files((source.path,), source.unit, source.repaired), source.path)

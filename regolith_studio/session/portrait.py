@@ -56,6 +56,7 @@ class Portrait:
             _inputs(origins),
             outputs,
             unit=first.unit if first else choices.unit,
+            repair=first.repair if first else choices.repair,
             volumes=[each.volume for each in origins if isinstance(each, Grains)],
             population=drawn.population if drawn else None,
             particles=_selection(pairs, list(named.values())),
@@ -102,7 +103,8 @@ def _inputs(origins: Sequence[Origin]) -> list[str | FilesEntry]:
     files = [each for each in origins if isinstance(each, Files)]
     named: list[str | FilesEntry] = [SAMPLE] if not origins or Shipped() in origins else []
     for number, each in enumerate(files):
-        named += [FilesEntry(files=list(each.paths), unit=each.unit)] if number else each.paths
+        entry = FilesEntry(files=list(each.paths), unit=each.unit, repair=each.repair)
+        named += [entry] if number else each.paths
     return named
 
 

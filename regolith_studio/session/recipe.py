@@ -25,7 +25,7 @@ SAMPLE = "sample:all"
 
 
 _CHOICES = (
-    *("unit", "star_point", "rule", "reference", "l_max", "level", "target"),
+    *("unit", "repair", "star_point", "rule", "reference", "l_max", "level", "target"),
     *("method", "preset", "n_faces", "seed", "box_metric"),
 )
 
@@ -49,8 +49,8 @@ class Recipe(Strict):
     ----------
     inputs
         Files and folders of meshes and tables of coefficients, or ``sample:all``; by default the sample,
-        or nothing where there are volumes or a population. Those in another unit stand in entries of
-        their own, and are read after the others.
+        or nothing where there are volumes or a population. Those in another unit, or with another answer
+        to whether meshes are repaired, stand in entries of their own, and are read after the others.
     volumes
         CT volumes whose grains are particles too.
     population
@@ -71,6 +71,7 @@ class Recipe(Strict):
     population: Population | None = None
     particles: list[str | Chosen] | None = Field(default=None, min_length=1)
     unit: str = "um"
+    repair: bool = True
     star_point: str = USUAL.star_point
     rule: str = USUAL.rule
     reference: str = USUAL.reference
@@ -112,11 +113,12 @@ class Recipe(Strict):
         return self
 
     @property
-    def openings(self) -> tuple[tuple[tuple[str, ...], str], ...]:
-        """Files and folders that are read together, with their unit; without the sample."""
+    def openings(self) -> tuple[tuple[tuple[str, ...], str, bool], ...]:
+        """Files and folders read together, their unit, whether they are repaired; without the sample."""
         plain = tuple(entry for entry in self.inputs if isinstance(entry, str) and entry != SAMPLE)
         others = (entry for entry in self.inputs if isinstance(entry, FilesEntry))
-        return (((plain, self.unit),) if plain else ()) + tuple((tuple(e.files), e.unit) for e in others)
+        first = ((plain, self.unit, self.repair),) if plain else ()
+        return first + tuple((tuple(each.files), each.unit, each.repair) for each in others)
 
     @property
     def only_files(self) -> bool:

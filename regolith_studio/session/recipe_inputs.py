@@ -71,6 +71,7 @@ class FilesEntry(Strict):
 
     files: list[str] = Field(min_length=1)
     unit: str
+    repair: bool = True
 
 
 class Chosen(Strict):

@@ -20,6 +20,7 @@ def as_command(choices: Choices, inputs: list[str]) -> str:
         words += [word for key, value in choices.weights.items() for word in ("--weight", f"{key}={value:g}")]
     words += [word for name, value in choices.settings for word in ("--set", f"{name}={value}")]
     words += ["--unit", choices.unit]
+    words += [] if choices.repair else ["--no-repair"]
     return shlex.join(words)
 
 
@@ -34,7 +35,8 @@ def as_python(choices: Choices, source: str) -> str:
     """
     kind, _, name = source.partition(":")
     sample = kind == "sample"
-    reading = f"read_mesh({source!r}, unit={choices.unit!r})"
+    repair = "" if choices.repair else ", repair=False"
+    reading = f"read_mesh({source!r}, unit={choices.unit!r}{repair})"
     if sample:
         named = "" if source == SAMPLE or not name else f" if each.name == {name!r}"
         reading = f"next(each for each in sample_particles(){named})"

@@ -77,7 +77,13 @@ class Session:
 
     # --- particles -----------------------------------------------------------------------------
 
-    def open(self, paths: Sequence[Path | str], unit: str | None = None, add: bool = False) -> int:
+    def open(
+        self,
+        paths: Sequence[Path | str],
+        unit: str | None = None,
+        add: bool = False,
+        repair: bool | None = None,
+    ) -> int:
         """Read files and folders of meshes in the background; returns the task's id.
 
         Parameters
@@ -86,11 +92,14 @@ class Session:
             Length unit of files that have none; the chosen one if left out.
         add
             Keep the particles that are open already.
+        repair
+            Whether what is wrong with meshes is mended; as chosen if left out.
         """
         unit = unit or self.choices.unit
+        repair = self.choices.repair if repair is None else repair
         named = tuple(Path(path).absolute() for path in paths)
-        origin = Files(tuple(map(str, named)), unit)
-        return self._load("Reading particles", Job(load_particles, (named, unit)), origin, add)
+        origin = Files(tuple(map(str, named)), unit, repair)
+        return self._load("Reading particles", Job(load_particles, (named, unit, repair)), origin, add)
 
     def open_sample(self) -> int:
         """Load the particles that ship with the program; returns the task's id."""
@@ -107,8 +116,8 @@ class Session:
         if recipe.only_files and recipe.inputs == [SAMPLE]:
             return self.open_sample()
         if recipe.only_files and len(recipe.openings) == 1 and SAMPLE not in recipe.inputs:
-            ((files, unit),) = recipe.openings
-            return self.open([beside / file for file in files], unit)
+            ((files, unit, repair),) = recipe.openings
+            return self.open([beside / file for file in files], unit, repair=repair)
 
         def take(brought: Brought) -> None:
             self._replace_particles(brought.loaded, brought.places)

@@ -25,6 +25,9 @@ ROWS: tuple[ActionSpec, ...] = (
         "&File", "open_sample", "Open &sample", "sample", "", "Open the shipped particles", bar="words"
     ),
     ActionSpec("&File", "recent", "Open &recent"),
+    ActionSpec(
+        "&File", "repair", "&Mend meshes on opening", "", "", "Say, and mend, what is wrong", checked=True
+    ),
     ActionSpec("&File", BREAK, ""),
     ActionSpec(
         "&File", "export", "&Export dataset …", "export", "Ctrl+E", "Export a DEM dataset", None, "words"

@@ -107,6 +107,7 @@ class MainWindow(QMainWindow):
             "run_batch": self.batches.ask,
             "save_project": self.projects.save,
             "save_project_as": self.projects.save_as,
+            "repair": self._choose_repair,
             "palette": self._open_palette,
             "preferences": self.looks.ask,
             "standard_layout": self._standard_layout,
@@ -131,8 +132,8 @@ class MainWindow(QMainWindow):
         wiring.refresh("tasks", lambda: self.tasks.setValue(session.tasks), slow=True)
         wiring.refresh("tasks", self.commands.show_tasks, slow=True)
         wiring.refresh("tasks", self.batches.show_tasks, slow=True)
-        wiring.hear("choices", self._show_undo)
-        self._show_undo()
+        wiring.hear("choices", self._show_choices)
+        self._show_choices()
         wiring.hear("failed", lambda failure: self.toast.problem(failure.sentence, failure.details))
         wiring.hear("problems", lambda problems: self.toast.note(problems[0], "\n".join(problems)))
         wiring.hear("exported", self.commands.tell_exported)
@@ -150,9 +151,14 @@ class MainWindow(QMainWindow):
         self.memory.forget()
         self.toast.note(tr("The next window stands as a new one."))
 
-    def _show_undo(self) -> None:
+    def _choose_repair(self, repair: bool) -> None:
+        if repair != self.session.choices.repair:
+            self.session.choose(repair=repair)
+
+    def _show_choices(self) -> None:
         self.menus.by_name["undo"].setEnabled(self.session.can_undo)
         self.menus.by_name["redo"].setEnabled(self.session.can_redo)
+        self.menus.by_name["repair"].setChecked(self.session.choices.repair)
 
     def _list_recent(self) -> None:
         self.menus.recent.clear()

@@ -155,6 +155,11 @@
   </message>
   <message>
    <location filename="ui/actions.py" />
+   <source>&amp;Mend meshes on opening</source>
+   <translation>Netze beim Öffnen &amp;ausbessern</translation>
+  </message>
+  <message>
+   <location filename="ui/actions.py" />
    <source>&amp;Next page</source>
    <translation>&amp;Nächste Seite</translation>
   </message>
@@ -2445,6 +2450,11 @@
   </message>
   <message>
    <location filename="ui/translation/sentences.py" />
+   <source>No polyhedron with {faces} faces was found that meets all descriptors: {name} is off by {error} %; a convex shape with the other descriptors has less surface, so a weight of 0 would free it.</source>
+   <translation>Es fand sich kein Polyeder mit {faces} Facetten, das alle Deskriptoren trifft: {name} weicht um {error} % ab; ein konvexer Körper mit den übrigen Deskriptoren hat weniger Oberfläche, also gäbe ein Gewicht von 0 Raum.</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/sentences.py" />
    <source>No polyhedron with {faces} faces was found that meets all descriptors: {name} is off by {error} %; more faces or a weight of 0 would free it.</source>
    <translation>Es fand sich kein Polyeder mit {faces} Facetten, das alle Deskriptoren trifft: {name} weicht um {error} % ab; mehr Facetten oder ein Gewicht von 0 gäben Raum.</translation>
   </message>
@@ -3404,6 +3414,11 @@
    <translation>{path} ist gespeichert.</translation>
   </message>
   <message>
+   <location filename="ui/actions.py" />
+   <source>Say, and mend, what is wrong</source>
+   <translation>Sagen und ausbessern, was nicht stimmt</translation>
+  </message>
+  <message>
    <location filename="ui/pages/explore/pictures.py" />
    <source>Scale</source>
    <translation>Maßstab</translation>
@@ -4071,6 +4086,11 @@
    <location filename="ui/pages/lecture/annealing.py" />
    <source>The proposal, T(k) and the decision with their numbers</source>
    <translation>Der Vorschlag, T(k) und die Entscheidung mit ihren Zahlen</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>The result has {real} facets instead of {faces}: no place was found where the other half-spaces bound a facet and all descriptors are met.</source>
+   <translation>Das Ergebnis hat {real} statt {faces} Facetten: Es fand sich kein Ort, wo die übrigen Halbräume eine Facette begrenzen und alle Deskriptoren getroffen sind.</translation>
   </message>
   <message>
    <location filename="ui/dialogs/batch.py" />

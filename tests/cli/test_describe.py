@@ -4,6 +4,7 @@ import math
 from pathlib import Path
 
 import pytest
+import trimesh
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
 
@@ -97,3 +98,26 @@ def test_that_an_unknown_weighting_is_bad_use(command, grains: Path) -> None:
     said = command("describe", grains, "--statistics", "--weighting", "mass")
     assert said.code == 2
     assert "not by 'mass'" in said.err
+
+
+def test_that_a_mesh_is_measured_as_it_is_where_repair_is_switched_off(command, tmp_path: Path) -> None:
+    crumb = trimesh.creation.box((1, 2, 3), trimesh.transformations.translation_matrix((20, 0, 0)))
+    trimesh.util.concatenate([trimesh.creation.box((4, 5, 6)), crumb]).export(tmp_path / "two.stl")
+    (mended,) = command("describe", tmp_path / "two.stl", "--json").json
+    (as_it_is,) = command("describe", tmp_path / "two.stl", "--json", "--no-repair").json
+    assert mended["volume"] == pytest.approx(4 * 5 * 6)
+    assert as_it_is["volume"] == pytest.approx(4 * 5 * 6 + 1 * 2 * 3)
+    assert as_it_is["notes"] == ["It consists of 2 separate bodies."]
+    assert (mended["health"]["sound"], as_it_is["health"]["sound"]) == (True, False)
+    assert (mended["source"]["repaired"], as_it_is["source"]["repaired"]) == (True, False)
+
+
+def test_that_a_mesh_inside_out_is_told_and_not_measured_where_repair_is_switched_off(
+    command, tmp_path: Path
+) -> None:
+    box = trimesh.creation.box((4, 5, 6))
+    box.invert()
+    box.export(tmp_path / "inverted.stl")
+    said = command("describe", tmp_path / "inverted.stl", "--no-repair")
+    assert said.code == 1
+    assert "inverted: The mesh is inside out: its signed volume is -120" in said.err

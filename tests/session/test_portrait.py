@@ -94,6 +94,22 @@ def test_that_meshes_of_folders_in_two_units_with_broken_files_are_the_same_in_a
     assert portrait.recipe.openings[1][1] == "mm"
 
 
+def test_that_meshes_mended_and_left_as_they_are_are_the_same_in_a_run(
+    session: Session, tmp_path: Path
+) -> None:
+    two = np.vstack([icosphere(2).vertices, 0.2 * icosphere(2).vertices + [2.0, 0.0, 0.0]])
+    faces = np.vstack([icosphere(2).faces, icosphere(2).faces + len(icosphere(2).vertices)])
+    path = tmp_path / "two.stl"
+    path.write_bytes(stl_bytes(Mesh(two, faces), "test"))
+    session.open([path])
+    session.choose(repair=False)
+    session.open([path], add=True)
+    mended, as_it_is = [entry.particle.mesh.volume for entry in session.particles]
+    assert as_it_is == pytest.approx(1.008 * mended, rel=1e-4)  # the second ball has a fifth of the size
+    portrait = assert_that_a_run_gives_the_dataset_of(session, tmp_path)
+    assert [repair for _, _, repair in portrait.recipe.openings] == [True, False]
+
+
 def test_that_the_sample_and_a_file_beside_it_are_the_same_in_a_run(session: Session, tmp_path: Path) -> None:
     session.open_sample()
     session.keep({"angular-2", "flat-1"})

@@ -104,3 +104,10 @@ def test_that_what_is_no_project_is_refused_in_a_sentence(tmp_path: Path) -> Non
             read_project(path)
     with pytest.raises(Exception, match="cannot be opened"):
         read_project(tmp_path / "nowhere.regolith")
+
+
+def test_that_what_is_copied_leaves_meshes_as_they_are_where_the_window_does(session: Session) -> None:
+    assert "repair" not in as_command(session.choices, ["a.stl"]) + as_python(session.choices, "a.stl")
+    session.choose(repair=False)
+    assert "--no-repair" in shlex.split(as_command(session.choices, ["a.stl"]))
+    assert "read_mesh('a.stl', unit='um', repair=False)" in as_python(session.choices, "a.stl")

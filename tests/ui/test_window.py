@@ -47,14 +47,14 @@ def difference(one, other):
     return np.abs(one[:height, :width] - other[:height, :width]).mean()
 
 
-def stl(path):
-    """An ASCII STL of an egg of 2 by 2 by 4 units."""
+def stl(path, inverted=False):
+    """An ASCII STL of an egg of 2 by 2 by 4 units, or of one that is turned inside out."""
     mesh = icosphere(2).moved(rotation=np.diag([1.0, 1.0, 2.0]))
     facets = "".join(
         "facet normal 0 0 0\nouter loop\n"
         + "".join(f"vertex {x:.6f} {y:.6f} {z:.6f}\n" for x, y, z in triangle)
         + "endloop\nendfacet\n"
-        for triangle in mesh.triangles
+        for triangle in (mesh.triangles[:, ::-1] if inverted else mesh.triangles)
     )
     path.write_text(f"solid egg\n{facets}endsolid egg\n")
     return path
@@ -138,6 +138,19 @@ def test_that_dropped_files_are_opened_in_the_unit_that_is_answered(window, wait
     assert np.ptp(window.session.particles[0].particle.mesh.vertices[:, 2]) == pytest.approx(4000.0)
     assert window.preferences.unit_for(path) == "mm"
     assert window.preferences.recent == (str(path),)
+
+
+def test_that_meshes_are_left_as_they_are_where_the_menu_says_so(window, wait, tmp_path):
+    path = stl(tmp_path / "egg.stl", inverted=True)
+    mend = window.menus.by_name["repair"]
+    mend.trigger()
+    assert (mend.isChecked(), window.session.choices.repair) == (False, False)
+    window.commands.undo()
+    assert (mend.isChecked(), window.session.choices.repair) == (True, True)
+    window.commands.redo()
+    window.commands.open_paths([path], "um")
+    wait(lambda: [entry.id for entry in window.session.particles] == ["egg"], SECONDS)
+    assert window.session.particles[0].particle.notes == ("It is inside out: its faces look inwards.",)
 
 
 @pytest.mark.parametrize(

@@ -71,6 +71,7 @@ class FileItem(_Named):
 
     file: MeshFile
     unit: str
+    repair: bool = True
 
     @property
     def mark(self) -> str:
@@ -83,7 +84,7 @@ class FileItem(_Named):
 
     def particle(self) -> Particle:
         """The particle in the file."""
-        return replace(read_file(self.file, self.unit), name=self.name)
+        return replace(read_file(self.file, self.unit, self.repair), name=self.name)
 
 
 @dataclass(frozen=True)
@@ -178,9 +179,9 @@ class Items:
         if SAMPLE in recipe.inputs:
             for particle in sample_particles():
                 members.append(SampleItem(free_name(particle.name, particle.group, taken), particle.name))
-        for files, unit in recipe.openings:
+        for files, unit, repair in recipe.openings:
             for file in files_in([base / name for name in files], problems):
-                members.append(FileItem(free_name(file.path.stem, file.group, taken), file, unit))
+                members.append(FileItem(free_name(file.path.stem, file.group, taken), file, unit, repair))
         for folder in prepared.volumes:
             for entry in read_index(folder):
                 members.append(GrainItem(free_name(entry["name"], entry["group"], taken), folder, entry))

@@ -204,10 +204,10 @@ def _model(recipe: Recipe, population: Population, base: Path, place: Path, crew
         _check_there(population, paths)
         marks = [sha256_of(file.path) for file in files_in(paths, problems)]
     told = population.model_dump(mode="json", exclude={"n", "size_range"})
-    folder = place / f"model-{_digest(told, recipe.seed, recipe.unit, marks)}"
+    folder = place / f"model-{_digest(told, recipe.seed, recipe.unit, recipe.repair, marks)}"
     if not (folder / f"{MODEL}.npz").is_file():
         if not named:
-            loaded = yield from load_particles(paths, recipe.unit)
+            loaded = yield from load_particles(paths, recipe.unit, recipe.repair)
             source = yield from sample_of_meshes(loaded.particles, expansion_of(order), crew)
         fitted = yield from fit_model(source, order)
         with _tidy(place), staged_folder(folder) as stage:

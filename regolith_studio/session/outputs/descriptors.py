@@ -23,7 +23,12 @@ def described(particle: Particle, facts: Examined) -> dict[str, Any]:
         entry["problem"] = facts.problem
     if particle.source:
         source = particle.source
-        entry["source"] = {"path": source.path, "sha256": source.sha256, "unit": source.unit}
+        entry["source"] = {
+            "path": source.path,
+            "sha256": source.sha256,
+            "unit": source.unit,
+            "repaired": source.repaired,
+        }
     return entry
 
 
