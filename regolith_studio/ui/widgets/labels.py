@@ -4,7 +4,7 @@ import html
 import re
 
 from PySide6.QtCore import QSize, Qt
-from PySide6.QtGui import QPainter, QPaintEvent
+from PySide6.QtGui import QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QLabel, QSizePolicy, QWidget
 
 _TAG = re.compile(r"(<[^<>]*>)")
@@ -39,6 +39,22 @@ def remark(text: str = "", role: str = "remark") -> QLabel:
     label.setProperty("role", role)
     label.setWordWrap(True)
     return label
+
+
+class WholeLabel(QLabel):
+    """Words that wrap, with all their lines however little room there is: what stands below gives way."""
+
+    def __init__(self, text: str = "", parent: QWidget | None = None) -> None:
+        super().__init__(text, parent)
+        self.setWordWrap(True)
+        self.setAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop)
+
+    def minimumSizeHint(self) -> QSize:
+        return QSize(super().minimumSizeHint().width(), max(self.heightForWidth(self.width()), 0))
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self.updateGeometry()
 
 
 class ElidedLabel(QWidget):

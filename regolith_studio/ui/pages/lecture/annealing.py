@@ -4,7 +4,6 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QLabel, QSplitter, QVBoxLayout, QWidget
 
 from regolith_studio.jobs.lecturing import AnnealingLesson, AnnealingStep
@@ -23,7 +22,7 @@ from regolith_studio.ui.views.view_frame import ViewFrame
 from regolith_studio.ui.widgets.bar_plot import BarPlot, BarSeries
 from regolith_studio.ui.widgets.curve_plot import Curve, CurvePlot
 from regolith_studio.ui.widgets.formula import FormulaLabel
-from regolith_studio.ui.widgets.labels import remark
+from regolith_studio.ui.widgets.labels import WholeLabel
 
 SEEN_THROUGH = 0.6
 """Opacity of a polyhedron with the edges of another one about it."""
@@ -49,7 +48,7 @@ class AnnealingView(QWidget):
             name: ViewFrame(make_view(kind, ink), f"lecture_{name}") for name in ("annealing", "exact")
         }
         self.link = CameraLink([frame.view for frame in self.frames.values()])
-        self.sentence = remark(tr(WAIT), role="")
+        self.sentence = WholeLabel(tr(WAIT))
         self.sentence.setObjectName("annealing_sentence")
         self.loss_formula = FormulaLabel(tr("Eq. 9 with its numbers"))
         self.rule = FormulaLabel(tr("The proposal, T(k) and the decision with their numbers"))
@@ -269,4 +268,3 @@ class AnnealingView(QWidget):
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(rows, 1)
         layout.addWidget(self.transport)
-        self.sentence.setAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop)
