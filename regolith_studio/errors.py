@@ -152,11 +152,15 @@ def _place(parts: Sequence[str | int]) -> str:
         if isinstance(part, int):
             place += f"[{part}]"
         elif number == 0 or not _KIND_OF_A_UNION.match(part):
-            place += f".{part}" if place else part
+            place += f".{_short(part)}" if place else _short(part)
     return place
 
 
 def _shown(value: Any) -> str:
-    text = json.dumps(value, ensure_ascii=False, default=str)
+    return _short(json.dumps(value, ensure_ascii=False, default=str))
+
+
+def _short(text: str) -> str:
+    """In one line, with a question mark for each sign that cannot be shown, cut where it is long."""
     text = "".join(sign if sign.isprintable() else "?" for sign in text)
     return text if len(text) <= _LONGEST_VALUE else f"{text[: _LONGEST_VALUE - 1]}…"

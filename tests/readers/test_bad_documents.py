@@ -188,6 +188,8 @@ def special(key: str, good: bytes) -> Iterator[Bad]:
         yield "wide", changed(document, "log_deviation", 9), "log_deviation must be at most 5, not 9"
         yield "short", changed(document, "relative_amplitudes", [0.1]), "it has 1 of at least 2 entries"
         yield "extra", changed(document, "colour", "grey"), "colour is not known here"
+        odd = json.dumps({**document, "co\nlour": 1}).encode()
+        yield "unprintable", odd, r"co\?lour is not known here"
         yield "inch", changed(document, "unit", "inch"), "there is no unit “inch”"
     if key == "dataset":
         odd = changed(document, "representatives[1].sizes.type", "log-norm{al")
