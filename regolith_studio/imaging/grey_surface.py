@@ -29,17 +29,27 @@ from regolith_studio.imaging.surface_fit import FitSettings, fitted
 MARGIN = 7
 """Voxels about a grain's box that are looked at."""
 _RIM = 3.0
+"""Voxels on either side of a mask's edge in which blur is looked for; beyond are grain and surroundings."""
 _CONTACT = 1.5
-_CRUMB = 2.5
+"""Distance in voxels at which grains touch."""
+_CRUMB, _SPECK = 2.5, 8
+"""Bright voxels so far from the grain, and so many together, belong to something else."""
 _REACH = 4.0
+"""Standard deviation in voxels over which the grey values of grain and surroundings are averaged."""
 _FEWEST = 30
+"""Voxels that tell a grey value."""
 _NOISIEST = 0.35
+"""Share of the contrast at which noise leaves the grey values without a say."""
 _STRANGEST = 2.0
+"""Times that the volumes by brightness and by voxels may differ."""
 _CALMING = 0.42
+"""Standard deviation in voxels of the Gaussian before the first contour."""
 _STEPS = 12
-_WIDENING, _POWER = 1.05, 0.6
-_WIDEST = 1.5
-_SPECK = 8
+"""Moves of the surface towards the scan."""
+_WIDENING, _POWER, _WIDEST = 1.05, 0.6, 1.5
+"""The pass band that smooths it after each is so many times the usual over the noise (as a share of the
+contrast) to this power, at most so wide: chosen on balls, ellipsoids, polyhedra and rough grains at noise of
+2, 5 and 10 %."""
 
 Floats = NDArray[np.float32]
 

@@ -20,8 +20,11 @@ from regolith_studio.imaging.smoothing import LowPass
 _BOX = 1.0 / 12.0
 """Variance that a voxel's own width adds to the blur of an edge."""
 _REACH = 0.8
+"""Voxels over which what is missing is averaged, so that noise of single voxels moves nothing."""
 _FARTHEST = 0.3
+"""Voxels that a corner moves at most in a step."""
 _EAGERNESS = 1.6
+"""Share of the way to where a flat surface would explain the voxels that is gone in a step."""
 
 
 @dataclass(frozen=True)
