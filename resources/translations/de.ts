@@ -303,6 +303,10 @@
    <translation>, eine, die gerade keine Facette begrenzt</translation>
   </message>
   <message>
+   <source>0 for the best number by Bayes' criterion.</source>
+   <translation>0 für die beste Anzahl nach dem Kriterium von Bayes.</translation>
+  </message>
+  <message>
    <source>0: whole pile</source>
    <translation>0: der ganze Kegel</translation>
   </message>
@@ -310,6 +314,11 @@
    <location filename="ui/pages/dataset/controls.py" />
    <source>1  Representatives</source>
    <translation>1  Repräsentanten</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/steps.py" />
+   <source>1  Volume</source>
+   <translation>1  Volumen</translation>
   </message>
   <message>
    <location filename="ui/pages/lecture/degrees.py" />
@@ -320,6 +329,16 @@
    <location filename="ui/pages/dataset/page.py" />
    <source>1 format is written.</source>
    <translation>1 Format ist geschrieben.</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>1 grain from 1 connected body</source>
+   <translation>1 Korn aus 1 zusammenhängenden Körper</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>1 grain from {bodies} connected bodies</source>
+   <translation>1 Korn aus {bodies} zusammenhängenden Körpern</translation>
   </message>
   <message>
    <source>1 m in the file is 1 mm of the particles, coarse graining applied; y up</source>
@@ -338,6 +357,11 @@
    <translation>1 Partikel ist geöffnet.</translation>
   </message>
   <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>1 particle; left out: {border} at the border, {small} too small.</source>
+   <translation>1 Partikel; weggelassen: {border} am Rand, {small} zu klein.</translation>
+  </message>
+  <message>
    <location filename="ui/pages/dataset/page.py" />
    <source>1 representative</source>
    <translation>1 Repräsentant</translation>
@@ -346,6 +370,11 @@
    <location filename="ui/dialogs/batch.py" />
    <source>1 worker</source>
    <translation>1 Arbeitsprozess</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/steps.py" />
+   <source>2  Grains</source>
+   <translation>2  Körner</translation>
   </message>
   <message>
    <location filename="ui/pages/dataset/controls.py" />
@@ -358,9 +387,24 @@
    <translation>3  Datensatz</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/steps.py" />
+   <source>3  Particles</source>
+   <translation>3  Partikel</translation>
+  </message>
+  <message>
    <location filename="ui/pages/dataset/targets.py" />
    <source>4  Export to</source>
    <translation>4  Exportieren nach</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/table_view.py" />
+   <source>5th</source>
+   <translation>5.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/table_view.py" />
+   <source>95th</source>
+   <translation>95.</translation>
   </message>
   <message>
    <location filename="ui/views/triptych.py" />
@@ -401,6 +445,11 @@
    <translation>Ein auf diesem Rechner gestarteter Dask-Cluster</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/page.py" />
+   <source>A card is made of a fitted sample: fit a model to one first.</source>
+   <translation>Eine Karte entsteht aus einer Probe mit Modell: passen Sie zuerst eines an.</translation>
+  </message>
+  <message>
    <source>A closed mesh without faults.</source>
    <translation>Ein geschlossenes, fehlerfreies Netz.</translation>
   </message>
@@ -415,13 +464,29 @@
    <translation>Ein Datensatz wurde nach {folder} geschrieben.</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/page.py" />
+   <location filename="ui/pages/model/views.py" />
+   <source>A drawn particle</source>
+   <translation>Ein gezogenes Partikel</translation>
+  </message>
+  <message>
    <location filename="ui/pages/explore/pictures.py" />
    <source>A figure on white, 1860 × 560 times the scale</source>
    <translation>Eine Abbildung auf Weiß, 1860 × 560 mal der Maßstab</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/sources.py" />
+   <source>A fitted model: {name}.</source>
+   <translation>Ein angepasstes Modell: {name}.</translation>
+  </message>
+  <message>
    <source>A of the hull / A of its ellipsoid (after Kuo and Freeman)</source>
    <translation>A der Hülle / A ihres Ellipsoids (nach Kuo und Freeman)</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/volume_dialog.py" />
+   <source>A raw file says nothing about itself: how many voxels are in it, and of which type?</source>
+   <translation>Eine Rohdatei sagt nichts über sich: Wie viele Voxel hat sie, und von welchem Typ?</translation>
   </message>
   <message>
    <location filename="ui/dialogs/batch_fields.py" />
@@ -442,6 +507,11 @@
    <location filename="ui/pages/repose/study_desk.py" />
    <source>A study of the angle of repose would be stopped; it can go on later.</source>
    <translation>Eine Studie des Schüttwinkels würde abgebrochen; sie kann später weitergehen.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/histogram_plot.py" />
+   <source>A volume of labels has no histogram of grey values.</source>
+   <translation>Ein Labelvolumen hat kein Histogramm der Grauwerte.</translation>
   </message>
   <message>
    <location filename="ui/actions.py" />
@@ -587,6 +657,11 @@
    <translation>Abkühlung, Schritt {number} von {count}</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/views.py" />
+   <source>Another particle</source>
+   <translation>Anderes Partikel</translation>
+  </message>
+  <message>
    <location filename="ui/pages/lecture/__init__.py" />
    <location filename="ui/pages/lecture/page.py" />
    <source>Another seed</source>
@@ -622,6 +697,11 @@
    <translation>Wie das &amp;System</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/volume_dialog.py" />
+   <source>As the file says, else slices first (z, y, x)</source>
+   <translation>Wie die Datei sagt, sonst Schichten zuerst (z, y, x)</translation>
+  </message>
+  <message>
    <location filename="ui/widgets/preset_form.py" />
    <source>As the paper gives them; a star where it gives none</source>
    <translation>Wie im Artikel; ein Stern, wo er nichts angibt</translation>
@@ -646,6 +726,10 @@
    <translation>Seitenverhältnis, Gl. 2</translation>
   </message>
   <message>
+   <source>At most</source>
+   <translation>Höchstens</translation>
+  </message>
+  <message>
    <location filename="ui/pages/lecture/words.py" />
    <source>At {symbol} = {degree} the series has a negative radius somewhere: it is no surface.</source>
    <translation>Bei {symbol} = {degree} hat die Reihe irgendwo einen negativen Radius: sie ist keine Oberfläche.</translation>
@@ -654,6 +738,11 @@
    <location filename="ui/panels/fit.py" />
    <source>Automatic</source>
    <translation>Automatisch</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/volume_dialog.py" />
+   <source>Axes</source>
+   <translation>Achsen</translation>
   </message>
   <message>
    <location filename="ui/tour.py" />
@@ -700,6 +789,11 @@
    <translation>Unten (von -z)</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/controls.py" />
+   <source>Boundary</source>
+   <translation>Grenze</translation>
+  </message>
+  <message>
    <location filename="ui/pages/studies/rows_bar.py" />
    <source>Bounding box</source>
    <translation>Hüllquader</translation>
@@ -737,6 +831,41 @@
    <translation>Datensatz wird gebaut</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/controls.py" />
+   <source>Bump that is a grain of its own, in voxels</source>
+   <translation>Höcker, der ein eigenes Korn ist, in Voxeln</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/controls.py" />
+   <source>By hand: drag the line</source>
+   <translation>Von Hand: Linie ziehen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/judgement.py" />
+   <source>By number (Fig. 4)</source>
+   <translation>Nach Anzahl (Abb. 4)</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/judgement.py" />
+   <source>By volume (Fig. 5)</source>
+   <translation>Nach Volumen (Abb. 5)</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/volume_dialog.py" />
+   <source>Byte order</source>
+   <translation>Bytefolge</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/volume_dialog.py" />
+   <source>Bytes before</source>
+   <translation>Bytes davor</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/volume_dialog.py" />
+   <source>Bytes before the first voxel</source>
+   <translation>Bytes vor dem ersten Voxel</translation>
+  </message>
+  <message>
    <location filename="ui/pages/studies/__init__.py" />
    <source>CSV, JSON, PNG, SVG</source>
    <translation>CSV, JSON, PNG, SVG</translation>
@@ -755,9 +884,26 @@
    <translation>CT-Partikel, {name}</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/files.py" />
+   <source>Cards (*.json)</source>
+   <translation>Karten (*.json)</translation>
+  </message>
+  <message>
    <location filename="ui/pages/dataset/targets.py" />
    <source>Carries: {what}</source>
    <translation>Überträgt: {what}</translation>
+  </message>
+  <message>
+   <source>Cement 116 (synthetic)</source>
+   <translation>Zement 116 (synthetisch)</translation>
+  </message>
+  <message>
+   <source>Cement 133 (synthetic)</source>
+   <translation>Zement 133 (synthetisch)</translation>
+  </message>
+  <message>
+   <source>Cement 141 (synthetic)</source>
+   <translation>Zement 141 (synthetisch)</translation>
   </message>
   <message>
    <location filename="ui/dialogs/unit.py" />
@@ -859,9 +1005,19 @@
    <translation>Gewählte Gewichte</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/judgement.py" />
+   <source>Classifier</source>
+   <translation>Klassifikator</translation>
+  </message>
+  <message>
    <location filename="ui/pages/sample/__init__.py" />
    <source>Clear &amp;filter</source>
    <translation>&amp;Filter leeren</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/steps.py" />
+   <source>Click into a slice to move the frame.</source>
+   <translation>Ein Klick in ein Schichtbild verschiebt den Rahmen.</translation>
   </message>
   <message>
    <location filename="ui/dialogs/closing.py" />
@@ -877,6 +1033,16 @@
    <location filename="ui/widgets/toast.py" />
    <source>Close this message</source>
    <translation>Diese Meldung schließen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/controls.py" />
+   <source>Closes cracks and thin gaps, in voxels.</source>
+   <translation>Schließt Risse und schmale Lücken, in Voxeln.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/controls.py" />
+   <source>Closing</source>
+   <translation>Schließen</translation>
   </message>
   <message>
    <location filename="ui/dialogs/closing.py" />
@@ -967,6 +1133,12 @@
    <translation>Das Polyeder vergleichen mit</translation>
   </message>
   <message>
+   <location filename="jobs/comparing.py" />
+   <location filename="ui/pages/model/page.py" />
+   <source>Comparing distributions</source>
+   <translation>Verteilungen werden verglichen</translation>
+  </message>
+  <message>
    <source>Compiling</source>
    <translation>Übersetzen des Programms</translation>
   </message>
@@ -995,6 +1167,15 @@
    <translation>Vertrauensbereich</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/controls.py" />
+   <source>Constituents of the mixture, separated by commas, the most numerous first.</source>
+   <translation>Komponenten der Mischung, durch Kommas getrennt, die häufigste zuerst.</translation>
+  </message>
+  <message>
+   <source>Constituents with sizes and spectra of their own; their number by Bayes' criterion.</source>
+   <translation>Komponenten mit eigenen Größen und Spektren; ihre Anzahl nach dem Kriterium von Bayes.</translation>
+  </message>
+  <message>
    <location filename="ui/pages/repose/setup.py" />
    <source>Contact (Table 1)</source>
    <translation>Kontakt (Tabelle 1)</translation>
@@ -1002,6 +1183,11 @@
   <message>
    <source>Contact time in steps</source>
    <translation>Kontaktzeit in Schritten</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/steps.py" />
+   <source>Contour each grain and open it as a particle</source>
+   <translation>Die Oberfläche jedes Korns bilden und es als Partikel öffnen</translation>
   </message>
   <message>
    <source>Convex hull instead of volume</source>
@@ -1064,6 +1250,10 @@
   <message>
    <source>Coulomb friction while sliding, one coefficient (the static one), no memory at rest</source>
    <translation>Coulomb-Reibung beim Gleiten, ein Beiwert (der der Haftreibung), kein Gedächtnis in Ruhe</translation>
+  </message>
+  <message>
+   <source>Counting grey values</source>
+   <translation>Grauwerte werden gezählt</translation>
   </message>
   <message>
    <location filename="ui/pages/explore/__init__.py" />
@@ -1146,6 +1336,11 @@
    <translation>Grad l&lt;sub&gt;max&lt;/sub&gt;</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/controls.py" />
+   <source>Degree of the particles</source>
+   <translation>Grad der Partikel</translation>
+  </message>
+  <message>
    <location filename="ui/pages/lecture/page.py" />
    <source>Degrees of the fit</source>
    <translation>Grade des Fits</translation>
@@ -1156,6 +1351,17 @@
    <translation>Diese Vorlage löschen</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/controls.py" />
+   <source>Denoise</source>
+   <translation>Entrauschen</translation>
+  </message>
+  <message>
+   <source>Denoising</source>
+   <translation>Rauschunterdrückung</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/distributions.py" />
+   <location filename="ui/pages/model/table_view.py" />
    <location filename="ui/panels/error_bars.py" />
    <source>Descriptor</source>
    <translation>Deskriptor</translation>
@@ -1181,6 +1387,10 @@
    <location filename="ui/widgets/toast.py" />
    <source>Details …</source>
    <translation>Einzelheiten …</translation>
+  </message>
+  <message>
+   <source>Deviation in ln r_eq.</source>
+   <translation>Abweichung in ln r_eq.</translation>
   </message>
   <message>
    <location filename="ui/pages/repose/export.py" />
@@ -1218,6 +1428,16 @@
    <translation>Abstand zur Population [Abweichungen]</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/judgement.py" />
+   <source>Distances</source>
+   <translation>Abstände</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/page.py" />
+   <source>Distributions</source>
+   <translation>Verteilungen</translation>
+  </message>
+  <message>
    <location filename="ui/panels/fit.py" />
    <source>Divide by</source>
    <translation>Bezug</translation>
@@ -1237,9 +1457,24 @@
    <translation>Ziehen Sie daran. Bei 0 ist der Fit eine Kugel, bei 10 behält er, was der Artikel behält, bei 30 fast alles. Hier wird die Reihe von Gl. 4 abgebrochen.</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/controls.py" />
+   <source>Draw</source>
+   <translation>Ziehen</translation>
+  </message>
+  <message>
    <location filename="ui/pages/lecture/field.py" />
    <source>Draw anew</source>
    <translation>Neu ziehen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/controls.py" />
+   <source>Draw particles</source>
+   <translation>Partikel ziehen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/distributions.py" />
+   <source>Draw particles: their distributions appear here, over those of the measured ones.</source>
+   <translation>Ziehen Sie Partikel: ihre Verteilungen erscheinen hier, über denen der gemessenen.</translation>
   </message>
   <message>
    <location filename="ui/pages/studies/page.py" />
@@ -1262,6 +1497,12 @@
    <translation>Ziehung {number}. Der Radius weicht um {found:.1%} von seinem Mittel ab; über viele Ziehungen sind {expected:.1%} zu erwarten. Grad {loudest} ist der stärkste: {share:.2g} %.</translation>
   </message>
   <message>
+   <location filename="jobs/generating.py" />
+   <source>Drawing</source>
+   <translation>Ziehung läuft</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/page.py" />
    <location filename="ui/pages/repose/page.py" />
    <source>Drawing particles</source>
    <translation>Partikel werden gezogen</translation>
@@ -1287,6 +1528,11 @@
    <translation>Drehung wird gezeichnet</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/judgement.py" />
+   <source>Draws thrown away</source>
+   <translation>Verworfene Ziehungen</translation>
+  </message>
+  <message>
    <location filename="ui/panels/particle_list.py" />
    <source>Drop mesh files or folders anywhere in the window to open them.</source>
    <translation>Netzdateien oder Ordner irgendwo im Fenster ablegen, um sie zu öffnen.</translation>
@@ -1302,6 +1548,7 @@
   </message>
   <message>
    <location filename="ui/pages/dataset/controls.py" />
+   <location filename="ui/pages/model/distributions.py" />
    <source>Each particle counts the same</source>
    <translation>Jedes Partikel zählt gleich</translation>
   </message>
@@ -1330,6 +1577,11 @@
    <translation>Kante eines Voxels</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/volume_dialog.py" />
+   <source>Edge of a voxel along {axis}</source>
+   <translation>Kante eines Voxels entlang {axis}</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/unit.py" />
    <source>Edge of a voxel in micrometres</source>
    <translation>Kante eines Voxels in Mikrometern</translation>
@@ -1342,6 +1594,16 @@
    <location filename="ui/tour.py" />
    <source>End tour</source>
    <translation>Beenden</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/judgement.py" />
+   <source>Energy</source>
+   <translation>Energie</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/table_view.py" />
+   <source>Energy distance</source>
+   <translation>Energiedistanz</translation>
   </message>
   <message>
    <location filename="ui/pages/repose/runs.py" />
@@ -1492,6 +1754,11 @@
    <translation>Export</translation>
   </message>
   <message>
+   <location filename="jobs/extracting.py" />
+   <source>Extracting particles</source>
+   <translation>Partikel werden herausgelöst</translation>
+  </message>
+  <message>
    <location filename="ui/pages/lecture/__init__.py" />
    <source>F&amp;ull screen</source>
    <translation>Voll&amp;bild</translation>
@@ -1534,6 +1801,14 @@
    <translation>Wenigste Partikel</translation>
   </message>
   <message>
+   <source>Field drawn to its hull</source>
+   <translation>Feld, zu seiner Hülle gezogen</translation>
+  </message>
+  <message>
+   <source>Field in log r</source>
+   <translation>Feld in log r</translation>
+  </message>
+  <message>
    <source>Figure 7, fifth column: aspect ratio and IoU</source>
    <translation>Bild 7, fünfte Spalte: Seitenverhältnis und IoU</translation>
   </message>
@@ -1568,6 +1843,11 @@
    <translation>Einen Zylinder mit den Partikeln eines Datensatzes füllen, ihn heben, den Schüttkegel vermessen</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/controls.py" />
+   <source>Fill closed pores</source>
+   <translation>Geschlossene Poren füllen</translation>
+  </message>
+  <message>
    <location filename="ui/pages/repose/setup.py" />
    <source>Fill, lift, measure</source>
    <translation>Füllen, heben, messen</translation>
@@ -1597,14 +1877,33 @@
    <translation>Filter: Wörter und Vergleiche, etwa  flat S&lt;0.8 AR&gt;1.5</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/steps.py" />
+   <source>Find all grains</source>
+   <translation>Alle Körner finden</translation>
+  </message>
+  <message>
    <location filename="ui/pages/dataset/controls.py" />
    <source>Find representatives</source>
    <translation>Repräsentanten finden</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/page.py" />
+   <source>Find the grains first.</source>
+   <translation>Finden Sie zuerst die Körner.</translation>
+  </message>
+  <message>
    <location filename="ui/pages/scan/__init__.py" />
    <source>Find the grains in a CT volume and make particles of them</source>
    <translation>Die Körner in einem CT-Volumen finden und Partikel daraus machen</translation>
+  </message>
+  <message>
+   <source>Finding bodies</source>
+   <translation>Körper werden gesucht</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/page.py" />
+   <source>Finding grains</source>
+   <translation>Körner werden gesucht</translation>
   </message>
   <message>
    <location filename="ui/pages/dataset/page.py" />
@@ -1617,6 +1916,11 @@
    <translation>Fein</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/table_view.py" />
+   <source>First</source>
+   <translation>Erster</translation>
+  </message>
+  <message>
    <location filename="ui/panels/fit.py" />
    <source>First crossing</source>
    <translation>Erster Durchstoß</translation>
@@ -1627,9 +1931,29 @@
    <translation>Fit</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/page.py" />
+   <source>Fit a model to a sample of 20 particles or more.</source>
+   <translation>Passen Sie ein Modell an eine Probe von 20 oder mehr Partikeln an.</translation>
+  </message>
+  <message>
    <location filename="ui/pages/model/__init__.py" />
    <source>Fit the &amp;model</source>
    <translation>&amp;Modell anpassen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/controls.py" />
+   <source>Fit the model</source>
+   <translation>Modell anpassen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/controls.py" />
+   <source>Fit to a half</source>
+   <translation>An eine Hälfte anpassen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/controls.py" />
+   <source>Fit to a random half only</source>
+   <translation>Nur an eine zufällige Hälfte anpassen</translation>
   </message>
   <message>
    <location filename="ui/panels/error_bars.py" />
@@ -1648,9 +1972,24 @@
    <translation>Fits</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/page.py" />
+   <source>Fits, models and material cards (*.json *.npz);;All files (*)</source>
+   <translation>Fits, Modelle und Materialkarten (*.json *.npz);;Alle Dateien (*)</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/page.py" />
+   <source>Fitting a model of shapes</source>
+   <translation>Formmodell wird angepasst</translation>
+  </message>
+  <message>
    <location filename="jobs/fitting.py" />
    <source>Fitting spherical harmonics</source>
    <translation>Kugelflächenfunktionen werden angepasst</translation>
+  </message>
+  <message>
+   <location filename="jobs/generating.py" />
+   <source>Fitting the model</source>
+   <translation>Modell wird angepasst</translation>
   </message>
   <message>
    <source>Flatness</source>
@@ -1665,6 +2004,11 @@
    <location filename="ui/pages/explore/section_panel.py" />
    <source>Flip</source>
    <translation>Umkehren</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/table_view.py" />
+   <source>Floor</source>
+   <translation>Rauschen</translation>
   </message>
   <message>
    <location filename="ui/pages/studies/page.py" />
@@ -1707,6 +2051,10 @@
    <translation>Ordner:</translation>
   </message>
   <message>
+   <source>For each number.</source>
+   <translation>Für jede Anzahl.</translation>
+  </message>
+  <message>
    <location filename="ui/pages/dataset/targets.py" />
    <source>For formats that list single bodies.</source>
    <translation>Für Formate, die einzelne Körper aufführen.</translation>
@@ -1737,6 +2085,11 @@
    <translation>Reibung</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/histogram_plot.py" />
+   <source>From</source>
+   <translation>Von</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/help.py" />
    <source>From X-ray micro-CT to DEM-ready regolith particles whose geometry is right.</source>
    <translation>Von der Röntgen-Mikro-CT zu DEM-fertigen Regolithpartikeln, deren Geometrie stimmt.</translation>
@@ -1760,13 +2113,53 @@
    <translation>GIF von l_max 0 bis 30</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/page.py" />
+   <location filename="ui/pages/model/views.py" />
+   <source>Gallery</source>
+   <translation>Galerie</translation>
+  </message>
+  <message>
    <source>Gap, in mean d</source>
    <translation>Lücke, in mittleren d</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/controls.py" />
+   <source>Gaussian (fast)</source>
+   <translation>Gauß (schnell)</translation>
+  </message>
+  <message>
+   <source>Gaussian field (the paper's)</source>
+   <translation>Gaußfeld (des Artikels)</translation>
   </message>
   <message>
    <location filename="ui/dialogs/batch.py" />
    <source>Go on with the run that has not ended</source>
    <translation>Den nicht beendeten Lauf fortsetzen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/steps.py" />
+   <source>Go to the table of particles</source>
+   <translation>Zur Tabelle der Partikel</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/controls.py" />
+   <source>Grains are dark</source>
+   <translation>Körner sind dunkel</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/controls.py" />
+   <source>Grains are darker than what is between them.</source>
+   <translation>Körner sind dunkler als das, was zwischen ihnen ist.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/steps.py" />
+   <source>Grains fill most of it and hang together: if the grains are dark, tick that below; else move the level or make h smaller.</source>
+   <translation>Körner füllen das meiste und hängen zusammen: Sind die Körner dunkel, haken Sie das unten an; sonst verschieben Sie den Schwellwert oder verkleinern h.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/controls.py" />
+   <source>Grains of fewer voxels are left out; below 12 voxels in diameter shapes are coarse.</source>
+   <translation>Körner mit weniger Voxeln entfallen; unter 12 Voxeln Durchmesser sind Formen grob.</translation>
   </message>
   <message>
    <location filename="ui/pages/sample/statistics.py" />
@@ -1788,6 +2181,32 @@
    <location filename="ui/pages/repose/setup.py" />
    <source>Gravity of</source>
    <translation>Schwerkraft</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/controls.py" />
+   <source>Grey level at which grains begin</source>
+   <translation>Grauwert, ab dem Körner beginnen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/histogram_plot.py" />
+   <source>Grey value</source>
+   <translation>Grauwert</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/histogram_plot.py" />
+   <source>Grey value {value:g}</source>
+   <translation>Grauwert {value:g}</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/controls.py" />
+   <location filename="ui/pages/scan/volume_dialog.py" />
+   <source>Grey values</source>
+   <translation>Grauwerte</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/histogram_plot.py" />
+   <source>Grey values {low:.4g} to {high:.4g}</source>
+   <translation>Grauwerte {low:.4g} bis {high:.4g}</translation>
   </message>
   <message>
    <location filename="ui/pages/sample/table.py" />
@@ -1850,14 +2269,38 @@
    <translation>Hertz, Mindlin-Deresiewicz, JKR: das Paarpotential ist linear</translation>
   </message>
   <message>
+   <source>Highest number tried.</source>
+   <translation>Höchste Anzahl, die versucht wird.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/histogram_plot.py" />
+   <source>Histogram</source>
+   <translation>Histogramm</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/histogram_plot.py" />
+   <source>Histogram of grey values with the threshold</source>
+   <translation>Histogramm der Grauwerte mit dem Schwellwert</translation>
+  </message>
+  <message>
    <location filename="ui/panels/task_list.py" />
    <source>Hold it back after the step that it is at, or let it go on</source>
    <translation>Nach dem laufenden Schritt anhalten oder weiterlaufen lassen</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/volume_dialog.py" />
+   <source>Holds</source>
+   <translation>Inhalt</translation>
+  </message>
+  <message>
    <location filename="ui/pages/sample/scatter.py" />
    <source>Horizontal axis</source>
    <translation>Waagerechte Achse</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/controls.py" />
+   <source>How far a bump must stand out to be a grain of its own. Grains cut in two: larger. Grains that stick together: smaller.</source>
+   <translation>Wie weit ein Höcker vorstehen muss, um ein eigenes Korn zu sein. Werden Körner zerteilt: größer. Bleiben Körner verbunden: kleiner.</translation>
   </message>
   <message>
    <location filename="ui/pages/dataset/plots.py" />
@@ -1903,6 +2346,11 @@
    <translation>In Größenklassen</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/steps.py" />
+   <source>In the frame: {counts}.</source>
+   <translation>Im Rahmen: {counts}.</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/unit.py" />
    <source>In which unit are the numbers of these {count} files and folders?</source>
    <translation>In welcher Einheit sind die Zahlen dieser {count} Dateien und Ordner?</translation>
@@ -1911,6 +2359,10 @@
    <location filename="ui/dialogs/unit.py" />
    <source>In which unit are the numbers of {name}?</source>
    <translation>In welcher Einheit sind die Zahlen von {name}?</translation>
+  </message>
+  <message>
+   <source>Independent normal coefficients; draws with a negative radius are thrown away.</source>
+   <translation>Unabhängige normalverteilte Koeffizienten; Ziehungen mit negativem Radius werden verworfen.</translation>
   </message>
   <message>
    <source>Intermediate diameter</source>
@@ -1932,6 +2384,11 @@
    <translation>Isometrisch</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/volume_dialog.py" />
+   <source>It does not say how large a voxel is.</source>
+   <translation>Sie sagt nicht, wie groß ein Voxel ist.</translation>
+  </message>
+  <message>
    <source>Iterations</source>
    <translation>Iterationen</translation>
   </message>
@@ -1943,6 +2400,11 @@
    <location filename="ui/commands.py" />
    <source>Its choices are taken; it is too large to be opened: use Run as a batch.</source>
    <translation>Seine Einstellungen sind übernommen; zum Öffnen ist es zu groß: nehmen Sie „Als Stapel ausführen“.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/volume_dialog.py" />
+   <source>Its name says how many voxels are in it, and its size agrees.</source>
+   <translation>Ihr Name sagt, wie viele Voxel sie hat, und ihre Größe stimmt damit überein.</translation>
   </message>
   <message>
    <location filename="ui/panels/loss.py" />
@@ -1957,6 +2419,47 @@
   <message>
    <source>Johnson, Kendall and Roberts between spheres</source>
    <translation>Johnson, Kendall und Roberts zwischen Kugeln</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/judgement.py" />
+   <source>Judge</source>
+   <translation>Beurteilen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/judgement.py" />
+   <source>Judge every model, not only the chosen one.</source>
+   <translation>Jedes Modell beurteilen, nicht nur das gewählte.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/page.py" />
+   <source>Judgement</source>
+   <translation>Beurteilung</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/page.py" />
+   <source>Judging models</source>
+   <translation>Modelle werden beurteilt</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/judgement.py" />
+   <location filename="ui/pages/model/table_view.py" />
+   <source>KS / floor</source>
+   <translation>KS / Rauschen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/table_view.py" />
+   <source>KS floor</source>
+   <translation>KS-Rauschen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/table_view.py" />
+   <source>KS from</source>
+   <translation>KS von</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/table_view.py" />
+   <source>KS to</source>
+   <translation>KS bis</translation>
   </message>
   <message>
    <source>Keep the best so far</source>
@@ -1988,6 +2491,11 @@
    <translation>Tasten:</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/controls.py" />
+   <source>Kind of model</source>
+   <translation>Art des Modells</translation>
+  </message>
+  <message>
    <location filename="ui/pages/explore/pictures.py" />
    <source>Kind of picture</source>
    <translation>Art des Bildes</translation>
@@ -2011,6 +2519,11 @@
    <translation>LAMMPS rundet Kanten; Facetten bleiben in ihren Ebenen, Ecken gehen verloren.</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/volume_dialog.py" />
+   <source>Labels of grains</source>
+   <translation>Labels von Körnern</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/preferences.py" />
    <source>Language</source>
    <translation>Sprache</translation>
@@ -2023,6 +2536,11 @@
   <message>
    <source>Largest Feret diameter</source>
    <translation>Größter Feret-Durchmesser</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/controls.py" />
+   <source>Largest equivalent radius</source>
+   <translation>Größter Äquivalentradius</translation>
   </message>
   <message>
    <location filename="ui/panels/lmax_study.py" />
@@ -2039,6 +2557,10 @@
    <translation>Letzter Durchstoß</translation>
   </message>
   <message>
+   <source>Law of sizes</source>
+   <translation>Größengesetz</translation>
+  </message>
+  <message>
    <location filename="ui/panels/fit.py" />
    <source>Least hidden volume</source>
    <translation>Kleinstes verdecktes Volumen</translation>
@@ -2046,6 +2568,16 @@
   <message>
    <source>Least moment of inertia</source>
    <translation>Kleinstes Trägheitsmoment</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/controls.py" />
+   <source>Least voxels of a grain</source>
+   <translation>Kleinste Voxelzahl eines Korns</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/controls.py" />
+   <source>Leave out grains at the border</source>
+   <translation>Körner am Rand weglassen</translation>
   </message>
   <message>
    <location filename="ui/pages/lecture/__init__.py" />
@@ -2081,6 +2613,7 @@
    <translation>Längeneinheit der Datei:</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/controls.py" />
    <source>Level</source>
    <translation>Stufe</translation>
   </message>
@@ -2109,6 +2642,11 @@
    <location filename="ui/dialogs/preferences.py" />
    <source>Light</source>
    <translation>Hell</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/controls.py" />
+   <source>Limit the sizes</source>
+   <translation>Größen begrenzen</translation>
   </message>
   <message>
    <location filename="ui/activity.py" />
@@ -2147,6 +2685,16 @@
    <translation>Nochmals suchen</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/page.py" />
+   <source>Looking at the volume</source>
+   <translation>Volumen wird angesehen</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>Looking at {name}</source>
+   <translation>{name} wird angesehen</translation>
+  </message>
+  <message>
    <location filename="ui/pages/dataset/library.py" />
    <source>Looking for datasets</source>
    <translation>Datensätze werden gesucht</translation>
@@ -2154,6 +2702,10 @@
   <message>
    <source>Looking for the cluster</source>
    <translation>Cluster wird gesucht</translation>
+  </message>
+  <message>
+   <source>Looking through the slices</source>
+   <translation>Schichten werden durchgesehen</translation>
   </message>
   <message>
    <location filename="ui/pages/dataset/targets.py" />
@@ -2208,13 +2760,42 @@
    <translation>Niedrigster Kegel, in mittleren d</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/steps.py" />
+   <source>Make particles</source>
+   <translation>Partikel erzeugen</translation>
+  </message>
+  <message>
    <location filename="ui/pages/repose/page.py" />
    <source>Making a dataset</source>
    <translation>Datensatz wird gemacht</translation>
   </message>
   <message>
+   <location filename="jobs/generating.py" />
+   <source>Making meshes</source>
+   <translation>Netze werden erzeugt</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/page.py" />
+   <source>Making particles</source>
+   <translation>Partikel werden erzeugt</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/page.py" />
+   <source>Making virtual particles</source>
+   <translation>Virtuelle Partikel werden erzeugt</translation>
+  </message>
+  <message>
    <source>Mars</source>
    <translation>Mars</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/controls.py" />
+   <source>Mask</source>
+   <translation>Maske</translation>
+  </message>
+  <message>
+   <source>Matched to the sample</source>
+   <translation>Der Probe nachgebildet</translation>
   </message>
   <message>
    <location filename="ui/pages/lecture/field.py" />
@@ -2251,6 +2832,20 @@
    <translation>Mittl. RMSRE der Deskriptoren [%]</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/judgement.py" />
+   <source>Mean Wasserstein distance to the half that was held out, over that between random halves: 1 is noise</source>
+   <translation>Mittlere Wasserstein-Distanz zur zurückgehaltenen Hälfte, geteilt durch die zwischen zufälligen Hälften: 1 ist Rauschen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/judgement.py" />
+   <source>Mean energy distance of pairs of descriptors: 0 for equal distributions</source>
+   <translation>Mittlere Energiedistanz von Paaren von Deskriptoren: 0 bei gleichen Verteilungen</translation>
+  </message>
+  <message>
+   <source>Mean rotation of a round particle; long ones are turned less.</source>
+   <translation>Mittlere Drehung eines runden Partikels; lange werden weniger gedreht.</translation>
+  </message>
+  <message>
    <location filename="ui/pages/repose/export.py" />
    <source>Measure positions</source>
    <translation>Positionen vermessen</translation>
@@ -2259,6 +2854,10 @@
    <location filename="ui/pages/repose/__init__.py" />
    <source>Measure the pile of another program</source>
    <translation>Den Schüttkegel eines anderen Programms vermessen</translation>
+  </message>
+  <message>
+   <source>Measured surfaces turned within their ellipsoids: sizes and shapes as in the sample, bodies new.</source>
+   <translation>Gemessene Oberflächen, in ihren Ellipsoiden gedreht: Größen und Formen wie in der Probe, Körper neu.</translation>
   </message>
   <message>
    <location filename="jobs/examining.py" />
@@ -2280,9 +2879,19 @@
    <translation>Schüttkegel wird vermessen</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/judgement.py" />
+   <source>Median distance to the nearest measured particle, over that between measured ones: 0 is a copy</source>
+   <translation>Mediane Distanz zum nächsten gemessenen Partikel, geteilt durch die zwischen gemessenen: 0 ist eine Kopie</translation>
+  </message>
+  <message>
    <location filename="ui/pages/dataset/controls.py" />
    <source>Median in µm, deviation of ln d; @volume behind it counts volume.</source>
    <translation>Median in µm, Abweichung von ln d; mit @volume dahinter zählt das Volumen.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/controls.py" />
+   <source>Median of 27 voxels</source>
+   <translation>Median von 27 Voxeln</translation>
   </message>
   <message>
    <location filename="ui/dialogs/unit.py" />
@@ -2323,6 +2932,36 @@
    <translation>Kleinster Durchmesser</translation>
   </message>
   <message>
+   <source>Mixture of fields</source>
+   <translation>Mischung von Feldern</translation>
+  </message>
+  <message>
+   <source>Mixture of the paper's fields</source>
+   <translation>Mischung von Feldern des Artikels</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/controls.py" />
+   <location filename="ui/pages/model/judgement.py" />
+   <location filename="ui/pages/model/table_view.py" />
+   <source>Model</source>
+   <translation>Modell</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/files.py" />
+   <source>Models (*.json)</source>
+   <translation>Modelle (*.json)</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/judgement.py" />
+   <source>Models are fitted to one half of the sample and judged on the other, beside the noise of sampling.</source>
+   <translation>Modelle werden an eine Hälfte der Probe angepasst und an der anderen beurteilt, neben dem Rauschen der Stichprobe.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/page.py" />
+   <source>Models are judged on measured particles: fit one to a sample first.</source>
+   <translation>Modelle werden an gemessenen Partikeln beurteilt: passen Sie zuerst eines an eine Probe an.</translation>
+  </message>
+  <message>
    <source>Moon</source>
    <translation>Mond</translation>
   </message>
@@ -2335,6 +2974,11 @@
    <location filename="ui/dialogs/shortcuts.py" />
    <source>Mouse in the views</source>
    <translation>Maus in den Ansichten</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/controls.py" />
+   <source>Multi-Otsu, three classes</source>
+   <translation>Multi-Otsu, drei Klassen</translation>
   </message>
   <message>
    <location filename="ui/pages/dataset/library.py" />
@@ -2383,9 +3027,18 @@
    <translation>Namen der Vorlagen: {names}</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/controls.py" />
+   <source>Names of the parts, the most numerous first</source>
+   <translation>Namen der Komponenten, die häufigste zuerst</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/unit.py" />
    <source>Nanometres (nm)</source>
    <translation>Nanometer (nm)</translation>
+  </message>
+  <message>
+   <source>Neighbours</source>
+   <translation>Nachbarn</translation>
   </message>
   <message>
    <location filename="ui/dialogs/shortcuts.py" />
@@ -2418,6 +3071,16 @@
    <translation>Noch kein Datensatz.</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/page.py" />
+   <source>No grain became a particle: {border} touch the border of the volume, {small} are too small.</source>
+   <translation>Kein Korn wurde zum Partikel: {border} berühren den Rand des Volumens, {small} sind zu klein.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/steps.py" />
+   <source>No grain in the frame so far. Move the level, or click into a slice to move the frame.</source>
+   <translation>Noch kein Korn im Rahmen. Verschieben Sie den Schwellwert, oder klicken Sie in ein Schichtbild, um den Rahmen zu verschieben.</translation>
+  </message>
+  <message>
    <location filename="ui/pages/lecture/field.py" />
    <source>No material.</source>
    <translation>Kein Material.</translation>
@@ -2426,6 +3089,11 @@
    <location filename="ui/dialogs/batch_fields.py" />
    <source>No open particle comes from a file: open some, or choose a recipe file.</source>
    <translation>Kein geöffnetes Partikel stammt aus einer Datei: öffnen Sie welche oder wählen Sie eine Rezeptdatei.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/sources.py" />
+   <source>No particle is open: open some, or choose a material.</source>
+   <translation>Kein Partikel ist geöffnet: öffnen Sie welche oder wählen Sie ein Material.</translation>
   </message>
   <message>
    <location filename="ui/pages/studies/desk.py" />
@@ -2459,7 +3127,18 @@
    <translation>Es fand sich kein Polyeder mit {faces} Facetten, das alle Deskriptoren trifft: {name} weicht um {error} % ab; mehr Facetten oder ein Gewicht von 0 gäben Raum.</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/steps.py" />
+   <source>No volume is open.</source>
+   <translation>Kein Volumen ist geöffnet.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/controls.py" />
+   <source>Non-local means (slow)</source>
+   <translation>Non-local Means (langsam)</translation>
+  </message>
+  <message>
    <location filename="ui/pages/repose/setup.py" />
+   <location filename="ui/pages/scan/controls.py" />
    <source>None</source>
    <translation>Keine</translation>
   </message>
@@ -2482,6 +3161,11 @@
    <translation>Nichts ist in Arbeit.</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/judgement.py" />
+   <source>Novelty</source>
+   <translation>Neuheit</translation>
+  </message>
+  <message>
    <location filename="ui/pages/repose/setup.py" />
    <source>Number</source>
    <translation>Anzahl</translation>
@@ -2492,6 +3176,7 @@
    <translation>Anzahl der Facetten</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/controls.py" />
    <location filename="ui/pages/repose/runs.py" />
    <location filename="ui/pages/repose/setup.py" />
    <location filename="ui/pages/repose/study.py" />
@@ -2508,6 +3193,10 @@
    <location filename="ui/pages/dataset/plots.py" />
    <source>Number of representatives</source>
    <translation>Anzahl der Repräsentanten</translation>
+  </message>
+  <message>
+   <source>Numbering grains</source>
+   <translation>Körner werden nummeriert</translation>
   </message>
   <message>
    <source>Numbers of faces</source>
@@ -2578,6 +3267,11 @@
    <translation>Ein Gewicht für jeden Term der Verlustfunktion (Gl. 9), mit den Vorlagen des Artikels. Das Gewicht 0 gibt einen Deskriptor frei. Zurücksetzen bringt die Vorlage zurück.</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/controls.py" />
+   <source>Only equivalent radii from … to …</source>
+   <translation>Nur Äquivalentradien von … bis …</translation>
+  </message>
+  <message>
    <location filename="ui/actions.py" />
    <source>Open &amp;folder …</source>
    <translation>&amp;Ordner öffnen …</translation>
@@ -2613,6 +3307,16 @@
    <translation>Ein CT-Volumen öffnen</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/steps.py" />
+   <source>Open a CT volume of grey values or labels</source>
+   <translation>Ein CT-Volumen mit Grauwerten oder Labels öffnen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/overview.py" />
+   <source>Open a CT volume: TIFF stack, folder of slices, HDF5, NRRD, MetaImage, NIfTI, NPY or raw. Drop it here, or begin with the sample scan.</source>
+   <translation>Öffnen Sie ein CT-Volumen: TIFF-Stapel, Ordner mit Schichtbildern, HDF5, NRRD, MetaImage, NIfTI, NPY oder Rohdaten. Legen Sie es hier ab, oder beginnen Sie mit dem Beispielscan.</translation>
+  </message>
+  <message>
    <location filename="ui/pages/dataset/page.py" />
    <location filename="ui/pages/repose/page.py" />
    <source>Open a dataset</source>
@@ -2629,6 +3333,11 @@
    <translation>Öffnen Sie einen Datensatz, oder machen Sie einen aus den geöffneten Partikeln.</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/page.py" />
+   <source>Open a fit, model or card</source>
+   <translation>Fit, Modell oder Karte öffnen</translation>
+  </message>
+  <message>
    <location filename="ui/commands.py" />
    <source>Open a folder of meshes</source>
    <translation>Einen Ordner mit Netzen öffnen</translation>
@@ -2639,9 +3348,30 @@
    <translation>Ordner mit &amp;Schichtbildern öffnen …</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/page.py" />
+   <source>Open a folder of slices</source>
+   <translation>Ordner mit Schichtbildern öffnen</translation>
+  </message>
+  <message>
    <location filename="ui/pages/lecture/page.py" />
    <source>Open a particle first.</source>
    <translation>Öffnen Sie zuerst ein Partikel.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/page.py" />
+   <location filename="ui/pages/scan/volume_dialog.py" />
+   <source>Open a volume</source>
+   <translation>Volumen öffnen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/page.py" />
+   <source>Open a volume of grey values first.</source>
+   <translation>Öffnen Sie zuerst ein Volumen mit Grauwerten.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/histogram_plot.py" />
+   <source>Open a volume of grey values to see its histogram.</source>
+   <translation>Öffnen Sie ein Volumen mit Grauwerten, um sein Histogramm zu sehen.</translation>
   </message>
   <message>
    <location filename="ui/pages/dataset/library.py" />
@@ -2660,9 +3390,24 @@
    <translation>Partikel öffnen</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/sources.py" />
+   <source>Open particles ({count})</source>
+   <translation>Geöffnete Partikel ({count})</translation>
+  </message>
+  <message>
    <location filename="ui/pages/scan/__init__.py" />
    <source>Open se&amp;ttings …</source>
    <translation>&amp;Einstellungen öffnen …</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/page.py" />
+   <source>Open settings</source>
+   <translation>Einstellungen öffnen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/controls.py" />
+   <source>Open the drawn particles: to be coarsened and made a dataset.</source>
+   <translation>Die gezogenen Partikel öffnen: um sie zu vergröbern und einen Datensatz zu bauen.</translation>
   </message>
   <message>
    <location filename="ui/dialogs/batch.py" />
@@ -2675,9 +3420,19 @@
    <translation>&amp;Beispielscan öffnen</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/steps.py" />
+   <source>Open the scan that ships with the program</source>
+   <translation>Den mitgelieferten Scan öffnen</translation>
+  </message>
+  <message>
    <location filename="ui/actions.py" />
    <source>Open the shipped particles</source>
    <translation>Die mitgelieferten Partikel öffnen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/steps.py" />
+   <source>Open volume …</source>
+   <translation>Volumen öffnen …</translation>
   </message>
   <message>
    <location filename="ui/pages/model/__init__.py" />
@@ -2685,9 +3440,15 @@
    <translation>Öffnen, woraus gezogen wird</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/controls.py" />
    <location filename="ui/pages/repose/setup.py" />
    <source>Open …</source>
    <translation>Öffnen …</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/controls.py" />
+   <source>Opening</source>
+   <translation>Öffnen</translation>
   </message>
   <message>
    <location filename="ui/pages/dataset/controls.py" />
@@ -2695,9 +3456,24 @@
    <translation>Maschenweiten in µm = Anteile dazwischen; mit @volume dahinter zählt das Volumen.</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/volume_dialog.py" />
+   <source>Order of the array's axes</source>
+   <translation>Reihenfolge der Achsen des Feldes</translation>
+  </message>
+  <message>
    <location filename="ui/pages/repose/setup.py" />
    <source>Other</source>
    <translation>Andere</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/controls.py" />
+   <source>Otherwise each connected body is one grain.</source>
+   <translation>Sonst ist jeder zusammenhängende Körper ein Korn.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/controls.py" />
+   <source>Otsu</source>
+   <translation>Otsu</translation>
   </message>
   <message>
    <source>Our own: mass and sieve size, the rest by overlap</source>
@@ -2747,6 +3523,25 @@
    <translation>Seite {title}</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/judgement.py" />
+   <source>Pairs (Fig. 6)</source>
+   <translation>Paare (Abb. 6)</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/judgement.py" />
+   <source>Pairs in numbers</source>
+   <translation>Paare in Zahlen</translation>
+  </message>
+  <message>
+   <source>Parametric, with facets: size, form, roughness and hull ratio go together as in the sample.</source>
+   <translation>Parametrisch, mit Facetten: Größe, Form, Rauheit und Hüllenverhältnis hängen zusammen wie in der Probe.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/controls.py" />
+   <source>Part touching grains</source>
+   <translation>Berührende Körner trennen</translation>
+  </message>
+  <message>
    <location filename="ui/pages/lecture/page.py" />
    <location filename="ui/pages/sample/table.py" />
    <location filename="ui/panels/descriptor_table.py" />
@@ -2764,6 +3559,7 @@
   </message>
   <message>
    <location filename="ui/dialogs/export.py" />
+   <location filename="ui/pages/model/controls.py" />
    <location filename="ui/pages/repose/setup.py" />
    <location filename="ui/panels/particle_list.py" />
    <source>Particles</source>
@@ -2781,6 +3577,7 @@
   </message>
   <message>
    <location filename="ui/pages/dataset/controls.py" />
+   <location filename="ui/pages/model/distributions.py" />
    <source>Particles count by their volume</source>
    <translation>Partikel zählen nach Volumen</translation>
   </message>
@@ -2788,6 +3585,20 @@
    <location filename="ui/pages/dataset/targets.py" />
    <source>Particles drawn</source>
    <translation>Gezogene Partikel</translation>
+  </message>
+  <message>
+   <source>Particles that may lend their ellipsoid.</source>
+   <translation>Partikel, die ihr Ellipsoid leihen dürfen.</translation>
+  </message>
+  <message>
+   <source>Parting touching grains</source>
+   <translation>Berührende Körner werden getrennt</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/controls.py" />
+   <location filename="ui/pages/model/judgement.py" />
+   <source>Parts</source>
+   <translation>Komponenten</translation>
   </message>
   <message>
    <location filename="ui/pages/lecture/transport.py" />
@@ -2872,14 +3683,28 @@
    <translation>Polyeder, {count} Facetten</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/controls.py" />
+   <source>Pores without a way out become grain.</source>
+   <translation>Poren ohne Ausgang werden zum Korn gezählt.</translation>
+  </message>
+  <message>
    <location filename="ui/pages/repose/export.py" />
    <source>Positions (*.npz *.csv *.txt *.dat *.xyz *.dump *.lammpstrj *.vtk *.vtp *.vtu);;All files (*)</source>
    <translation>Positionen (*.npz *.csv *.txt *.dat *.xyz *.dump *.lammpstrj *.vtk *.vtp *.vtu);;Alle Dateien (*)</translation>
   </message>
   <message>
+   <source>Positive by construction; sizes and spectrum apart, so that it extrapolates.</source>
+   <translation>Stets positiv; Größen und Spektrum getrennt, sodass es extrapoliert.</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/preferences.py" />
    <source>Preferences</source>
    <translation>Einstellungen</translation>
+  </message>
+  <message>
+   <location filename="jobs/scanning.py" />
+   <source>Preparing the view</source>
+   <translation>Ansicht wird vorbereitet</translation>
   </message>
   <message>
    <location filename="ui/panels/loss.py" />
@@ -2897,9 +3722,20 @@
    <translation>Drücken Sie „Repräsentanten finden“: die Partikel, die für alle stehen, erscheinen hier mit ihren Gewichten.</translation>
   </message>
   <message>
+   <location filename="jobs/scanning.py" />
+   <location filename="ui/pages/scan/page.py" />
+   <source>Preview</source>
+   <translation>Vorschau</translation>
+  </message>
+  <message>
    <location filename="ui/pages/lecture/annealing.py" />
    <source>Probability</source>
    <translation>Wahrscheinlichkeit</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/controls.py" />
+   <source>Probability map</source>
+   <translation>Wahrscheinlichkeitskarte</translation>
   </message>
   <message>
    <location filename="ui/dialogs/batch_fields.py" />
@@ -2947,6 +3783,11 @@
    <translation>Quadrik-Dezimierung (ohne Verlust)</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/judgement.py" />
+   <source>Quantiles</source>
+   <translation>Quantile</translation>
+  </message>
+  <message>
    <location filename="ui/panels/coarsening_study.py" />
    <source>RMSRE [%], 1 particle</source>
    <translation>RMSRE [%], 1 Partikel</translation>
@@ -2987,6 +3828,21 @@
    <translation>Zufallsfeld</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/judgement.py" />
+   <source>Ranking</source>
+   <translation>Rangliste</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/judgement.py" />
+   <source>Ranking of the models</source>
+   <translation>Rangliste der Modelle</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/table_view.py" />
+   <source>Reached</source>
+   <translation>Erreicht</translation>
+  </message>
+  <message>
    <location filename="jobs/loading.py" />
    <source>Reading particles</source>
    <translation>Partikel werden gelesen</translation>
@@ -3000,6 +3856,22 @@
    <location filename="jobs/loading.py" />
    <source>Reading the sample</source>
    <translation>Probe wird gelesen</translation>
+  </message>
+  <message>
+   <location filename="jobs/scanning.py" />
+   <location filename="ui/pages/scan/page.py" />
+   <source>Reading the sample scan</source>
+   <translation>Beispielscan wird gelesen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/page.py" />
+   <source>Reading the volume</source>
+   <translation>Volumen wird gelesen</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>Reading {name}</source>
+   <translation>{name} wird gelesen</translation>
   </message>
   <message>
    <location filename="ui/panels/tasks.py" />
@@ -3038,6 +3910,11 @@
    <translation>Regolith Studio wurde zuletzt nicht ordentlich geschlossen. Den Stand zurückholen?</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/judgement.py" />
+   <source>Rejected</source>
+   <translation>Verworfen</translation>
+  </message>
+  <message>
    <location filename="ui/panels/error_bars.py" />
    <source>Relative error [%]</source>
    <translation>Relativer Fehler [%]</translation>
@@ -3050,6 +3927,11 @@
   <message>
    <source>Relative errors of volume, sphericity, diameters, aspect ratio and hull (Eq. 8): blue for the fit, orange for the polyhedron. The second tab has the numbers with their units.</source>
    <translation>Relative Fehler von Volumen, Sphärizität, Durchmessern, Seitenverhältnis und Hülle (Gl. 8): blau für den Fit, orange für das Polyeder. Der zweite Reiter hat die Zahlen mit ihren Einheiten.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/controls.py" />
+   <source>Removes specks and thin bridges, in voxels.</source>
+   <translation>Entfernt Flecken und dünne Brücken, in Voxeln.</translation>
   </message>
   <message>
    <source>Repair lost facets</source>
@@ -3088,6 +3970,7 @@
   </message>
   <message>
    <location filename="ui/pages/lecture/field.py" />
+   <location filename="ui/pages/model/views.py" />
    <source>Reset the spectrum</source>
    <translation>Spektrum zurücksetzen</translation>
   </message>
@@ -3303,10 +4186,20 @@
    <translation>Probe ({total})</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/controls.py" />
+   <source>Sample or material</source>
+   <translation>Probe oder Material</translation>
+  </message>
+  <message>
    <location filename="ui/pages/sample/table.py" />
    <location filename="ui/panels/particle_list.py" />
    <source>Sample or size fraction</source>
    <translation>Probe oder Größenklasse</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/steps.py" />
+   <source>Sample scan</source>
+   <translation>Beispielscan</translation>
   </message>
   <message>
    <location filename="ui/pages/explore/__init__.py" />
@@ -3332,6 +4225,11 @@
    <location filename="ui/pages/explore/__init__.py" />
    <source>Save &amp;turntable …</source>
    <translation>&amp;Drehung speichern …</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/files.py" />
+   <source>Save a material card</source>
+   <translation>Materialkarte speichern</translation>
   </message>
   <message>
    <location filename="ui/pages/explore/pictures.py" />
@@ -3399,9 +4297,29 @@
    <translation>Rezept speichern</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/page.py" />
+   <source>Save settings</source>
+   <translation>Einstellungen speichern</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/files.py" />
+   <source>Save the model</source>
+   <translation>Modell speichern</translation>
+  </message>
+  <message>
    <location filename="ui/pages/explore/pictures.py" />
    <source>Save turntable</source>
    <translation>Drehung speichern</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/files.py" />
+   <source>Saved {first} and {second}.</source>
+   <translation>{first} und {second} sind gespeichert.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/files.py" />
+   <source>Saved {name}.</source>
+   <translation>{name} ist gespeichert.</translation>
   </message>
   <message>
    <location filename="ui/commands.py" />
@@ -3412,6 +4330,11 @@
    <location filename="ui/projects.py" />
    <source>Saved {path}.</source>
    <translation>{path} ist gespeichert.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/page.py" />
+   <source>Saved; use it with: {command}</source>
+   <translation>Gespeichert; verwenden mit: {command}</translation>
   </message>
   <message>
    <location filename="ui/actions.py" />
@@ -3459,6 +4382,11 @@
    <translation>Befehle und Tasten suchen</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/table_view.py" />
+   <source>Second</source>
+   <translation>Zweiter</translation>
+  </message>
+  <message>
    <location filename="ui/pages/explore/plot_area.py" />
    <source>Section</source>
    <translation>Schnitt</translation>
@@ -3473,6 +4401,7 @@
    <translation>Sehen, warum es geht</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/controls.py" />
    <location filename="ui/pages/repose/runs.py" />
    <location filename="ui/pages/repose/setup.py" />
    <location filename="ui/pages/repose/study.py" />
@@ -3481,9 +4410,23 @@
    <translation>Startwert</translation>
   </message>
   <message>
+   <source>Seed of starts</source>
+   <translation>Startwert dafür</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/controls.py" />
+   <source>Seed of the draws</source>
+   <translation>Startwert der Ziehungen</translation>
+  </message>
+  <message>
    <location filename="ui/pages/scan/__init__.py" />
    <source>Segment the whole volume</source>
    <translation>Das ganze Volumen segmentieren</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/steps.py" />
+   <source>Segment the whole volume with these settings</source>
+   <translation>Das ganze Volumen mit diesen Einstellungen segmentieren</translation>
   </message>
   <message>
    <source>Sensitivity to the weights</source>
@@ -3493,6 +4436,23 @@
    <location filename="ui/pages/explore/pictures.py" />
    <source>Sequence of PNG files (*.png)</source>
    <translation>Folge von PNG-Dateien (*.png)</translation>
+  </message>
+  <message>
+   <source>Set MA160 (synthetic)</source>
+   <translation>Satz MA160 (synthetisch)</translation>
+  </message>
+  <message>
+   <source>Set MA165 (synthetic)</source>
+   <translation>Satz MA165 (synthetisch)</translation>
+  </message>
+  <message>
+   <source>Set SACCI 425 (synthetic)</source>
+   <translation>Satz SACCI 425 (synthetisch)</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/page.py" />
+   <source>Settings (*.json);;All files (*)</source>
+   <translation>Einstellungen (*.json);;Alle Dateien (*)</translation>
   </message>
   <message>
    <location filename="ui/panels/coarsening.py" />
@@ -3531,8 +4491,14 @@
   </message>
   <message>
    <location filename="ui/pages/dataset/plots.py" />
+   <location filename="ui/pages/model/distributions.py" />
    <source>Share at or below [%]</source>
    <translation>Anteil bis hierher [%]</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/judgement.py" />
+   <source>Share that a classifier tells right: 0.5 cannot be told apart</source>
+   <translation>Anteil, den ein Klassifikator richtig zuordnet: bei 0.5 nicht zu unterscheiden</translation>
   </message>
   <message>
    <location filename="ui/dialogs/shortcuts.py" />
@@ -3548,6 +4514,11 @@
    <location filename="ui/pages/sample/__init__.py" />
    <source>Show in &amp;Explore</source>
    <translation>In Er&amp;kunden zeigen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/steps.py" />
+   <source>Show particles</source>
+   <translation>Partikel zeigen</translation>
   </message>
   <message>
    <location filename="ui/pages/dataset/__init__.py" />
@@ -3579,17 +4550,41 @@
    <translation>Einzelne Durchmesser, für alle gleich</translation>
   </message>
   <message>
+   <source>Size jitter</source>
+   <translation>Größenstreuung</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/preferences.py" />
    <source>Size of letters</source>
    <translation>Schriftgröße</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/slice_view.py" />
+   <source>Slice along {axis}</source>
+   <translation>Schicht entlang {axis}</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/slice_view.py" />
+   <source>Slice along {axis}, picture</source>
+   <translation>Schicht entlang {axis}, Bild</translation>
   </message>
   <message>
    <source>Slice, in mean d</source>
    <translation>Scheibe, in mittleren d</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/controls.py" />
+   <source>Smallest</source>
+   <translation>Kleinste</translation>
+  </message>
+  <message>
    <source>Smallest Feret diameter</source>
    <translation>Kleinster Feret-Durchmesser</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/controls.py" />
+   <source>Smallest equivalent radius</source>
+   <translation>Kleinster Äquivalentradius</translation>
   </message>
   <message>
    <location filename="ui/pages/explore/__init__.py" />
@@ -3619,6 +4614,10 @@
    <location filename="ui/pages/explore/plot_area.py" />
    <source>Spectrum</source>
    <translation>Spektrum</translation>
+  </message>
+  <message>
+   <source>Spectrum depends on size</source>
+   <translation>Spektrum hängt von der Größe ab</translation>
   </message>
   <message>
    <location filename="ui/widgets/spectrum_editor.py" />
@@ -3722,6 +4721,10 @@
    <translation>Beginnt …</translation>
   </message>
   <message>
+   <source>Starts</source>
+   <translation>Starts</translation>
+  </message>
+  <message>
    <location filename="ui/pages/repose/runs.py" />
    <location filename="ui/pages/repose/study.py" />
    <source>Static friction</source>
@@ -3736,6 +4739,11 @@
    <location filename="ui/pages/sample/statistics.py" />
    <source>Statistics of groups</source>
    <translation>Statistik der Gruppen</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>Statistics of {count} particles of {name}, made by Regolith Studio.</source>
+   <translation>Statistik von {count} Partikeln aus {name}, erstellt mit Regolith Studio.</translation>
   </message>
   <message>
    <location filename="ui/panels/loss_curve.py" />
@@ -3823,6 +4831,11 @@
    <translation>Abgebrochen; was fertig ist, bleibt, und der Startknopf fährt dort fort.</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/judgement.py" />
+   <source>Stopping …</source>
+   <translation>Wird abgebrochen …</translation>
+  </message>
+  <message>
    <location filename="ui/pages/studies/__init__.py" />
    <source>Studies</source>
    <translation>Studien</translation>
@@ -3843,12 +4856,22 @@
    <translation>Studie des Grades</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/controls.py" />
+   <source>Surface</source>
+   <translation>Oberfläche</translation>
+  </message>
+  <message>
    <source>Surface area</source>
    <translation>Oberfläche</translation>
   </message>
   <message>
    <source>Surface energy</source>
    <translation>Oberflächenenergie</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>Synthesised by Regolith Studio from the angular power spectrum and size spread of {count} particles of the published micro-CT set {name}, rounded to two digits; the length unit is taken as micrometres and no measured particle is contained.</source>
+   <translation>Von Regolith Studio synthetisiert aus dem Leistungsspektrum und der Größenstreuung von {count} Partikeln des veröffentlichten Mikro-CT-Satzes {name}, auf zwei Stellen gerundet; als Längeneinheit gelten Mikrometer, und kein gemessenes Partikel ist enthalten.</translation>
   </message>
   <message>
    <source>Table 1</source>
@@ -3900,6 +4923,16 @@
    <translation>Tangentialkraft</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/table_view.py" />
+   <source>Target</source>
+   <translation>Ziel</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/judgement.py" />
+   <source>Targets</source>
+   <translation>Ziele</translation>
+  </message>
+  <message>
    <location filename="ui/activity.py" />
    <source>Tasks</source>
    <translation>Aufgaben</translation>
@@ -3920,9 +4953,19 @@
    <translation>Versuch (Tabelle 2)</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/volume_dialog.py" />
+   <source>That is all of the file's {count:,} bytes.</source>
+   <translation>Das sind alle {count:,} Bytes der Datei.</translation>
+  </message>
+  <message>
    <location filename="ui/pages/explore/pictures.py" />
    <source>The animation is in {path}.</source>
    <translation>Die Animation ist in {path}.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/files.py" />
+   <source>The card {name} cannot be written ({reason}).</source>
+   <translation>Die Karte {name} lässt sich nicht schreiben ({reason}).</translation>
   </message>
   <message>
    <location filename="ui/translation/sentences.py" />
@@ -3985,9 +5028,54 @@
    <translation>Das Feld mit seinen Amplituden</translation>
   </message>
   <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>The file calls its {count} images channels; they were taken for slices.</source>
+   <translation>Die Datei nennt ihre {count} Bilder Kanäle; sie wurden als Schichten genommen.</translation>
+  </message>
+  <message>
    <location filename="ui/pages/repose/export.py" />
    <source>The file has no diameters; one for all, in mm:</source>
    <translation>Die Datei hat keine Durchmesser; einer für alle, in mm:</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/volume_dialog.py" />
+   <source>The file has {count:,} bytes more than that.</source>
+   <translation>Die Datei hat {count:,} Bytes mehr als das.</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>The file holds {count} series of images; the largest was read.</source>
+   <translation>Die Datei enthält {count} Bildserien; gelesen wurde die größte.</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>The file holds {count} volumes; {name} was read.</source>
+   <translation>Die Datei enthält {count} Volumen; gelesen wurde {name}.</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>The file is named {suffix} but is {format}.</source>
+   <translation>Die Datei heißt {suffix}, ist aber {format}.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/volume_dialog.py" />
+   <source>The file is {count:,} bytes too short for that.</source>
+   <translation>Die Datei ist dafür um {count:,} Bytes zu kurz.</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>The file says that a voxel is {size}, which no scan has; give the size of a voxel.</source>
+   <translation>Laut Datei ist ein Voxel {size} groß, was kein Scan hat; geben Sie die Größe eines Voxels an.</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>The file states the width of a pixel only; the slices were taken to be as far apart.</source>
+   <translation>Die Datei nennt nur die Breite eines Pixels; als Abstand der Schichten wurde dieselbe Länge genommen.</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>The file states voxel edges in different units; they were passed over.</source>
+   <translation>Die Datei nennt Voxelkanten in verschiedenen Einheiten; sie wurden übergangen.</translation>
   </message>
   <message>
    <location filename="ui/dialogs/batch_fields.py" />
@@ -4010,6 +5098,11 @@
    <translation>Der Ordner Ihrer Datensätze</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/controls.py" />
+   <source>The grey values about a grain tell its volume better than its mask, however blurred the scan.</source>
+   <translation>Die Grauwerte um ein Korn sagen sein Volumen besser als seine Maske, wie unscharf der Scan auch ist.</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/preferences.py" />
    <source>The language takes effect when the program starts again.</source>
    <translation>Die Sprache gilt ab dem nächsten Start des Programms.</translation>
@@ -4029,9 +5122,24 @@
    <translation>Das Verfahren hält Deskriptoren genau ein: jeder wird verlangt oder nicht, gleich mit welchem Gewicht.</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/files.py" />
+   <source>The model {name} cannot be written ({reason}).</source>
+   <translation>Das Modell {name} lässt sich nicht schreiben ({reason}).</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/judgement.py" />
+   <source>The nearest to the sample first</source>
+   <translation>Das der Probe nächste zuerst</translation>
+  </message>
+  <message>
    <location filename="ui/main_window.py" />
    <source>The next window stands as a new one.</source>
    <translation>Das nächste Fenster steht wie ein neues.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/controls.py" />
+   <source>The other half is then new to the model, as in its judgement.</source>
+   <translation>Die andere Hälfte ist dem Modell dann neu, wie bei seiner Beurteilung.</translation>
   </message>
   <message>
    <source>The page Lecture shows the ideas one step at a time, each formula with its numbers: the annealing, the degrees of the fit, a random field. Ctrl+Space plays, the page keys step, Ctrl++ enlarges the letters, F11 fills the screen.</source>
@@ -4046,6 +5154,15 @@
    <location filename="ui/pages/dataset/targets.py" />
    <source>The paper has 10.</source>
    <translation>Im Artikel sind es 10.</translation>
+  </message>
+  <message>
+   <source>The paper's outlook: constituents with sizes and spectra of their own, in the radius itself.</source>
+   <translation>Der Ausblick des Artikels: Komponenten mit eigenen Größen und Spektren, im Radius selbst.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/controls.py" />
+   <source>The paper's virtual particles have 10.</source>
+   <translation>Die virtuellen Partikel des Artikels haben 10.</translation>
   </message>
   <message>
    <location filename="ui/pages/lecture/field.py" />
@@ -4098,6 +5215,11 @@
    <translation>Die Ergebnisse sind Byte für Byte dieselben, wer auch arbeitet, und ein abgebrochener Lauf lässt sich fortsetzen.</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/judgement.py" />
+   <source>The same for the Kolmogorov-Smirnov distance</source>
+   <translation>Dasselbe für die Kolmogorow-Smirnow-Distanz</translation>
+  </message>
+  <message>
    <source>The sample</source>
    <translation>Die Probe</translation>
   </message>
@@ -4110,6 +5232,21 @@
    <location filename="ui/pages/dataset/plots.py" />
    <source>The sizes of the classes appear here.</source>
    <translation>Die Größen der Klassen erscheinen hier.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/controls.py" />
+   <source>The smallest radius must be below the largest, got {low:g} and {high:g}.</source>
+   <translation>Der kleinste Radius muss unter dem größten liegen, nicht {low:g} und {high:g}.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/distributions.py" />
+   <source>The source holds no measured particles.</source>
+   <translation>Die Quelle enthält keine gemessenen Partikel.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/views.py" />
+   <source>The spectrum appears when a model is fitted.</source>
+   <translation>Das Spektrum erscheint, sobald ein Modell angepasst ist.</translation>
   </message>
   <message>
    <location filename="ui/panels/spectrum.py" />
@@ -4137,6 +5274,11 @@
    <translation>Die Ansichten, wie man sie sieht</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/steps.py" />
+   <source>The volume holds labels: its grains have been found already.</source>
+   <translation>Das Volumen enthält Labels: Seine Körner sind schon gefunden.</translation>
+  </message>
+  <message>
    <source>The whole sample</source>
    <translation>Die ganze Probe</translation>
   </message>
@@ -4144,6 +5286,11 @@
    <location filename="ui/dialogs/preferences.py" />
    <source>Theme</source>
    <translation>Farbschema</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/page.py" />
+   <source>There are no drawn particles yet: draw some first.</source>
+   <translation>Es gibt noch keine gezogenen Partikel: ziehen Sie zuerst welche.</translation>
   </message>
   <message>
    <location filename="ui/pages/dataset/page.py" />
@@ -4191,9 +5338,29 @@
    <translation>Es gibt noch keinen vermessenen Schüttkegel zu exportieren.</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/page.py" />
+   <source>There is no model to draw from: fit one first.</source>
+   <translation>Es gibt kein Modell, aus dem zu ziehen wäre: passen Sie zuerst eines an.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/page.py" />
+   <source>There is no model to save: fit one first.</source>
+   <translation>Es gibt kein Modell zu speichern: passen Sie zuerst eines an.</translation>
+  </message>
+  <message>
    <location filename="ui/commands.py" />
    <source>There is nothing to export: open a particle first.</source>
    <translation>Es gibt nichts zu exportieren: öffnen Sie zuerst ein Partikel.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/controls.py" />
+   <source>They are cut. Each of the others then counts a little more (Miles-Lantuéjoul weights).</source>
+   <translation>Sie sind angeschnitten. Jedes der anderen zählt dann etwas mehr (Gewichte nach Miles und Lantuéjoul).</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/sources.py" />
+   <source>They are expanded in spherical harmonics first.</source>
+   <translation>Sie werden zuerst nach Kugelflächenfunktionen entwickelt.</translation>
   </message>
   <message>
    <location filename="ui/pages/studies/change_table.py" />
@@ -4216,6 +5383,11 @@
    <translation>Dreidimensionale Ansichten: {how}</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/controls.py" />
+   <source>Threshold</source>
+   <translation>Schwellwert</translation>
+  </message>
+  <message>
    <location filename="ui/pages/dataset/targets.py" />
    <source>Tick a format to see what it carries and what it loses.</source>
    <translation>Kreuzen Sie ein Format an, um zu sehen, was es überträgt und was es verliert.</translation>
@@ -4228,6 +5400,11 @@
   <message>
    <source>Time step</source>
    <translation>Zeitschritt</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/histogram_plot.py" />
+   <source>To</source>
+   <translation>Bis</translation>
   </message>
   <message>
    <location filename="ui/pages/lecture/transport.py" />
@@ -4253,6 +5430,10 @@
    <translation>Durchsichtiger Hintergrund</translation>
   </message>
   <message>
+   <source>Turn [rad]</source>
+   <translation>Drehung [rad]</translation>
+  </message>
+  <message>
    <location filename="ui/pages/explore/__init__.py" />
    <source>Turn all views together</source>
    <translation>Alle Ansichten gemeinsam drehen</translation>
@@ -4273,9 +5454,19 @@
    <translation>Zwei Körper beiderseits einer Linie</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/volume_dialog.py" />
+   <source>Type</source>
+   <translation>Typ</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/command_palette.py" />
    <source>Type a command</source>
    <translation>Befehl eintippen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/volume_dialog.py" />
+   <source>Type of a voxel</source>
+   <translation>Typ eines Voxels</translation>
   </message>
   <message>
    <location filename="ui/dialogs/unit.py" />
@@ -4284,13 +5475,37 @@
    <translation>Einheit</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/volume_dialog.py" />
+   <source>Unit of the voxel size</source>
+   <translation>Einheit der Voxelgröße</translation>
+  </message>
+  <message>
    <location filename="ui/pages/dataset/targets.py" />
    <source>Units: {units}</source>
    <translation>Einheiten: {units}</translation>
   </message>
   <message>
+   <source>Unpacking into a temporary file</source>
+   <translation>In eine temporäre Datei wird entpackt</translation>
+  </message>
+  <message>
    <source>Upper cut</source>
    <translation>Oberer Schnitt</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/controls.py" />
+   <source>Use as population</source>
+   <translation>Als Population übernehmen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/controls.py" />
+   <source>Use the drawn particles as population</source>
+   <translation>Die gezogenen Partikel als Population übernehmen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/controls.py" />
+   <source>Use the model</source>
+   <translation>Modell übernehmen</translation>
   </message>
   <message>
    <location filename="ui/pages/dataset/library.py" />
@@ -4320,6 +5535,12 @@
    <translation>V der Hülle</translation>
   </message>
   <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>V/CH: Kolmogorov-Smirnov distance in floors</source>
+   <translation>V/CH: Kolmogorow-Smirnow-Distanz in Einheiten des Rauschens</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/table_view.py" />
    <location filename="ui/pages/repose/study.py" />
    <source>Value</source>
    <translation>Wert</translation>
@@ -4345,6 +5566,12 @@
    <translation>Senkrechte Achse</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/controls.py" />
+   <source>Virtual particles</source>
+   <translation>Virtuelle Partikel</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/volume_dialog.py" />
    <location filename="ui/panels/particle_list.py" />
    <source>Volume</source>
    <translation>Volumen</translation>
@@ -4354,13 +5581,54 @@
    <translation>Volumen und Hüllquader</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/volume_dialog.py" />
+   <source>Volume in the file</source>
+   <translation>Volumen in der Datei</translation>
+  </message>
+  <message>
    <source>Volume, surface area, aspect ratio</source>
    <translation>Volumen, Oberfläche, Seitenverhältnis</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/page.py" />
+   <source>Volumes (*.tif *.tiff *.h5 *.hdf5 *.nrrd *.nhdr *.mha *.mhd *.nii *.nii.gz *.npy *.raw);;All files (*)</source>
+   <translation>Volumen (*.tif *.tiff *.h5 *.hdf5 *.nrrd *.nhdr *.mha *.mhd *.nii *.nii.gz *.npy *.raw);;Alle Dateien (*)</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/volume_dialog.py" />
+   <source>Voxel size x, y, z</source>
+   <translation>Voxelgröße x, y, z</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/histogram_plot.py" />
+   <source>Voxels</source>
+   <translation>Voxel</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/histogram_plot.py" />
+   <source>Voxels [%]</source>
+   <translation>Voxel [%]</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/volume_dialog.py" />
+   <source>Voxels along {axis}</source>
+   <translation>Voxel entlang {axis}</translation>
   </message>
   <message>
    <location filename="ui/dialogs/unit.py" />
    <source>Voxels of a CT volume</source>
    <translation>Voxel eines CT-Volumens</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/volume_dialog.py" />
+   <source>Voxels x, y, z</source>
+   <translation>Voxel x, y, z</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/judgement.py" />
+   <location filename="ui/pages/model/table_view.py" />
+   <source>W / floor</source>
+   <translation>W / Rauschen</translation>
   </message>
   <message>
    <location filename="ui/pages/explore/pictures.py" />
@@ -4384,6 +5652,16 @@
    <translation>Reibung der Wand</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/table_view.py" />
+   <source>Wanted</source>
+   <translation>Verlangt</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/distributions.py" />
+   <source>Wasserstein distance {apart:.1%} of the mean, Kolmogorov-Smirnov distance {gap:.2f}; means {measured:.4g} measured, {drawn:.4g} drawn</source>
+   <translation>Wasserstein-Distanz {apart:.1%} des Mittels, Kolmogorow-Smirnow-Distanz {gap:.2f}; Mittel {measured:.4g} gemessen, {drawn:.4g} gezogen</translation>
+  </message>
+  <message>
    <source>Watch it work</source>
    <translation>Bei der Arbeit zusehen</translation>
   </message>
@@ -4391,6 +5669,11 @@
    <location filename="ui/panels/loss.py" />
    <source>Weight of {name}</source>
    <translation>Gewicht: {name}</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/table_view.py" />
+   <source>Weighting</source>
+   <translation>Gewichtung</translation>
   </message>
   <message>
    <location filename="ui/pages/sample/statistics.py" />
@@ -4459,6 +5742,11 @@
    <translation>Was er enthält</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/volume_dialog.py" />
+   <source>What it looks like: {looks}</source>
+   <translation>Wonach es aussieht: {looks}</translation>
+  </message>
+  <message>
    <source>What matters to you</source>
    <translation>Worauf es Ihnen ankommt</translation>
   </message>
@@ -4466,6 +5754,11 @@
    <location filename="ui/pages/studies/variation_panel.py" />
    <source>What overlap costs in descriptors, and descriptors in overlap: lower left is better.</source>
    <translation>Was Überdeckung an Deskriptoren kostet, und Deskriptoren an Überdeckung: links unten ist besser.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/distributions.py" />
+   <source>What particles count</source>
+   <translation>Was Partikel zählen</translation>
   </message>
   <message>
    <location filename="ui/panels/fit.py" />
@@ -4487,9 +5780,24 @@
    <translation>Wie die Polyeder aussehen (Bild 7)</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/volume_dialog.py" />
+   <source>What the volume holds</source>
+   <translation>Was das Volumen enthält</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/controls.py" />
+   <source>What to draw from</source>
+   <translation>Woraus gezogen wird</translation>
+  </message>
+  <message>
    <location filename="ui/actions.py" />
    <source>What was said</source>
    <translation>Was gesagt wurde</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/volume_dialog.py" />
+   <source>Whatever it looks like</source>
+   <translation>Wonach es aussieht</translation>
   </message>
   <message>
    <location filename="ui/dialogs/shortcuts.py" />
@@ -4506,9 +5814,24 @@
    <translation>Wie es weitergeht</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/controls.py" />
+   <source>Which grain they belong to</source>
+   <translation>Zu welchem Korn sie gehören</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/controls.py" />
+   <source>Which grains become particles</source>
+   <translation>Welche Körner Partikel werden</translation>
+  </message>
+  <message>
    <location filename="ui/panels/fit.py" />
    <source>Which radius counts where a ray crosses the surface more than once. Keep the volume: the cube root of the signed sum of r³ over all crossings.</source>
    <translation>Welcher Radius zählt, wo ein Strahl die Oberfläche mehrmals durchstößt. Volumen erhalten: die Kubikwurzel der vorzeichenbehafteten Summe von r³ über alle Durchstöße.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/controls.py" />
+   <source>Which voxels are grain</source>
+   <translation>Welche Voxel Korn sind</translation>
   </message>
   <message>
    <location filename="ui/pages/lecture/transport.py" />
@@ -4549,6 +5872,11 @@
    <location filename="ui/pages/studies/page.py" />
    <source>Writing figures</source>
    <translation>Abbildungen werden geschrieben</translation>
+  </message>
+  <message>
+   <location filename="jobs/generating.py" />
+   <source>Writing particles</source>
+   <translation>Partikel werden geschrieben</translation>
   </message>
   <message>
    <source>Writing the dataset</source>
@@ -4632,6 +5960,11 @@
    <translation>alle Klassen, nach {kinds}</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/judgement.py" />
+   <source>all models</source>
+   <translation>alle Modelle</translation>
+  </message>
+  <message>
    <location filename="ui/views/comparison.py" />
    <source>alone</source>
    <translation>allein</translation>
@@ -4687,6 +6020,11 @@
    <translation>wie angepasst [%]</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/histogram_plot.py" />
+   <source>as scanned</source>
+   <translation>wie gescannt</translation>
+  </message>
+  <message>
    <location filename="ui/pages/dataset/plots.py" />
    <source>as small as the sampling noise from N = {count} on</source>
    <translation>ab N = {count} so klein wie das Stichprobenrauschen</translation>
@@ -4697,9 +6035,24 @@
    <translation>wie der Ordner</translation>
   </message>
   <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>aspect ratio, times nearer than the paper's model</source>
+   <translation>Seitenverhältnis, wievielmal näher als das Modell des Artikels</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>at least {limit}</source>
+   <translation>mindestens {limit}</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/export.py" />
    <source>at most {faces} facets, {triangles} triangles</source>
    <translation>höchstens {faces} Facetten, {triangles} Dreiecken</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>at most {limit}</source>
+   <translation>höchstens {limit}</translation>
   </message>
   <message>
    <location filename="ui/views/triptych.py" />
@@ -4734,6 +6087,11 @@
    <location filename="ui/pages/repose/section_plot.py" />
    <source>between the cuts</source>
    <translation>zwischen den Schnitten</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/volume_dialog.py" />
+   <source>big endian</source>
+   <translation>Big Endian</translation>
   </message>
   <message>
    <location filename="ui/pages/sample/scatter.py" />
@@ -4838,9 +6196,19 @@
    <translation>abgeschnitten</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/controls.py" />
+   <source>dark | middle</source>
+   <translation>dunkel | mittel</translation>
+  </message>
+  <message>
    <location filename="ui/pages/lecture/degrees.py" />
    <source>degree</source>
    <translation>Grad</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/table_view.py" />
+   <source>descriptor</source>
+   <translation>Deskriptor</translation>
   </message>
   <message>
    <location filename="ui/pages/sample/scatter.py" />
@@ -4859,6 +6227,11 @@
    <translation>Balken ziehen</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/judgement.py" />
+   <source>drawings from each fit</source>
+   <translation>Ziehungen je Fit</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/help.py" />
    <source>drawn by OpenGL in the window</source>
    <translation>von OpenGL im Fenster gezeichnet</translation>
@@ -4871,6 +6244,16 @@
    <location filename="ui/pages/lecture/annealing.py" />
    <source>drawn u</source>
    <translation>gezogenes u</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/views.py" />
+   <source>drawn; the source holds no measured particles</source>
+   <translation>gezogen; die Quelle enthält keine gemessenen Partikel</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>draws thrown away [%]</source>
+   <translation>verworfene Ziehungen [%]</translation>
   </message>
   <message>
    <location filename="ui/pages/sample/statistics.py" />
@@ -4886,6 +6269,16 @@
    <translation>elastische Konstanten, Reibung</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/views.py" />
+   <source>empty until a model is fitted</source>
+   <translation>leer, bis ein Modell angepasst ist</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/table_view.py" />
+   <source>energy distance</source>
+   <translation>Energiedistanz</translation>
+  </message>
+  <message>
    <location filename="ui/pages/sample/scatter.py" />
    <location filename="ui/pages/sample/table.py" />
    <source>equant</source>
@@ -4893,6 +6286,7 @@
   </message>
   <message>
    <location filename="ui/pages/lecture/field.py" />
+   <location filename="ui/pages/model/page.py" />
    <source>equivalent radius {radius:.3g} µm</source>
    <translation>Äquivalentradius {radius:.3g} µm</translation>
   </message>
@@ -4929,12 +6323,32 @@
    <translation>immer feinere Höcker</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/table_view.py" />
+   <source>first</source>
+   <translation>erster Deskriptor</translation>
+  </message>
+  <message>
    <source>flat facets and edges</source>
    <translation>ebene Facetten und Kanten</translation>
   </message>
   <message>
    <source>flat shading of facets</source>
    <translation>flache Schattierung der Facetten</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/table_view.py" />
+   <source>floor</source>
+   <translation>Rauschen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/table_view.py" />
+   <source>floor p5</source>
+   <translation>Rauschen, 5. Perzentil</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/table_view.py" />
+   <source>floor p95</source>
+   <translation>Rauschen, 95. Perzentil</translation>
   </message>
   <message>
    <location filename="ui/dialogs/batch_fields.py" />
@@ -4955,6 +6369,11 @@
    <translation>Reibung</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/table_view.py" />
+   <source>from</source>
+   <translation>von</translation>
+  </message>
+  <message>
    <location filename="ui/pages/repose/section_plot.py" />
    <source>grain {number}: {size:.3g} mm at {x:.3g}, {z:.3g} mm</source>
    <translation>Korn {number}: {size:.3g} mm bei {x:.3g}, {z:.3g} mm</translation>
@@ -4962,6 +6381,12 @@
   <message>
    <source>greatest distance of two points</source>
    <translation>größter Abstand zweier Punkte</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/steps.py" />
+   <location filename="ui/pages/scan/volume_dialog.py" />
+   <source>grey values</source>
+   <translation>Grauwerte</translation>
   </message>
   <message>
    <location filename="ui/pages/sample/statistics.py" />
@@ -4978,6 +6403,45 @@
    <location filename="ui/pages/repose/section_plot.py" />
    <source>in the regression</source>
    <translation>in der Regression</translation>
+  </message>
+  <message>
+   <source>kernel</source>
+   <translation>Kerndichte</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/table_view.py" />
+   <source>kolmogorov smirnov</source>
+   <translation>Kolmogorow-Smirnow-Distanz</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/table_view.py" />
+   <source>kolmogorov smirnov floor</source>
+   <translation>Kolmogorow-Smirnow-Distanz des Rauschens</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/table_view.py" />
+   <source>kolmogorov smirnov high</source>
+   <translation>Kolmogorow-Smirnow-Distanz, oberes Ende</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/table_view.py" />
+   <source>kolmogorov smirnov in floors</source>
+   <translation>Kolmogorow-Smirnow-Distanz in Einheiten des Rauschens</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/table_view.py" />
+   <source>kolmogorov smirnov low</source>
+   <translation>Kolmogorow-Smirnow-Distanz, unteres Ende</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/steps.py" />
+   <source>labels</source>
+   <translation>Labels</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/volume_dialog.py" />
+   <source>labels of grains</source>
+   <translation>Labels von Körnern</translation>
   </message>
   <message>
    <source>least distance of two parallel tangent planes</source>
@@ -4998,9 +6462,22 @@
    <translation>Hubzylinder</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/volume_dialog.py" />
+   <source>little endian</source>
+   <translation>Little Endian</translation>
+  </message>
+  <message>
    <location filename="ui/pages/lecture/field.py" />
    <source>ln(r / mean), blue inwards, red outwards</source>
    <translation>ln(r / Mittel), blau nach innen, rot nach außen</translation>
+  </message>
+  <message>
+   <source>log_normal</source>
+   <translation>lognormal</translation>
+  </message>
+  <message>
+   <source>log_normal_mixture</source>
+   <translation>lognormale Mischung</translation>
   </message>
   <message>
    <source>longest edge of the bounding box</source>
@@ -5046,6 +6523,21 @@
    <translation>Mittel von |n·x|/|x| über die Oberfläche (Bullard und Garboczi)</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/views.py" />
+   <source>measured above, drawn below</source>
+   <translation>oben gemessen, unten gezogen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/views.py" />
+   <source>measured; draw particles to compare</source>
+   <translation>gemessen; ziehen Sie Partikel zum Vergleich</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>median novelty</source>
+   <translation>mediane Neuheit</translation>
+  </message>
+  <message>
    <location filename="ui/pages/sample/table.py" />
    <source>mended</source>
    <translation>ausgebessert</translation>
@@ -5055,13 +6547,28 @@
    <translation>mittlere Kante des Hüllquaders</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/controls.py" />
+   <source>middle | bright</source>
+   <translation>mittel | hell</translation>
+  </message>
+  <message>
    <source>mm, mg, ms; coarse graining applied</source>
    <translation>mm, mg, ms; mit Vergröberungsfaktor</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/table_view.py" />
+   <source>model</source>
+   <translation>Modell</translation>
   </message>
   <message>
    <location filename="ui/pages/lecture/words.py" />
    <source>nearly an ellipsoid</source>
    <translation>fast ein Ellipsoid</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>no</source>
+   <translation>nein</translation>
   </message>
   <message>
    <location filename="ui/pages/lecture/words.py" />
@@ -5113,6 +6620,7 @@
   </message>
   <message>
    <location filename="ui/pages/dataset/plots.py" />
+   <location filename="ui/translation/sentences.py" />
    <source>number</source>
    <translation>Anzahl</translation>
   </message>
@@ -5120,6 +6628,11 @@
    <location filename="ui/views/triptych.py" />
    <source>on its way; the very first one takes longer …</source>
    <translation>unterwegs; das allererste dauert länger …</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>pairs of r_eq, A, AR: the largest energy distance [%]</source>
+   <translation>Paare aus r_eq, A, AR: die größte Energiedistanz [%]</translation>
   </message>
   <message>
    <source>part of the volume</source>
@@ -5149,6 +6662,10 @@
    <translation>Polyeder</translation>
   </message>
   <message>
+   <source>pooled</source>
+   <translation>gemeinsam</translation>
+  </message>
+  <message>
    <location filename="ui/pages/lecture/annealing.py" />
    <location filename="ui/panels/loss_curve.py" />
    <source>present</source>
@@ -5169,9 +6686,24 @@
    <translation>Abreißkraft 3/2 π w R*, auf die Kontaktpunkte verteilt; macht einen Kegel kaum steiler: nehmen Sie LAMMPS</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/page.py" />
+   <source>r_eq {low:.3g} to {high:.3g} µm</source>
+   <translation>r_eq {low:.3g} bis {high:.3g} µm</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>r_eq, A, AR, S: the worst, over the 95th percentile of noise</source>
+   <translation>r_eq, A, AR, S: das schlechteste, geteilt durch das 95. Perzentil des Rauschens</translation>
+  </message>
+  <message>
    <location filename="ui/pages/lecture/degrees.py" />
    <source>radius (rms)</source>
    <translation>Radius (quadr. Mittel)</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/table_view.py" />
+   <source>reached</source>
+   <translation>erreicht</translation>
   </message>
   <message>
    <location filename="ui/pages/lecture/words.py" />
@@ -5182,6 +6714,10 @@
    <location filename="ui/pages/lecture/annealing.py" />
    <source>refused</source>
    <translation>abgelehnt</translation>
+  </message>
+  <message>
+   <source>resampled</source>
+   <translation>neu gezogen</translation>
   </message>
   <message>
    <location filename="ui/pages/repose/section_plot.py" />
@@ -5211,6 +6747,15 @@
   <message>
    <source>rolling resistance</source>
    <translation>Rollwiderstand</translation>
+  </message>
+  <message>
+   <source>rosin_rammler</source>
+   <translation>Rosin-Rammler</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/table_view.py" />
+   <source>second</source>
+   <translation>zweiter Deskriptor</translation>
   </message>
   <message>
    <location filename="ui/pages/repose/runs.py" />
@@ -5302,6 +6847,17 @@
    <translation>Sphärizität</translation>
   </message>
   <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>split</source>
+   <translation>Teilung</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/judgement.py" />
+   <location filename="ui/translation/sentences.py" />
+   <source>splits</source>
+   <translation>Teilungen</translation>
+  </message>
+  <message>
    <source>spring, dashpot and slider (where resistance is above 0)</source>
    <translation>Feder, Dämpfer und Gleiter (wo der Widerstand über 0 ist)</translation>
   </message>
@@ -5350,6 +6906,11 @@
    <translation>symmetrisch {angle:.1f}°</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/table_view.py" />
+   <source>target</source>
+   <translation>Ziel</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/batch_fields.py" />
    <source>tcp://HOST:8786 or tls://HOST:8786</source>
    <translation>tcp://HOST:8786 oder tls://HOST:8786</translation>
@@ -5377,6 +6938,11 @@
    <location filename="ui/dialogs/export.py" />
    <source>the surface of the spherical-harmonics fit at l&lt;sub&gt;max&lt;/sub&gt; = {l_max}</source>
    <translation>die Oberfläche des Fits mit Kugelflächenfunktionen bei l&lt;sub&gt;max&lt;/sub&gt; = {l_max}</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/table_view.py" />
+   <source>to</source>
+   <translation>bis</translation>
   </message>
   <message>
    <source>to the eye</source>
@@ -5421,7 +6987,13 @@
    <translation>bis l&lt;sub&gt;max&lt;/sub&gt; = {l_max}</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/table_view.py" />
+   <source>value</source>
+   <translation>Wert</translation>
+  </message>
+  <message>
    <location filename="ui/pages/dataset/plots.py" />
+   <location filename="ui/translation/sentences.py" />
    <source>volume</source>
    <translation>Volumen</translation>
   </message>
@@ -5435,6 +7007,31 @@
    <translation>wartet auf die Koeffizienten …</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/table_view.py" />
+   <source>wanted</source>
+   <translation>verlangt</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/table_view.py" />
+   <source>wasserstein</source>
+   <translation>Wasserstein-Distanz</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/table_view.py" />
+   <source>wasserstein high</source>
+   <translation>Wasserstein-Distanz, oberes Ende</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/table_view.py" />
+   <source>wasserstein in floors</source>
+   <translation>Wasserstein-Distanz in Einheiten des Rauschens</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/table_view.py" />
+   <source>wasserstein low</source>
+   <translation>Wasserstein-Distanz, unteres Ende</translation>
+  </message>
+  <message>
    <location filename="ui/pages/sample/table.py" />
    <source>weight</source>
    <translation>Gewicht</translation>
@@ -5443,6 +7040,11 @@
    <location filename="ui/pages/sample/statistics.py" />
    <source>weighted by volume</source>
    <translation>nach Volumen gewichtet</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/table_view.py" />
+   <source>weighting</source>
+   <translation>Gewichtung</translation>
   </message>
   <message>
    <source>weights and size distributions: only a sample is drawn</source>
@@ -5481,9 +7083,29 @@
    <translation>mit Polyeder</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/histogram_plot.py" />
+   <source>without noise</source>
+   <translation>ohne Rauschen</translation>
+  </message>
+  <message>
    <location filename="ui/pages/lecture/annealing.py" />
    <source>worse, accepted</source>
    <translation>schlechter, angenommen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/volume_dialog.py" />
+   <source>x, y, z: slices last</source>
+   <translation>x, y, z: Schichten zuletzt</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/volume_dialog.py" />
+   <source>y, x, z: as MATLAB has pictures</source>
+   <translation>y, x, z: wie Bilder in MATLAB</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>yes</source>
+   <translation>ja</translation>
   </message>
   <message>
    <location filename="ui/dialogs/batch.py" />
@@ -5508,6 +7130,22 @@
    <translation>{count:,} Koeffizienten, {triangles:,} Dreiecke</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/distributions.py" />
+   <source>{count:,} drawn</source>
+   <translation>{count:,} gezogen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/page.py" />
+   <source>{count:,} draws thrown away</source>
+   <translation>{count:,} Ziehungen verworfen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/distributions.py" />
+   <source>{count:,} measured</source>
+   <translation>{count:,} gemessen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/page.py" />
    <location filename="ui/pages/repose/page.py" />
    <location filename="ui/pages/repose/setup.py" />
    <source>{count:,} particles</source>
@@ -5519,9 +7157,24 @@
    <translation>{count:,} Partikel sind geöffnet.</translation>
   </message>
   <message>
+   <location filename="ui/pages/model/page.py" />
+   <source>{count:,} particles are too many to open; at most {most:,}. For more use: regolith-studio generate.</source>
+   <translation>{count:,} Partikel sind zum Öffnen zu viele, höchstens {most:,}. Für mehr: regolith-studio generate.</translation>
+  </message>
+  <message>
    <location filename="ui/pages/repose/page.py" />
    <source>{count:,} particles of {name}</source>
    <translation>{count:,} Partikel aus {name}</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/page.py" />
+   <source>{count:,} virtual particles are open now.</source>
+   <translation>{count:,} virtuelle Partikel sind jetzt geöffnet.</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>{counts} at grey level {level}; {small} too small.</source>
+   <translation>{counts} beim Grauwert {level}; {small} zu klein.</translation>
   </message>
   <message>
    <location filename="ui/translation/sentences.py" />
@@ -5565,9 +7218,29 @@
    <translation>{count} Verluste</translation>
   </message>
   <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>{count} measured particles at l_max = {degree}, {left} left out; fitted to one half, judged on the other; {splits} {split}, {draws} draws once from each fit, seed {seed}.</source>
+   <translation>{count} gemessene Partikel bei l_max = {degree}, {left} ausgelassen; an eine Hälfte angepasst, an der anderen beurteilt; {splits} {split}, einmal {draws} Ziehungen je Fit, Startwert {seed}.</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>{count} measured particles at l_max = {degree}, {left} left out; fitted to one half, judged on the other; {splits} {split}, {draws} draws {repeats} times from each fit, seed {seed}.</source>
+   <translation>{count} gemessene Partikel bei l_max = {degree}, {left} ausgelassen; an eine Hälfte angepasst, an der anderen beurteilt; {splits} {split}, {repeats}-mal {draws} Ziehungen je Fit, Startwert {seed}.</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/batch_fields.py" />
    <source>{count} of the open particles come from no file and cannot be part of a batch.</source>
    <translation>{count} der geöffneten Partikel stammen aus keiner Datei und können nicht Teil eines Stapels sein.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/steps.py" />
+   <source>{count} of them has fewer than {least} voxels and will be left out.</source>
+   <translation>{count} davon hat weniger als {least} Voxel und entfällt.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/steps.py" />
+   <source>{count} of them have fewer than {least} voxels and will be left out.</source>
+   <translation>{count} davon haben weniger als {least} Voxel und entfallen.</translation>
   </message>
   <message>
    <location filename="ui/pages/sample/scatter.py" />
@@ -5585,6 +7258,16 @@
    <location filename="ui/commands.py" />
    <source>{count} particles came from no file and are not in it ({names}); export them.</source>
    <translation>{count} Partikel stammen aus keiner Datei und sind nicht darin ({names}); exportieren Sie sie.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/model/sources.py" />
+   <source>{count} particles up to l = {degree}.</source>
+   <translation>{count} Partikel bis l = {degree}.</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>{count} particles; left out: {border} at the border, {small} too small.</source>
+   <translation>{count} Partikel; weggelassen: {border} am Rand, {small} zu klein.</translation>
   </message>
   <message>
    <location filename="ui/pages/lecture/page.py" />
@@ -5627,6 +7310,21 @@
    <translation>{count}, als STL-Dateien mit Einheitsvolumen, zusammen {size:,.0f} KiB</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/volume_dialog.py" />
+   <source>{edges} voxels, {dtype}.</source>
+   <translation>{edges} Voxel, {dtype}.</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>{grains} grains from 1 connected body</source>
+   <translation>{grains} Körner aus 1 zusammenhängenden Körper</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>{grains} grains from {bodies} connected bodies</source>
+   <translation>{grains} Körner aus {bodies} zusammenhängenden Körpern</translation>
+  </message>
+  <message>
    <location filename="ui/shortcuts.py" />
    <source>{keys} already runs “{command}”.</source>
    <translation>{keys} gehört schon zu „{command}“.</translation>
@@ -5640,6 +7338,16 @@
    <location filename="ui/shortcuts.py" />
    <source>{keys} is no key that a command can have.</source>
    <translation>{keys} ist keine Taste, die ein Befehl haben kann.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/histogram_plot.py" />
+   <source>{label}: {share:.3g} % of voxels</source>
+   <translation>{label}: {share:.3g} % der Voxel</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/controls.py" />
+   <source>{least} voxels are a ball of {diameter:.1f} voxels in diameter.</source>
+   <translation>{least} Voxel sind eine Kugel von {diameter:.1f} Voxeln Durchmesser.</translation>
   </message>
   <message>
    <location filename="ui/pages/repose/runs.py" />
@@ -5718,6 +7426,11 @@
    <translation>{name}: {count} Formen, nach {weighting}</translation>
   </message>
   <message>
+   <location filename="ui/pages/scan/steps.py" />
+   <source>{name}: {edges} voxels of {voxel}, {what} ({dtype}).</source>
+   <translation>{name}: {edges} Voxel zu {voxel}, {what} ({dtype}).</translation>
+  </message>
+  <message>
    <location filename="ui/pages/dataset/shown.py" />
    <source>{name}: {faces} facets, {vertices} vertices, stands for {count} particles</source>
    <translation>{name}: {faces} Facetten, {vertices} Ecken, steht für {count} Partikel</translation>
@@ -5726,6 +7439,11 @@
    <location filename="ui/pages/lecture/transport.py" />
    <source>{noun} {at} of {last}</source>
    <translation>{noun} {at} von {last}</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/scan/slice_view.py" />
+   <source>{plane}, {axis} = {number} of {count}</source>
+   <translation>{plane}, {axis} = {number} von {count}</translation>
   </message>
   <message>
    <location filename="ui/widgets/preset_bar.py" />

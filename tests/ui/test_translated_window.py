@@ -5,13 +5,17 @@ screen was never asked to be translated.
 """
 
 import contextlib
+import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 from PySide6.QtCore import QLocale
 from PySide6.QtGui import QKeySequence
 from PySide6.QtWidgets import QDialogButtonBox, QMenu, QMessageBox, QScrollArea
 
+from regolith_studio.imaging.extraction import Extraction
+from regolith_studio.readers.volume_header import DatasetEntry, VolumeHeader
 from regolith_studio.session.choices import Choices
 from regolith_studio.ui.app import open_window
 from regolith_studio.ui.dialogs.batch import BatchDialog
@@ -23,12 +27,14 @@ from regolith_studio.ui.dialogs.preferences import PreferencesDialog
 from regolith_studio.ui.dialogs.shortcuts import ShortcutsDialog
 from regolith_studio.ui.dialogs.unit import UnitDialog
 from regolith_studio.ui.pages.explore.pictures import PictureDialog
+from regolith_studio.ui.pages.scan.volume_dialog import VolumeDialog
 from regolith_studio.ui.tour import start_tour, steps
 from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation.sentences import retold
 from tests.ui.reading import cut_off, english_left
 
 SECONDS = 120.0
-PAGES = ("sample", "studies", "dataset", "repose", "lecture")
+PAGES = ("sample", "scan", "studies", "dataset", "repose", "lecture")
 """Pages besides Explore whose insides are translated."""
 READ = ("sample", "studies", "lecture")
 """Those that are read word by word; the others name many programs, units and files."""
@@ -89,6 +95,56 @@ def test_that_no_words_on_a_page_go_past_the_translation(key, opened, speaking, 
     page = window.go(key)
     settled(window, SECONDS)
     assert english_left(page) == []
+
+
+@pytest.fixture
+def scanned(opened, wait):
+    """Opens the page Scan with the sample scan and the preview of its grains."""
+
+    def run():
+        page = opened().go("scan")
+        page.open_sample()
+        wait(lambda: page.preview is not None, SECONDS)
+        return page
+
+    return run
+
+
+def test_that_no_words_on_the_way_from_a_scan_to_particles_go_past_the_translation(
+    scanned, speaking, wait, tmp_path
+):
+    speaking("brackets")
+    page = scanned()
+    assert english_left(page) == []
+    box = page.overview.histogram.canvas.getViewBox()
+    assert "⟦" in page.overview.histogram.value_at(box.mapViewToScene(box.viewRect().center()))
+    page.find_grains()
+    wait(lambda: page.grains is not None, SECONDS)
+    page.make_particles()
+    wait(lambda: page.steps.show_them.isVisible(), SECONDS)
+    assert english_left(page) == []
+    (tmp_path / "a.h5").write_bytes(bytes(64))
+    said = VolumeHeader(
+        tmp_path / "a.h5", "hdf5", (4, 4, 4), np.dtype(np.uint8), None, None, "labels",
+        (DatasetEntry("a", (4, 4, 4), "u1"), DatasetEntry("b", (4, 4, 4), "u1")), "a", 64,
+        ("The file holds 2 volumes; a was read.",),
+    )  # fmt: skip
+    for header in (None, said):
+        dialog = VolumeDialog(tmp_path / "a.h5", header)
+        assert english_left(dialog) == []
+        dialog.deleteLater()
+
+
+def test_that_what_a_scan_holds_is_told_in_german_and_nothing_of_it_is_cut(scanned, speaking, assert_fits):
+    speaking("de")
+    page = scanned()
+    told = page.steps.found.text()
+    assert re.match(r"Im Rahmen: \d+ Körner aus \d+ zusammenhängenden Körpern\. ", told)
+    assert told.endswith("Ein Klick in ein Schichtbild verschiebt den Rahmen.")
+    assert_fits(page)
+    page.steps.set_particles(retold(Extraction((), tuple(range(14)), (), 46).summary))
+    assert page.steps.made.text() == "46 Partikel; weggelassen: 14 am Rand, 0 zu klein."
+    assert_fits(page)
 
 
 def test_that_the_dialogs_of_qt_and_the_keys_speak_german(opened, speaking):

@@ -3,7 +3,14 @@
 import re
 import string
 
+import numpy as np
+import pytest
+
 from regolith_studio.coarsening.bounds import greatest_sphericity, sphericity_reason
+from regolith_studio.imaging.extraction import Extraction
+from regolith_studio.imaging.segmentation.segment import Segmentation
+from regolith_studio.imaging.segmentation.thresholding import Histogram
+from regolith_studio.imaging.volume import Volume
 from regolith_studio.ui.pages.sample.page import in_english
 from regolith_studio.ui.translation import CONTEXT, tr
 from regolith_studio.ui.translation.extract import all_messages, messages_of, ts_text, update
@@ -107,3 +114,20 @@ def test_that_a_filter_takes_the_words_that_are_read_and_the_english_ones(speaki
     speaking("de")
     assert in_english("Klingenförmig S<0.8 fehlerfrei flat-2") == "blade S<0.8 sound flat-2"
     assert in_english("blade") == "blade"
+
+
+@pytest.mark.parametrize("grains", [1, 60])
+@pytest.mark.parametrize("bodies", [1, 3])
+def test_that_what_was_found_in_a_scan_is_told_anew(grains, bodies, speaking):
+    speaking("de")
+    volume = Volume(np.ones((2, 2, 2), dtype=np.int32), (1.0,) * 3, "labels", "a")
+    seen = Histogram(np.array([8]), np.array([0.0, 1.0]))
+    found = Segmentation(volume, np.full(grains, 8), 103.5, seen, bodies, 2)
+    counts = (
+        f"{grains} {'Korn' if grains == 1 else 'Körner'} aus {bodies} zusammenhängenden"
+        f" {'Körper' if bodies == 1 else 'Körpern'}"
+    )
+    assert retold(found.counts) == counts
+    assert retold(found.summary) == f"{counts} beim Grauwert 103.5; 2 zu klein."
+    made = Extraction((), (1, 2), (3,), grains).summary
+    assert retold(made) == f"{grains} Partikel; weggelassen: 2 am Rand, 1 zu klein."

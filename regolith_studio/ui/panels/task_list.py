@@ -8,6 +8,7 @@ from PySide6.QtWidgets import QGridLayout, QLabel, QProgressBar, QPushButton, QV
 
 from regolith_studio.session.tasks import Task
 from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.labels import remark
 
 
@@ -55,7 +56,8 @@ class _Row:
 
     def show(self, task: Task) -> None:
         self.clock.run(not task.paused)
-        self.title.setText(f"{tr(task.title)}: {task.message}" if task.message else tr(task.title))
+        told = filter(None, (task.title, task.message))
+        self.title.setText(": ".join(map(retold, told)))
         self.bar.setRange(0, task.total)
         self.bar.setValue(task.done)
         rest = time_left(task.done, task.total, self.clock.seconds())

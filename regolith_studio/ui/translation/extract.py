@@ -38,7 +38,13 @@ ROWS: Mapping[str, Mapping[str, int]] = {
     "Page": {"title": 1, "tip": 4},
 }
 """Which fields of a row are messages, and where they stand without their names."""
-TASKS = ("session/*.py", *(f"jobs/{name}.py" for name in ("coarsening", "fitting", "loading", "examining")))
+TASKS = (
+    "session/*.py",
+    *(
+        f"jobs/{name}.py"
+        for name in ("coarsening", "fitting", "loading", "examining", "extracting", "scanning")
+    ),
+)
 """Modules beside the window whose titles are seen in the status bar and in the list of tasks."""
 FORMS = (ContactParameters, LiftingCylinderTest, ScriptTimes, EvaluationSettings)
 """Dataclasses whose fields are edited in the window."""
@@ -48,8 +54,15 @@ SAID_BELOW = (
     "A closed mesh without faults.",
     "Being measured …",
     "Compiling",
+    "Counting grey values",
+    "Denoising",
+    "Finding bodies",
     "Looking for the cluster",
+    "Looking through the slices",
+    "Numbering grains",
+    "Parting touching grains",
     "Starting the workers",
+    "Unpacking into a temporary file",
     "Writing the dataset",
 )
 """Sentences of the layers below that are no rows of a table."""

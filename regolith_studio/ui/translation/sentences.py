@@ -33,12 +33,28 @@ SENTENCES = (
         "The result has {real} facets instead of {faces}: no place was found where the other half-spaces"
         " bound a facet and all descriptors are met."
     ),
+    mark("1 grain from 1 connected body"),
+    mark("1 grain from {bodies} connected bodies"),
+    mark("{grains} grains from 1 connected body"),
+    mark("{grains} grains from {bodies} connected bodies"),
+    mark("{counts} at grey level {level}; {small} too small."),
+    mark("1 particle; left out: {border} at the border, {small} too small."),
+    mark("{count} particles; left out: {border} at the border, {small} too small."),
+    mark("Looking at {name}"),
+    mark("Reading {name}"),
+    mark("The file is named {suffix} but is {format}."),
+    mark("The file holds {count} volumes; {name} was read."),
+    mark("The file holds {count} series of images; the largest was read."),
+    mark("The file calls its {count} images channels; they were taken for slices."),
+    mark("The file states the width of a pixel only; the slices were taken to be as far apart."),
+    mark("The file states voxel edges in different units; they were passed over."),
+    mark("The file says that a voxel is {size}, which no scan has; give the size of a voxel."),
     mark("{name} only"),
     mark("{name} × {factor}"),
     mark("{count} faces"),
     mark("Overlap + {symbols}"),
 )
-"""Fits and coarsenings say these; what is in braces stands there filled in."""
+"""Fits, coarsenings, scans and files say these; what is in braces stands there filled in."""
 
 
 def retold(sentence: str) -> str:
@@ -52,11 +68,11 @@ def retold(sentence: str) -> str:
 
 
 def _word(value: str) -> str:
-    """A name of the catalogue inside a sentence; numbers stay what they are, sums are told term by term."""
+    """A name or a sentence inside a sentence; numbers stay what they are, sums are told term by term."""
     if PLUS in value:
         return PLUS.join(map(_word, value.split(PLUS)))
     if not value[:1].isalpha():
-        return value
+        return retold(value) if " " in value else value
     if (word := tr(value)) != value:
         return word
     known = tr(value[:1].upper() + value[1:])

@@ -11,32 +11,39 @@ from regolith_studio.imaging.segmentation.cleaning import CleaningSettings
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings
 from regolith_studio.jobs.grain_recipe import GrainRecipe
 from regolith_studio.ui.pages.scan.fields import choice
+from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.labels import heading, remark
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
 
 DENOISE = (
-    ("median", "Median of 27 voxels"),
-    ("gaussian", "Gaussian (fast)"),
-    ("non-local-means", "Non-local means (slow)"),
-    ("none", "None"),
+    ("median", mark("Median of 27 voxels")),
+    ("gaussian", mark("Gaussian (fast)")),
+    ("non-local-means", mark("Non-local means (slow)")),
+    ("none", mark("None")),
 )
 THRESHOLD = (
-    ("otsu", "Otsu"),
-    ("multi-otsu", "Multi-Otsu, three classes"),
-    ("manual", "By hand: drag the line"),
-    ("probability", "Probability map"),
+    ("otsu", mark("Otsu")),
+    ("multi-otsu", mark("Multi-Otsu, three classes")),
+    ("manual", mark("By hand: drag the line")),
+    ("probability", mark("Probability map")),
 )
-SURFACE = (("grey", "Grey values"), ("mask", "Mask"))
+SURFACE = (("grey", mark("Grey values")), ("mask", mark("Mask")))
 H_MAXIMA = NumberSpec(
-    "h", "Bump that is a grain of its own, in voxels", 0.0, 6.0, 0.1, limit=50.0,
-    tip="How far a bump must stand out to be a grain of its own. Grains cut in two: larger. "
-    "Grains that stick together: smaller.",
+    "h", mark("Bump that is a grain of its own, in voxels"), 0.0, 6.0, 0.1, limit=50.0,
+    tip=mark(
+        "How far a bump must stand out to be a grain of its own. Grains cut in two: larger. "
+        "Grains that stick together: smaller."
+    ),
 )  # fmt: skip
-OPENING = NumberSpec("Opening", "Opening", 0, 5, tip="Removes specks and thin bridges, in voxels.")
-CLOSING = NumberSpec("Closing", "Closing", 0, 5, tip="Closes cracks and thin gaps, in voxels.")
+OPENING = NumberSpec(
+    mark("Opening"), mark("Opening"), 0, 5, tip=mark("Removes specks and thin bridges, in voxels.")
+)
+CLOSING = NumberSpec(
+    mark("Closing"), mark("Closing"), 0, 5, tip=mark("Closes cracks and thin gaps, in voxels.")
+)
 MIN_VOXELS = NumberSpec(
-    "Smallest", "Least voxels of a grain", 0, 2000, 1, limit=10_000_000,
-    tip="Grains of fewer voxels are left out; below 12 voxels in diameter shapes are coarse.",
+    mark("Smallest"), mark("Least voxels of a grain"), 0, 2000, 1, limit=10_000_000,
+    tip=mark("Grains of fewer voxels are left out; below 12 voxels in diameter shapes are coarse."),
 )  # fmt: skip
 
 _LABEL_WIDTH = 62
@@ -51,23 +58,32 @@ class SegmentationControls(QWidget):
         super().__init__(parent)
         self.setObjectName("segmentation")
         self._recipe = GrainRecipe()
-        self.denoise = choice("denoise", "Denoise", DENOISE)
-        self.threshold = choice("threshold", "Threshold", THRESHOLD)
+        self.denoise = choice("denoise", tr("Denoise"), DENOISE)
+        self.threshold = choice("threshold", tr("Threshold"), THRESHOLD)
         self.level = QDoubleSpinBox()
-        self.boundary = choice("boundary", "Boundary", ((1, "dark | middle"), (2, "middle | bright")))
-        self.dark = _check("dark", "Grains are dark", "Grains are darker than what is between them.")
-        self.split = _check("split", "Part touching grains", "Otherwise each connected body is one grain.")
-        self.pores = _check("fill_pores", "Fill closed pores", "Pores without a way out become grain.")
+        self.boundary = choice(
+            "boundary", tr("Boundary"), ((1, mark("dark | middle")), (2, mark("middle | bright")))
+        )
+        self.dark = _check("dark", tr("Grains are dark"), tr("Grains are darker than what is between them."))
+        self.split = _check(
+            "split", tr("Part touching grains"), tr("Otherwise each connected body is one grain.")
+        )
+        self.pores = _check(
+            "fill_pores", tr("Fill closed pores"), tr("Pores without a way out become grain.")
+        )
         self.border = _check(
             "exclude_border",
-            "Leave out grains at the border",
-            "They are cut. Each of the others then counts a little more (Miles-Lantuéjoul weights).",
+            tr("Leave out grains at the border"),
+            tr("They are cut. Each of the others then counts a little more (Miles-Lantuéjoul weights)."),
         )
         self.opening, self.closing = _slider("opening", OPENING), _slider("closing", CLOSING)
         self.h_maxima, self.least = _slider("h_maxima", H_MAXIMA), _slider("min_voxels", MIN_VOXELS)
-        self.surface = choice("surface", "Surface", SURFACE)
+        self.surface = choice("surface", tr("Surface"), SURFACE)
         self.surface.setToolTip(
-            "The grey values about a grain tell its volume better than its mask, however blurred the scan."
+            tr(
+                "The grey values about a grain tell its volume better than its mask,"
+                " however blurred the scan."
+            )
         )
         self.diameter = remark()
         self._arrange()
@@ -164,7 +180,13 @@ class SegmentationControls(QWidget):
         self.level.setEnabled(method in ("manual", "probability"))
         self.h_maxima.setEnabled(self.split.isChecked())
         least = int(self.least.value())
-        self.diameter.setText(f"{least} voxels are a ball of {voxel_diameter(least):.1f} voxels in diameter.")
+        self.diameter.setText(
+            tr(
+                "{least} voxels are a ball of {diameter:.1f} voxels in diameter.",
+                least=least,
+                diameter=voxel_diameter(least),
+            )
+        )
 
     def _changed(self) -> None:
         self._show_which()
@@ -187,35 +209,35 @@ class SegmentationControls(QWidget):
 
     def _arrange(self) -> None:
         self.level.setObjectName("level")
-        self.level.setAccessibleName("Grey level at which grains begin")
+        self.level.setAccessibleName(tr("Grey level at which grains begin"))
         self.level.setRange(-1e9, 1e9)
         self.level.setDecimals(2)
         self.level.setKeyboardTracking(False)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(heading("Which voxels are grain"))
+        layout.addWidget(heading(tr("Which voxels are grain")))
         layout.addLayout(
             _form(
                 (
-                    ("Denoise", self.denoise),
-                    ("Threshold", self.threshold),
-                    ("Level", self.level),
-                    ("Boundary", self.boundary),
+                    (tr("Denoise"), self.denoise),
+                    (tr("Threshold"), self.threshold),
+                    (tr("Level"), self.level),
+                    (tr("Boundary"), self.boundary),
                 )
             )
         )
         for part in (self.dark, self.opening, self.closing, self.pores):
             layout.addWidget(part)
         layout.addSpacing(10)
-        layout.addWidget(heading("Which grain they belong to"))
+        layout.addWidget(heading(tr("Which grain they belong to")))
         layout.addWidget(self.split)
         layout.addWidget(self.h_maxima)
         layout.addSpacing(10)
-        layout.addWidget(heading("Which grains become particles"))
+        layout.addWidget(heading(tr("Which grains become particles")))
         layout.addWidget(self.border)
         layout.addWidget(self.least)
         layout.addWidget(self.diameter)
-        layout.addLayout(_form((("Surface", self.surface),)))
+        layout.addLayout(_form(((tr("Surface"), self.surface),)))
 
 
 def _check(name: str, words: str, tip: str) -> QCheckBox:

@@ -5,12 +5,17 @@ from typing import Any
 
 from PySide6.QtWidgets import QComboBox
 
+from regolith_studio.ui.translation import tr
+
 
 def choice(name: str, words: str, rows: Sequence[tuple[Any, str]]) -> QComboBox:
-    """A choice among rows of value and label, with an object name and words for screen readers."""
+    """A choice among rows of value and label, with an object name and words for screen readers.
+
+    Labels are translated here, words where they stand.
+    """
     box = QComboBox()
     box.setObjectName(name)
     box.setAccessibleName(words)
     for key, label in rows:
-        box.addItem(label, key)
+        box.addItem(tr(label), key)
     return box

@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QWidget
 
 from regolith_studio.imaging.segmentation.thresholding import Histogram
 from regolith_studio.ui.theme import Theme
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.log_axes import set_log_mode
 from regolith_studio.ui.widgets.plot import Numbers, Plot
 
@@ -27,18 +28,21 @@ class HistogramPlot(Plot):
             angle=90, movable=True, label="{value:.4g}", labelOpts={"position": 0.92, "movable": False}
         )
         super().__init__(
-            "Grey value", "Voxels [%]", "Open a volume of grey values to see its histogram.", parent
+            tr("Grey value"),
+            tr("Voxels [%]"),
+            tr("Open a volume of grey values to see its histogram."),
+            parent,
         )
         set_log_mode(self.canvas, x=False, y=True)
         self.canvas.getAxis("left").logTickStrings = _plain_powers
         self.canvas.addItem(self.line, ignoreBounds=True)
-        self.canvas.setAccessibleName("Histogram of grey values with the threshold")
+        self.canvas.setAccessibleName(tr("Histogram of grey values with the threshold"))
         self.line.sigDragged.connect(lambda line: self.levelDragged.emit(float(line.value())))
 
     def set_scanned(self, seen: Histogram | None) -> None:
         """The volume as it was scanned."""
         self._scanned, self._denoised = seen, None
-        self.set_empty(seen is None, "A volume of labels has no histogram of grey values.")
+        self.set_empty(seen is None, tr("A volume of labels has no histogram of grey values."))
         self.redraw()
 
     def set_denoised(self, seen: Histogram | None) -> None:
@@ -73,7 +77,8 @@ class HistogramPlot(Plot):
         for seen, _, label in self._shown():
             place_in = _bin_of(seen, value)
             if place_in is not None:
-                lines.append(f"{label}: {_shares(seen)[place_in]:.3g} % of voxels")
+                share = _shares(seen)[place_in]
+                lines.append(tr("{label}: {share:.3g} % of voxels", label=label, share=share))
         return "\n".join(lines)
 
     def numbers(self) -> Numbers:
@@ -83,7 +88,7 @@ class HistogramPlot(Plot):
             for seen, _, label in self._shown()
             for low, high, count in zip(seen.edges[:-1], seen.edges[1:], seen.counts, strict=True)
         ]
-        return ("Histogram", "From", "To", "Voxels"), rows
+        return (tr("Histogram"), tr("From"), tr("To"), tr("Voxels")), rows
 
     def redraw(self) -> None:
         for curve in self._curves:
@@ -98,8 +103,8 @@ class HistogramPlot(Plot):
     def _shown(self) -> list[tuple[Histogram, str, str]]:
         """Histograms with their colours and names."""
         known = [
-            (self._scanned, self.theme.particle, "as scanned"),
-            (self._denoised, self.theme.fit, "without noise"),
+            (self._scanned, self.theme.particle, tr("as scanned")),
+            (self._denoised, self.theme.fit, tr("without noise")),
         ]
         return [(seen, colour, label) for seen, colour, label in known if seen is not None]
 
@@ -131,5 +136,5 @@ def _bin_of(seen: Histogram, value: float) -> int | None:
 def _bin_words(seen: Histogram, place: int) -> str:
     low, high = float(seen.edges[place]), float(seen.edges[place + 1])
     if high - low == 1.0 and low % 1.0 == 0.5:
-        return f"Grey value {low + 0.5:g}"
-    return f"Grey values {low:.4g} to {high:.4g}"
+        return tr("Grey value {value:g}", value=low + 0.5)
+    return tr("Grey values {low:.4g} to {high:.4g}", low=low, high=high)

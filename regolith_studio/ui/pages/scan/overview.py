@@ -12,6 +12,7 @@ from regolith_studio.ui.layout import equal_parts
 from regolith_studio.ui.pages.scan.histogram_plot import HistogramPlot
 from regolith_studio.ui.pages.scan.slice_view import SliceView
 from regolith_studio.ui.theme import Theme
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import remark
 
 PREVIEW_EDGE = 96
@@ -103,8 +104,10 @@ class Overview(QWidget):
         hint = QWidget()
         column_of_words = QVBoxLayout(hint)
         words = remark(
-            "Open a CT volume: TIFF stack, folder of slices, HDF5, NRRD, MetaImage, NIfTI, NPY or raw. "
-            "Drop it here, or begin with the sample scan."
+            tr(
+                "Open a CT volume: TIFF stack, folder of slices, HDF5, NRRD, MetaImage, NIfTI, NPY or raw. "
+                "Drop it here, or begin with the sample scan."
+            )
         )
         words.setAlignment(Qt.AlignmentFlag.AlignCenter)
         column_of_words.addStretch(1)

@@ -39,11 +39,13 @@ from regolith_studio.ui.pages.scan.overview import Overview
 from regolith_studio.ui.pages.scan.steps import StepsPanel
 from regolith_studio.ui.pages.scan.volume_dialog import RAW_SUFFIXES, VolumeDialog, needs_asking
 from regolith_studio.ui.theme import Theme
+from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation.sentences import retold
 
-VOLUMES = (
+VOLUMES = mark(
     "Volumes (*.tif *.tiff *.h5 *.hdf5 *.nrrd *.nhdr *.mha *.mhd *.nii *.nii.gz *.npy *.raw);;All files (*)"
 )
-RECIPES = "Settings (*.json);;All files (*)"
+RECIPES = mark("Settings (*.json);;All files (*)")
 PREVIEW_DELAY = 120
 """Milliseconds without a change before a preview is begun."""
 
@@ -106,13 +108,13 @@ class ScanPage(PageWidget):
 
     def ask_for_file(self) -> None:
         """Ask for a volume and open it."""
-        name, _ = QFileDialog.getOpenFileName(self, "Open a volume", self._folder(), VOLUMES)
+        name, _ = QFileDialog.getOpenFileName(self, tr("Open a volume"), self._folder(), tr(VOLUMES))
         if name:
             self.open(Path(name))
 
     def ask_for_folder(self) -> None:
         """Ask for a folder of slices and open it."""
-        name = QFileDialog.getExistingDirectory(self, "Open a folder of slices", self._folder())
+        name = QFileDialog.getExistingDirectory(self, tr("Open a folder of slices"), self._folder())
         if name:
             self.open(Path(name))
 
@@ -124,14 +126,14 @@ class ScanPage(PageWidget):
             return
         job = Job(look_at_file, (VolumeInput(path),))
         self._context.start(
-            "Looking at the volume", job, lambda header: self._looked(path, header), lane="read"
+            tr("Looking at the volume"), job, lambda header: self._looked(path, header), lane="read"
         )
 
     def open_sample(self) -> None:
         """Open the shipped scan."""
         given = VolumeInput(sample_file("grey"))
         self._context.start(
-            "Reading the sample scan",
+            tr("Reading the sample scan"),
             Job(read_sample_scan),
             lambda scan: self._take(scan, given),
             lane="read",
@@ -140,7 +142,7 @@ class ScanPage(PageWidget):
     def read(self, given: VolumeInput) -> None:
         """Read a volume of which everything is known."""
         job = Job(read_scan, (given,))
-        self._context.start("Reading the volume", job, lambda scan: self._take(scan, given), lane="read")
+        self._context.start(tr("Reading the volume"), job, lambda scan: self._take(scan, given), lane="read")
 
     def _looked(self, path: Path, header: VolumeHeader) -> None:
         if needs_asking(header):
@@ -190,7 +192,7 @@ class ScanPage(PageWidget):
 
     def ask_for_settings(self) -> None:
         """Ask for a recipe, as this page or ``extract`` has written it, and take its settings."""
-        name, _ = QFileDialog.getOpenFileName(self, "Open settings", self._folder(), RECIPES)
+        name, _ = QFileDialog.getOpenFileName(self, tr("Open settings"), self._folder(), tr(RECIPES))
         if not name:
             return
         try:
@@ -201,7 +203,7 @@ class ScanPage(PageWidget):
     def save_settings(self) -> None:
         """Ask for a file and write the settings there."""
         start = str(Path(self._folder()) / "grains.json")
-        name, _ = QFileDialog.getSaveFileName(self, "Save settings", start, RECIPES)
+        name, _ = QFileDialog.getSaveFileName(self, tr("Save settings"), start, tr(RECIPES))
         if not name:
             return
         try:
@@ -209,7 +211,8 @@ class ScanPage(PageWidget):
         except RegolithError as error:
             self._context.toast.problem(str(error))
             return
-        self._context.toast.note(f"Saved; use it with: regolith-studio extract --recipe {Path(name).name}")
+        command = f"regolith-studio extract --recipe {Path(name).name}"
+        self._context.toast.note(tr("Saved; use it with: {command}", command=command))
 
     def _use(self, recipe: GrainRecipe) -> None:
         self.controls.setValue(recipe)
@@ -220,12 +223,14 @@ class ScanPage(PageWidget):
     def find_grains(self) -> None:
         """Segment the whole volume."""
         if self.scan is None or self.scan.volume.kind == "labels":
-            self._context.toast.note("Open a volume of grey values first.")
+            self._context.toast.note(tr("Open a volume of grey values first."))
             return
         self._context.stop("preview")
         settings = self.controls.value().segmentation
         job = Job(find_grains, (self.scan, settings))
-        self._context.start("Finding grains", job, lambda found: self._found(found, settings), lane="grains")
+        self._context.start(
+            tr("Finding grains"), job, lambda found: self._found(found, settings), lane="grains"
+        )
 
     def make_particles(self) -> None:
         """Make particles of the grains and hand them to all other pages."""
@@ -233,13 +238,13 @@ class ScanPage(PageWidget):
         if self.scan is not None and self.scan.volume.kind == "labels":
             labels = self.scan.volume
         if labels is None or self.scan is None:
-            self._context.toast.note("Find the grains first.")
+            self._context.toast.note(tr("Find the grains first."))
             return
         settings = GrainRecipe(self._found_with or SegmentationSettings(), self.controls.value().extraction)
         entry = entry_of(self._given, settings)
         grey = self.scan.volume if self.scan.volume.kind == "grey" else None
         job = Job(extract_labels, (labels, settings.extraction, self._given.path, grey))
-        self._context.start("Making particles", job, lambda made: self._adopt(made, entry), lane="grains")
+        self._context.start(tr("Making particles"), job, lambda made: self._adopt(made, entry), lane="grains")
 
     def _found(self, found: FoundGrains, settings: SegmentationSettings) -> None:
         self._forget_grains()
@@ -256,14 +261,19 @@ class ScanPage(PageWidget):
     def _adopt(self, extraction: Extraction, entry: VolumeEntry) -> None:
         if not extraction.found:
             self._context.toast.problem(
-                f"No grain became a particle: {len(extraction.border)} touch the border of the volume, "
-                f"{len(extraction.small)} are too small."
+                tr(
+                    "No grain became a particle: {border} touch the border of the volume,"
+                    " {small} are too small.",
+                    border=len(extraction.border),
+                    small=len(extraction.small),
+                )
             )
             return
         origin = Grains.of(entry, extraction.particles)
         self._context.session.adopt(extraction.particles, origin=origin)
-        self._context.toast.note(extraction.summary)
-        self.steps.set_particles(extraction.summary)
+        summary = retold(extraction.summary)
+        self._context.toast.note(summary)
+        self.steps.set_particles(summary)
 
     def _changed(self, recipe: GrainRecipe) -> None:
         """Forget grains that were found with other settings, and begin a preview with these."""
@@ -307,7 +317,10 @@ class ScanPage(PageWidget):
         arguments = (self.scan.volume, self.overview.box, settings, self.scan.level(settings))
         box = self.overview.box
         self._context.start(
-            "Preview", Job(preview_part, arguments), lambda found: self._previewed(found, box), lane="preview"
+            tr("Preview"),
+            Job(preview_part, arguments),
+            lambda found: self._previewed(found, box),
+            lane="preview",
         )
 
     def _previewed(self, found: Segmentation | None, box: Any) -> None:

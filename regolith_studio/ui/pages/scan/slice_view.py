@@ -13,6 +13,7 @@ from regolith_studio.imaging.boxes import Box
 from regolith_studio.imaging.sections import Sections
 from regolith_studio.imaging.volume import Volume
 from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.translation import tr
 
 AXES = "xyz"
 _OPACITY = 105
@@ -52,7 +53,7 @@ class SliceView(QWidget):
         self.title.setProperty("role", "heading")
         self.slider = QSlider(Qt.Orientation.Horizontal)
         self.slider.setObjectName(f"slice_{AXES[axis]}")
-        self.slider.setAccessibleName(f"Slice along {AXES[axis]}")
+        self.slider.setAccessibleName(tr("Slice along {axis}", axis=AXES[axis]))
         self.canvas = _Canvas(self)
         self._grey, self._grains = pg.ImageItem(), pg.ImageItem()
         self._frame = pg.QtWidgets.QGraphicsRectItem()
@@ -86,7 +87,13 @@ class SliceView(QWidget):
         with QSignalBlocker(self.slider):
             self.slider.setValue(number)
         self.title.setText(
-            f"{AXES[self.across]}{AXES[self.down]}, {AXES[self.axis]} = {number + 1} of {count}"
+            tr(
+                "{plane}, {axis} = {number} of {count}",
+                plane=AXES[self.across] + AXES[self.down],
+                axis=AXES[self.axis],
+                number=number + 1,
+                count=count,
+            )
         )
         picture = self._sections.picture(self.axis, number)
         whole = (self._volume.shape[self.across], self._volume.shape[self.down])
@@ -175,7 +182,7 @@ class _Canvas(pg.GraphicsView):  # type: ignore[misc]
         self.view = pg.ViewBox(lockAspect=True, invertY=True, enableMouse=False, enableMenu=False)
         self.setCentralItem(self.view)
         self.setFrameShape(self.Shape.NoFrame)
-        self.setAccessibleName(f"Slice along {AXES[owner.axis]}, picture")
+        self.setAccessibleName(tr("Slice along {axis}, picture", axis=AXES[owner.axis]))
         self.scene().sigMouseClicked.connect(self._clicked)
 
     def wheelEvent(self, event: QWheelEvent) -> None:

@@ -5,6 +5,8 @@ from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout, QWidget
 
 from regolith_studio.imaging.segmentation.segment import Segmentation
 from regolith_studio.jobs.scanning import Scan
+from regolith_studio.ui.translation import tr, tr_count
+from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.labels import heading, remark
 
 _DENSEST, _LARGEST = 0.7, 0.4
@@ -23,18 +25,26 @@ class StepsPanel(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setObjectName("scan_steps")
-        self.browse = _button("scan_open", "Open volume …", "Open a CT volume of grey values or labels")
-        self.sample = _button("scan_sample", "Sample scan", "Open the scan that ships with the program")
-        self.search = _button("scan_find", "Find all grains", "Segment the whole volume with these settings")
-        self.convert = _button("scan_make", "Make particles", "Contour each grain and open it as a particle")
-        self.show_them = _button("scan_show", "Show particles", "Go to the table of particles")
+        self.browse = _button(
+            "scan_open", tr("Open volume …"), tr("Open a CT volume of grey values or labels")
+        )
+        self.sample = _button(
+            "scan_sample", tr("Sample scan"), tr("Open the scan that ships with the program")
+        )
+        self.search = _button(
+            "scan_find", tr("Find all grains"), tr("Segment the whole volume with these settings")
+        )
+        self.convert = _button(
+            "scan_make", tr("Make particles"), tr("Contour each grain and open it as a particle")
+        )
+        self.show_them = _button("scan_show", tr("Show particles"), tr("Go to the table of particles"))
         self.volume, self.found, self.made = remark(), remark(), remark()
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         for title, buttons, words in (
-            ("1  Volume", (self.browse, self.sample), self.volume),
-            ("2  Grains", (self.search,), self.found),
-            ("3  Particles", (self.convert, self.show_them), self.made),
+            (tr("1  Volume"), (self.browse, self.sample), self.volume),
+            (tr("2  Grains"), (self.search,), self.found),
+            (tr("3  Particles"), (self.convert, self.show_them), self.made),
         ):
             layout.addWidget(heading(title))
             row = QHBoxLayout()
@@ -61,31 +71,46 @@ class StepsPanel(QWidget):
         if scan is None:
             self.found.setText("")
         elif not is_grey:
-            self.found.setText("The volume holds labels: its grains have been found already.")
+            self.found.setText(tr("The volume holds labels: its grains have been found already."))
         elif grains is not None:
-            self.found.setText(f"{grains.summary} {_too_small(grains, least)}{_too_large(grains)}".strip())
+            self.found.setText(_sentences(retold(grains.summary), *_doubts(grains, least)))
         elif preview is not None:
             self.found.setText(
-                f"In the frame: {preview.counts}. {_too_small(preview, least)}{_too_large(preview)}"
-                "Click into a slice to move the frame."
+                _sentences(
+                    tr("In the frame: {counts}.", counts=retold(preview.counts)),
+                    *_doubts(preview, least),
+                    tr("Click into a slice to move the frame."),
+                )
             )
         else:
             self.found.setText(
-                "No grain in the frame so far. Move the level, or click into a slice to move the frame."
+                tr("No grain in the frame so far. Move the level, or click into a slice to move the frame.")
             )
 
     def set_particles(self, summary: str) -> None:
-        """Say what came out."""
+        """Say what came out, in the words of the window."""
         self.made.setText(summary)
         self.show_them.show()
+
+
+def _sentences(*parts: str) -> str:
+    return " ".join(filter(None, parts))
+
+
+def _doubts(found: Segmentation, least: int) -> tuple[str, str]:
+    return _too_small(found, least), _too_large(found)
 
 
 def _too_small(found: Segmentation, least: int) -> str:
     count = int((found.sizes < least).sum())
     if not count:
         return ""
-    have = "has" if count == 1 else "have"
-    return f"{count} of them {have} fewer than {least} voxels and will be left out. "
+    return tr_count(
+        "{count} of them has fewer than {least} voxels and will be left out.",
+        "{count} of them have fewer than {least} voxels and will be left out.",
+        count,
+        least=least,
+    )
 
 
 def _too_large(found: Segmentation) -> str:
@@ -93,21 +118,27 @@ def _too_large(found: Segmentation) -> str:
     voxels = found.labels.array.size
     if found.sizes.sum() < _DENSEST * voxels and found.sizes.max() < _LARGEST * voxels:
         return ""
-    return (
+    return tr(
         "Grains fill most of it and hang together: if the grains are dark, tick that below; else move the "
-        "level or make h smaller. "
+        "level or make h smaller."
     )
 
 
 def _about(scan: Scan | None) -> str:
     if scan is None:
-        return "No volume is open."
+        return tr("No volume is open.")
     volume = scan.volume
     edges = " × ".join(map(str, volume.shape))
     size = volume.voxel_size
     voxel = f"{size[0]:g} µm" if (size == size[0]).all() else " × ".join(f"{e:g}" for e in size) + " µm"
-    what = "labels" if volume.kind == "labels" else "grey values"
-    return f"{volume.name}: {edges} voxels of {voxel}, {what} ({volume.dtype})."
+    return tr(
+        "{name}: {edges} voxels of {voxel}, {what} ({dtype}).",
+        name=volume.name,
+        edges=edges,
+        voxel=voxel,
+        what=tr("labels") if volume.kind == "labels" else tr("grey values"),
+        dtype=volume.dtype,
+    )
 
 
 def _button(name: str, words: str, tip: str) -> QPushButton:

@@ -21,13 +21,21 @@ from regolith_studio.jobs.extracting import VolumeInput
 from regolith_studio.readers.volume_header import RawLayout, VolumeHeader
 from regolith_studio.readers.volume_task import WITH_AXES
 from regolith_studio.ui.pages.scan.fields import choice
+from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.labels import remark
 
 RAW_SUFFIXES = (".raw", ".bin", ".vol", ".dat")
 AXES = (
-    (None, "As the file says, else slices first (z, y, x)"),
-    ("xyz", "x, y, z: slices last"),
-    ("yxz", "y, x, z: as MATLAB has pictures"),
+    (None, mark("As the file says, else slices first (z, y, x)")),
+    ("xyz", mark("x, y, z: slices last")),
+    ("yxz", mark("y, x, z: as MATLAB has pictures")),
+)
+ORDERS = (("little", mark("little endian")), ("big", mark("big endian")))
+KINDS = (
+    (None, mark("Whatever it looks like")),
+    ("grey", mark("Grey values")),
+    ("labels", mark("Labels of grains")),
 )
 UNITS = (("um", "µm"), ("mm", "mm"), ("nm", "nm"), ("cm", "cm"), ("m", "m"))
 _TYPES = ("uint8", "int8", "uint16", "int16", "uint32", "int32", "uint64", "int64", "float32", "float64")
@@ -57,22 +65,21 @@ class VolumeDialog(QDialog):
         parent: QWidget | None = None,
     ) -> None:
         super().__init__(parent)
-        self.setWindowTitle("Open a volume")
+        self.setWindowTitle(tr("Open a volume"))
         self.setObjectName("volume_dialog")
         self._path, self._header, self._layout, self._last_size = path, header, layout, last
-        self.edges = [_number(f"voxel_{axis}", f"Edge of a voxel along {axis}") for axis in "xyz"]
-        self.unit = choice("voxel_unit", "Unit of the voxel size", UNITS)
-        self.dataset = choice("dataset", "Volume in the file", ())
-        self.shape = [_count(f"shape_{axis}", f"Voxels along {axis}") for axis in "xyz"]
-        self.dtype = choice("dtype", "Type of a voxel", [(name, name) for name in _TYPES])
-        self.order = choice("byte_order", "Byte order", (("little", "little endian"), ("big", "big endian")))
-        self.offset = _count("offset", "Bytes before the first voxel", least=0)
-        self.kind = choice(
-            "kind", "What the volume holds",
-            ((None, "Whatever it looks like"), ("grey", "Grey values"), ("labels", "Labels of grains")),
-        )  # fmt: skip
-        self.axes = choice("axes", "Order of the array's axes", AXES)
-        self._said = "A raw file says nothing about itself: how many voxels are in it, and of which type?"
+        self.edges = [
+            _number(f"voxel_{axis}", tr("Edge of a voxel along {axis}", axis=axis)) for axis in "xyz"
+        ]
+        self.unit = choice("voxel_unit", tr("Unit of the voxel size"), UNITS)
+        self.dataset = choice("dataset", tr("Volume in the file"), ())
+        self.shape = [_count(f"shape_{axis}", tr("Voxels along {axis}", axis=axis)) for axis in "xyz"]
+        self.dtype = choice("dtype", tr("Type of a voxel"), [(name, name) for name in _TYPES])
+        self.order = choice("byte_order", tr("Byte order"), ORDERS)
+        self.offset = _count("offset", tr("Bytes before the first voxel"), least=0)
+        self.kind = choice("kind", tr("What the volume holds"), KINDS)
+        self.axes = choice("axes", tr("Order of the array's axes"), AXES)
+        self._said = tr("A raw file says nothing about itself: how many voxels are in it, and of which type?")
         self.verdict, self.facts = remark(), remark()
         self._buttons = QDialogButtonBox(
             QDialogButtonBox.StandardButton.Open | QDialogButtonBox.StandardButton.Cancel
@@ -126,8 +133,8 @@ class VolumeDialog(QDialog):
             for field, edge in zip(self.edges, header.voxel_size, strict=True):
                 field.setValue(edge)
             self.unit.setCurrentIndex(max(0, self.unit.findData(header.unit or "um")))
-        looks = "labels of grains" if header.kind == "labels" else "grey values"
-        self.kind.setItemText(0, f"What it looks like: {looks}")
+        looks = tr("labels of grains") if header.kind == "labels" else tr("grey values")
+        self.kind.setItemText(0, tr("What it looks like: {looks}", looks=looks))
         for entry in header.datasets:
             self.dataset.addItem(
                 f"{entry.name}, {' × '.join(map(str, entry.shape))}, {entry.dtype}", entry.name
@@ -140,7 +147,7 @@ class VolumeDialog(QDialog):
             edge = max(1, round(self._path.stat().st_size ** (1 / 3)))
             layout = RawLayout((edge, edge, edge), "uint8")
         else:
-            self._said = "Its name says how many voxels are in it, and its size agrees."
+            self._said = tr("Its name says how many voxels are in it, and its size agrees.")
         for count, edge in zip(self.shape, layout.shape, strict=True):
             count.setValue(edge)
         self.dtype.setCurrentIndex(max(0, self.dtype.findData(layout.dtype)))
@@ -153,28 +160,29 @@ class VolumeDialog(QDialog):
         needed = voxels * np.dtype(str(self.dtype.currentData())).itemsize + self.offset.value()
         there = self._path.stat().st_size
         if needed == there:
-            self.verdict.setText(f"That is all of the file's {there:,} bytes.")
+            words = tr("That is all of the file's {count:,} bytes.", count=there)
         elif needed < there:
-            self.verdict.setText(f"The file has {there - needed:,} bytes more than that.")
+            words = tr("The file has {count:,} bytes more than that.", count=there - needed)
         else:
-            self.verdict.setText(f"The file is {needed - there:,} bytes too short for that.")
+            words = tr("The file is {count:,} bytes too short for that.", count=needed - there)
+        self.verdict.setText(words)
         self._buttons.button(QDialogButtonBox.StandardButton.Open).setEnabled(needed <= there)
 
     def _arrange(self) -> None:
         header = self._header
         form = QFormLayout()
         if header is None:
-            form.addRow("Voxels x, y, z", _row(self.shape))
-            form.addRow("Type", self.dtype)
-            form.addRow("Byte order", self.order)
-            form.addRow("Bytes before", self.offset)
+            form.addRow(tr("Voxels x, y, z"), _row(self.shape))
+            form.addRow(tr("Type"), self.dtype)
+            form.addRow(tr("Byte order"), self.order)
+            form.addRow(tr("Bytes before"), self.offset)
             form.addRow(self.verdict)
         elif len(header.datasets) > 1:
-            form.addRow("Volume", self.dataset)
+            form.addRow(tr("Volume"), self.dataset)
         if header is not None and header.format in WITH_AXES:
-            form.addRow("Axes", self.axes)
-        form.addRow("Voxel size x, y, z", _row([*self.edges, self.unit]))
-        form.addRow("Holds", self.kind)
+            form.addRow(tr("Axes"), self.axes)
+        form.addRow(tr("Voxel size x, y, z"), _row([*self.edges, self.unit]))
+        form.addRow(tr("Holds"), self.kind)
         layout = QVBoxLayout(self)
         layout.addWidget(QLabel(self._path.name))
         layout.addWidget(self.facts)
@@ -187,9 +195,13 @@ class VolumeDialog(QDialog):
         if self._header is None:
             return self._said
         edges = " × ".join(map(str, self._header.shape))
-        said = " ".join(self._header.notes)
-        size = "" if self._header.voxel_size else " It does not say how large a voxel is."
-        return f"{edges} voxels, {self._header.dtype}.{size} {said}".strip()
+        size = "" if self._header.voxel_size else tr("It does not say how large a voxel is.")
+        parts = (
+            tr("{edges} voxels, {dtype}.", edges=edges, dtype=self._header.dtype),
+            size,
+            *map(retold, self._header.notes),
+        )
+        return " ".join(filter(None, parts))
 
 
 def needs_asking(header: VolumeHeader) -> bool:
