@@ -1,5 +1,7 @@
 """The page "Shape model": fit, drag the spectrum, draw, judge, hand over."""
 
+from contextlib import ExitStack
+
 import numpy as np
 import pytest
 from PySide6.QtCore import QPointF, Qt
@@ -22,12 +24,30 @@ from regolith_studio.ui.pages.model.judgement import JudgementPanel
 from regolith_studio.ui.widgets.spectrum_editor import SpectrumEditor
 from regolith_studio.ui.widgets.toast import Toast
 from regolith_studio.ui.wiring import Wiring
+from tests.ui.reading import english_left
 
 AMPLITUDES = np.array([0.02, 0.09, 0.03, 0.02])
 
 
 @pytest.fixture
-def page(shown, preferences):
+def page(opened):
+    return opened()
+
+
+@pytest.fixture
+def opened(shown, preferences):
+    """Opens the page, in the language that is spoken then."""
+    with ExitStack() as ends:
+
+        def run():
+            made, end = _opened(shown, preferences)
+            ends.callback(end)
+            return made
+
+        yield run
+
+
+def _opened(shown, preferences):
     session = Session(InlineRunner())
     window = shown(QWidget())
     toast = Toast(window)
@@ -36,10 +56,13 @@ def page(shown, preferences):
     context = PageContext("model", session, wiring, preferences, toast, commands, "image", lambda _key: None)
     made = shown(PAGE.build(context))
     made.resize(1100, 760)
-    yield made
-    wiring.cut()
-    made.release()
-    session.close()
+
+    def end():
+        wiring.cut()
+        made.release()
+        session.close()
+
+    return made, end
 
 
 def rough_sample(n=30, l_max=4):
@@ -232,3 +255,41 @@ def test_that_stop_answers_before_the_work_has_ended(shown):
     panel.show_task(Task(4, "judge", "Judging models"))
     assert panel.frame.stop.isEnabled()
     assert panel.frame.stop.text() == words
+
+
+def test_that_what_is_fitted_drawn_and_judged_goes_through_the_translation(opened, speaking):
+    speaking("brackets")
+    page = opened()
+    take(page, rough_sample())
+    page.source.model.setCurrentIndex(page.source.model.findData("log_field"))
+    page.source.fit.click()
+    page.drawing.setValue({"n": 4})
+    page.drawing.draw.click()
+    page.judgement.setValue({"splits": 1, "repeats": 2, "all_models": False})
+    page.judge()
+    assert [each for each in english_left(page) if each[1] not in ("rough", "r_eq")] == []
+    for table in (page.judgement.ranking, *page.judgement.tables.values()):
+        cells = [
+            table.item(row, column).text()
+            for row in range(table.rowCount())
+            for column in range(table.columnCount())
+        ]
+        assert [cell for cell in cells if any(map(str.isalpha, cell)) and "⟦" not in cell] == []
+
+
+def test_that_the_outcome_of_a_judgement_is_told_in_german(opened, speaking):
+    speaking("de")
+    page = opened()
+    page.source.choose_source("ma165")
+    assert page.source.source.currentText() == "Satz MA165 (synthetisch)"
+    assert page.source.findings.text().startswith("Von Regolith Studio synthetisiert")
+    assert "6,261 Partikeln des veröffentlichten Mikro-CT-Satzes ma165" in page.source.findings.text()
+    take(page, rough_sample())
+    page.source.fit.click()
+    page.judgement.setValue({"splits": 1, "repeats": 2, "all_models": False})
+    page.judge()
+    words = page.judgement.notes.text()
+    assert words.startswith("30 gemessene Partikel bei l_max = 4, 0 ausgelassen;")
+    assert words.endswith("1 Teilung, 2-mal 20 Ziehungen je Fit, Startwert 0.")
+    wanted = {page.judgement.tables["targets"].item(row, 3).text().split()[0] for row in range(3)}
+    assert wanted <= {"mindestens", "höchstens"}

@@ -34,9 +34,9 @@ from regolith_studio.ui.translation.sentences import retold
 from tests.ui.reading import cut_off, english_left
 
 SECONDS = 120.0
-PAGES = ("sample", "scan", "studies", "dataset", "repose", "lecture")
+PAGES = ("sample", "model", "scan", "studies", "dataset", "repose", "lecture")
 """Pages besides Explore whose insides are translated."""
-READ = ("sample", "studies", "lecture")
+READ = ("sample", "model", "studies", "lecture")
 """Those that are read word by word; the others name many programs, units and files."""
 
 

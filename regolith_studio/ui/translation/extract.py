@@ -21,6 +21,8 @@ from regolith_studio.dem.engine_table import HEADINGS, engine_rows
 from regolith_studio.dem.engines import ENGINES
 from regolith_studio.dem.evaluation.settings import EvaluationSettings
 from regolith_studio.descriptors.catalogue import CATALOGUE
+from regolith_studio.model.materials import materials
+from regolith_studio.model.models import MODELS
 from regolith_studio.resources import resource
 from regolith_studio.scene import cameras, sectioning, shapes
 from regolith_studio.studies.variations import VARIATIONS
@@ -42,7 +44,16 @@ TASKS = (
     "session/*.py",
     *(
         f"jobs/{name}.py"
-        for name in ("coarsening", "fitting", "loading", "examining", "extracting", "scanning")
+        for name in (
+            "coarsening",
+            "fitting",
+            "loading",
+            "examining",
+            "extracting",
+            "scanning",
+            "generating",
+            "comparing",
+        )
     ),
 )
 """Modules beside the window whose titles are seen in the status bar and in the list of tasks."""
@@ -110,12 +121,16 @@ def words_below() -> Iterator[str]:
         yield from (row.label, row.formula)
     yield from (method.label for method in METHODS.values())
     engines = tuple(engine.Settings for engine in ENGINES.values())
-    for settings in (*(method.Settings for method in METHODS.values()), *engines, *FORMS):
+    models = tuple(model.Settings for model in MODELS.values())
+    for settings in (*(method.Settings for method in METHODS.values()), *models, *engines, *FORMS):
         for each in dataclasses.fields(settings):
             yield from (
                 str(each.metadata[name]) for name in ("label", "tip", "source") if each.metadata.get(name)
             )
             yield from map(str, each.metadata.get("choices", ()))
+    for model in MODELS.values():
+        yield from (model.label, model.summary)
+    yield from (card.label for card in materials().values())
     yield from (*GRAVITIES, *HEADINGS.values())
     yield from (str(row[key]) for row in engine_rows() for key in HEADINGS)
     for exporter in EXPORTERS.values():

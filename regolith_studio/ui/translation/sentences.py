@@ -53,6 +53,22 @@ SENTENCES = (
     mark("{name} × {factor}"),
     mark("{count} faces"),
     mark("Overlap + {symbols}"),
+    mark("at least {limit}"),
+    mark("at most {limit}"),
+    mark(
+        "Synthesised by Regolith Studio from the angular power spectrum and size spread of {count} particles"
+        " of the published micro-CT set {name}, rounded to two digits; the length unit is taken as"
+        " micrometres and no measured particle is contained."
+    ),
+    mark("Statistics of {count} particles of {name}, made by Regolith Studio."),
+    mark(
+        "{count} measured particles at l_max = {degree}, {left} left out; fitted to one half, judged on the"
+        " other; {splits} {split}, {draws} draws once from each fit, seed {seed}."
+    ),
+    mark(
+        "{count} measured particles at l_max = {degree}, {left} left out; fitted to one half, judged on the"
+        " other; {splits} {split}, {draws} draws {repeats} times from each fit, seed {seed}."
+    ),
 )
 """Fits, coarsenings, scans and files say these; what is in braces stands there filled in."""
 
@@ -82,6 +98,16 @@ def _word(value: str) -> str:
 PLUS = " + "
 PARTS = (mark("size"), mark("box"), mark("sphericity"))
 """Terms of a loss as the study of the trade-off names them."""
+TARGETS = (
+    *(mark("yes"), mark("no"), mark("number"), mark("volume"), mark("split"), mark("splits")),
+    mark("aspect ratio, times nearer than the paper's model"),
+    mark("r_eq, A, AR, S: the worst, over the 95th percentile of noise"),
+    mark("V/CH: Kolmogorov-Smirnov distance in floors"),
+    mark("pairs of r_eq, A, AR: the largest energy distance [%]"),
+    mark("draws thrown away [%]"),
+    mark("median novelty"),
+)
+"""Words of the judgement of models."""
 
 
 @cache

@@ -23,12 +23,17 @@ from PySide6.QtWidgets import (
 from regolith_studio.errors import InputError
 from regolith_studio.jobs.generating import CARD_MODEL, GenerateOrder
 from regolith_studio.model.models import DEFAULT_MODEL, MODELS
+from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.labels import heading, remark
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
 from regolith_studio.ui.widgets.settings_form import SettingsForm
 
 L_MAX = NumberSpec(
-    "l<sub>max</sub>", "Degree of the particles", 1, 30, tip="The paper's virtual particles have 10."
+    "l<sub>max</sub>",
+    mark("Degree of the particles"),
+    1,
+    30,
+    tip=mark("The paper's virtual particles have 10."),
 )
 MOST_DRAWN = 1_000_000
 
@@ -45,8 +50,8 @@ class SourceControls(QWidget):
         self.setObjectName("model_source")
         self.source, self.model = QComboBox(), QComboBox()
         self.l_max = NumberSlider(L_MAX)
-        self.half = QCheckBox("Fit to a random half only")
-        self.open, self.fit = QPushButton("Open …"), QPushButton("Fit the model")
+        self.half = QCheckBox(tr("Fit to a random half only"))
+        self.open, self.fit = QPushButton(tr("Open …")), QPushButton(tr("Fit the model"))
         self.summary, self.findings = remark(), remark()
         self.forms = {key: SettingsForm(_without_degree(model.Settings)) for key, model in MODELS.items()}
         self._forms = QStackedWidget()
@@ -91,7 +96,7 @@ class SourceControls(QWidget):
             widget.setVisible(not brings_model)
         if brings_model:
             self.model.setCurrentIndex(self.model.findData(brings_model))
-        self.fit.setText("Use the model" if brings_model else "Fit the model")
+        self.fit.setText(tr("Use the model") if brings_model else tr("Fit the model"))
         self.l_max.setEnabled(brings_model in ("", CARD_MODEL))
         self.l_max.slider.setMaximum(longest)
         self.l_max.field.setMaximum(longest)
@@ -119,19 +124,23 @@ class SourceControls(QWidget):
 
     def _show_model(self) -> None:
         key = self.model.currentData()
-        self.summary.setText(MODELS[key].summary)
+        self.summary.setText(tr(MODELS[key].summary))
         self._forms.setCurrentWidget(self.forms[key])
         for each, form in self.forms.items():
             form.setVisible(each == key)
 
     def _dress(self) -> None:
         for key, model in MODELS.items():
-            self.model.addItem(model.label, key)
+            self.model.addItem(tr(model.label), key)
             self._forms.addWidget(self.forms[key])
         self.model.setCurrentIndex(self.model.findData(DEFAULT_MODEL))
         self.l_max.setValue(10)
-        self.half.setToolTip("The other half is then new to the model, as in its judgement.")
-        names = {"source": "What to draw from", "model": "Kind of model", "half": "Fit to a half"}
+        self.half.setToolTip(tr("The other half is then new to the model, as in its judgement."))
+        names = {
+            "source": tr("What to draw from"),
+            "model": tr("Kind of model"),
+            "half": tr("Fit to a half"),
+        }
         for name in ("source", "model", "half", "open", "fit"):
             widget = getattr(self, name)
             widget.setObjectName(f"model_{name}")
@@ -148,11 +157,11 @@ class SourceControls(QWidget):
         row = QHBoxLayout()
         row.addWidget(self.source, 1)
         row.addWidget(self.open)
-        layout.addWidget(heading("Sample or material"))
+        layout.addWidget(heading(tr("Sample or material")))
         layout.addLayout(row)
         layout.addWidget(self.findings)
         layout.addSpacing(8)
-        layout.addWidget(heading("Model"))
+        layout.addWidget(heading(tr("Model")))
         for widget in (self.model, self.summary, self.l_max, self._forms, self.half, self.fit):
             layout.addWidget(widget)
 
@@ -168,12 +177,12 @@ class DrawControls(QWidget):
         super().__init__(parent)
         self.setObjectName("model_draw")
         self.number, self.seed = QSpinBox(), QSpinBox()
-        self.limited = QCheckBox("Only equivalent radii from … to …")
+        self.limited = QCheckBox(tr("Only equivalent radii from … to …"))
         self.smallest, self.largest = QDoubleSpinBox(), QDoubleSpinBox()
-        self.draw, self.adopt = QPushButton("Draw"), QPushButton("Use as population")
+        self.draw, self.adopt = QPushButton(tr("Draw")), QPushButton(tr("Use as population"))
         self.findings = remark()
         self.names = QLineEdit()
-        self._names_label = QLabel("Parts")
+        self._names_label = QLabel(tr("Parts"))
         self._dress()
         self._place()
         self.names.editingFinished.connect(self._rename)
@@ -236,32 +245,34 @@ class DrawControls(QWidget):
             field.setSuffix(" µm")
             field.setMinimumWidth(80)
         names = {
-            "number": "Number of particles",
-            "seed": "Seed of the draws",
-            "limited": "Limit the sizes",
-            "smallest": "Smallest equivalent radius",
-            "largest": "Largest equivalent radius",
-            "names": "Names of the parts, the most numerous first",
-            "draw": "Draw particles",
-            "adopt": "Use the drawn particles as population",
+            "number": tr("Number of particles"),
+            "seed": tr("Seed of the draws"),
+            "limited": tr("Limit the sizes"),
+            "smallest": tr("Smallest equivalent radius"),
+            "largest": tr("Largest equivalent radius"),
+            "names": tr("Names of the parts, the most numerous first"),
+            "draw": tr("Draw particles"),
+            "adopt": tr("Use the drawn particles as population"),
         }
         for name, words in names.items():
             getattr(self, name).setObjectName(f"model_{name}")
             getattr(self, name).setAccessibleName(words)
-        self.names.setToolTip("Constituents of the mixture, separated by commas, the most numerous first.")
-        self.adopt.setToolTip("Open the drawn particles: to be coarsened and made a dataset.")
+        self.names.setToolTip(
+            tr("Constituents of the mixture, separated by commas, the most numerous first.")
+        )
+        self.adopt.setToolTip(tr("Open the drawn particles: to be coarsened and made a dataset."))
 
     def _place(self) -> None:
         form = QFormLayout()
-        form.addRow("Particles", self.number)
-        form.addRow("Seed", self.seed)
+        form.addRow(tr("Particles"), self.number)
+        form.addRow(tr("Seed"), self.seed)
         form.addRow(self._names_label, self.names)
         sizes = QHBoxLayout()
         sizes.addWidget(self.smallest, 1)
         sizes.addWidget(self.largest, 1)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(heading("Virtual particles"))
+        layout.addWidget(heading(tr("Virtual particles")))
         layout.addLayout(form)
         layout.addWidget(self.limited)
         layout.addLayout(sizes)
@@ -280,7 +291,11 @@ def order_from(source: Mapping[str, Any], drawing: Mapping[str, Any], brings_mod
     bounds = drawing["size_range"]
     if bounds is not None and not bounds[0] < bounds[1]:
         raise InputError(
-            f"The smallest radius must be below the largest, got {bounds[0]:g} and {bounds[1]:g}."
+            tr(
+                "The smallest radius must be below the largest, got {low:g} and {high:g}.",
+                low=bounds[0],
+                high=bounds[1],
+            )
         )
     key = "" if brings_model else str(source["model"])
     settings = tuple(source["settings"].get(key, {}).items()) if key else ()

@@ -8,12 +8,17 @@ from regolith_studio.descriptors.distributions import Distribution, wasserstein_
 from regolith_studio.jobs.comparing import Compared
 from regolith_studio.studies.population import KEYS
 from regolith_studio.ui.theme import Theme
+from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.choice_box import ChoiceBox
 from regolith_studio.ui.widgets.curve_plot import Curve, CurvePlot
 from regolith_studio.ui.widgets.labels import ElidedLabel, plain_symbol
 
-WEIGHTINGS = {"number": "Each particle counts the same", "volume": "Particles count by their volume"}
-WAITING = "Draw particles: their distributions appear here, over those of the measured ones."
+WEIGHTINGS = {
+    "number": mark("Each particle counts the same"),
+    "volume": mark("Particles count by their volume"),
+}
+WAITING = mark("Draw particles: their distributions appear here, over those of the measured ones.")
+SHARE = mark("Share at or below [%]")
 _UNITS = {0: "", 1: " [µm]", 2: " [µm²]", 3: " [µm³]"}
 
 
@@ -23,9 +28,9 @@ class DistributionsPanel(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setObjectName("model_distributions")
-        self.key = ChoiceBox("model_distribution_of", "Descriptor", {k: CATALOGUE[k].label for k in KEYS})
-        self.weighting = ChoiceBox("model_distribution_weighting", "What particles count", WEIGHTINGS)
-        self.plot = CurvePlot("", "Share at or below [%]", WAITING)
+        self.key = ChoiceBox("model_distribution_of", tr("Descriptor"), {k: CATALOGUE[k].label for k in KEYS})
+        self.weighting = ChoiceBox("model_distribution_weighting", tr("What particles count"), WEIGHTINGS)
+        self.plot = CurvePlot("", tr(SHARE), tr(WAITING))
         self.words = ElidedLabel(role="remark")
         self.weighting.setMinimumContentsLength(26)
         self._compared: Compared | None = None
@@ -56,16 +61,17 @@ class DistributionsPanel(QWidget):
     def _show(self) -> None:
         row = CATALOGUE[self.key.value()]
         symbol = plain_symbol(row.symbol)
-        self.plot.set_labels(f"{row.label} {symbol}{_UNITS.get(row.dimension, '')}", "Share at or below [%]")
+        self.plot.set_labels(f"{tr(row.label)} {symbol}{_UNITS.get(row.dimension, '')}", tr(SHARE))
         if self._compared is None:
             self.plot.set_curves([])
             self.words.setText("")
             return
         measured, drawn = self._compared.distributions(self.key.value(), self.weighting.value())
         theme = self.plot.theme
-        curves = [_stairs(f"{len(drawn.values):,} drawn", theme.fit, drawn)]
+        curves = [_stairs(tr("{count:,} drawn", count=len(drawn.values)), theme.fit, drawn)]
         if measured is not None:
-            curves.insert(0, _stairs(f"{len(measured.values):,} measured", theme.particle, measured))
+            label = tr("{count:,} measured", count=len(measured.values))
+            curves.insert(0, _stairs(label, theme.particle, measured))
         self.plot.set_curves(curves)
         self.words.setText(distance_words(measured, drawn))
 
@@ -73,13 +79,17 @@ class DistributionsPanel(QWidget):
 def distance_words(measured: Distribution | None, drawn: Distribution) -> str:
     """How far apart two distributions are."""
     if measured is None:
-        return "The source holds no measured particles."
+        return tr("The source holds no measured particles.")
     places = np.union1d(measured.values, drawn.values)
     ks = float(np.abs(measured.ecdf(places) - drawn.ecdf(places)).max())
     apart = wasserstein_1(measured, drawn) / measured.mean
-    return (
-        f"Wasserstein distance {apart:.1%} of the mean, Kolmogorov-Smirnov distance {ks:.2f}; "
-        f"means {measured.mean:.4g} measured, {drawn.mean:.4g} drawn"
+    return tr(
+        "Wasserstein distance {apart:.1%} of the mean, Kolmogorov-Smirnov distance {gap:.2f}; "
+        "means {measured:.4g} measured, {drawn:.4g} drawn",
+        apart=apart,
+        gap=ks,
+        measured=measured.mean,
+        drawn=drawn.mean,
     )
 
 

@@ -11,26 +11,29 @@ from regolith_studio.model.materials import MaterialCard, write_card
 from regolith_studio.model.protocol import FittedModel
 from regolith_studio.model.sample import Sample
 from regolith_studio.readers.shape_files import ShapeSource
+from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.toast import Toast
+
+MODELS, CARDS = mark("Models (*.json)"), mark("Cards (*.json)")
 
 
 def ask_model(parent: QWidget, toast: Toast, model: FittedModel, source: ShapeSource) -> None:
     """Ask for a name and write ``<name>.json`` and ``<name>.npz``."""
-    name, _ = QFileDialog.getSaveFileName(parent, "Save the model", "model.json", "Models (*.json)")
+    name, _ = QFileDialog.getSaveFileName(parent, tr("Save the model"), "model.json", tr(MODELS))
     if not name:
         return
     stem = Path(name).with_suffix("") if name.endswith(".json") else Path(name)
     try:
         paths = write_model(stem, model, {"source": source.name, "sha256": source.sha256 or None})
     except OSError as error:
-        toast.problem(f"The model {name} cannot be written ({error.strerror}).")
+        toast.problem(tr("The model {name} cannot be written ({reason}).", name=name, reason=error.strerror))
         return
-    toast.note(f"Saved {paths[0].name} and {paths[1].name}.")
+    toast.note(tr("Saved {first} and {second}.", first=paths[0].name, second=paths[1].name))
 
 
 def ask_card(parent: QWidget, toast: Toast, sample: Sample, source: ShapeSource) -> None:
     """Ask for a name and write the card of a sample; the file's name becomes that of the material."""
-    name, _ = QFileDialog.getSaveFileName(parent, "Save a material card", "material.json", "Cards (*.json)")
+    name, _ = QFileDialog.getSaveFileName(parent, tr("Save a material card"), "material.json", tr(CARDS))
     if not name:
         return
     path = Path(name)
@@ -40,6 +43,6 @@ def ask_card(parent: QWidget, toast: Toast, sample: Sample, source: ShapeSource)
         write_card(MaterialCard.of(sample, key, path.stem, origin), path)
     except (RegolithError, OSError) as error:
         reason = error.strerror if isinstance(error, OSError) else error
-        toast.problem(f"The card {name} cannot be written ({reason}).")
+        toast.problem(tr("The card {name} cannot be written ({reason}).", name=name, reason=reason))
         return
-    toast.note(f"Saved {path.name}.")
+    toast.note(tr("Saved {name}.", name=path.name))

@@ -27,32 +27,46 @@ from regolith_studio.studies.population_tables import distance_table, pair_table
 from regolith_studio.studies.tables import Table
 from regolith_studio.ui.layout import tabs
 from regolith_studio.ui.pages.model.table_view import TableView
+from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.labels import remark
 from regolith_studio.ui.widgets.picture_label import PictureLabel
 from regolith_studio.ui.widgets.study_frame import StudyFrame
 
-WAITING = "Models are fitted to one half of the sample and judged on the other, beside the noise of sampling."
+WAITING = mark(
+    "Models are fitted to one half of the sample and judged on the other, beside the noise of sampling."
+)
 FIGURES = {
-    "number": "By number (Fig. 4)",
-    "volume": "By volume (Fig. 5)",
-    "pairs": "Pairs (Fig. 6)",
-    "quantiles": "Quantiles",
-    "components": "Parts",
+    "number": mark("By number (Fig. 4)"),
+    "volume": mark("By volume (Fig. 5)"),
+    "pairs": mark("Pairs (Fig. 6)"),
+    "quantiles": mark("Quantiles"),
+    "components": mark("Parts"),
 }
 TABLES: dict[str, tuple[str, Callable[[PopulationStudy], Table]]] = {
-    "targets": ("Targets", target_table),
-    "distances": ("Distances", distance_table),
-    "energies": ("Pairs in numbers", pair_table),
+    "targets": (mark("Targets"), target_table),
+    "distances": (mark("Distances"), distance_table),
+    "energies": (mark("Pairs in numbers"), pair_table),
 }
-HEADERS = ("Model", "W / floor", "KS / floor", "Energy", "Classifier", "Novelty", "Rejected")
+HEADERS = (
+    mark("Model"),
+    mark("W / floor"),
+    mark("KS / floor"),
+    mark("Energy"),
+    mark("Classifier"),
+    mark("Novelty"),
+    mark("Rejected"),
+)
 TIPS = (
-    "The nearest to the sample first",
-    "Mean Wasserstein distance to the half that was held out, over that between random halves: 1 is noise",
-    "The same for the Kolmogorov-Smirnov distance",
-    "Mean energy distance of pairs of descriptors: 0 for equal distributions",
-    "Share that a classifier tells right: 0.5 cannot be told apart",
-    "Median distance to the nearest measured particle, over that between measured ones: 0 is a copy",
-    "Draws thrown away",
+    mark("The nearest to the sample first"),
+    mark(
+        "Mean Wasserstein distance to the half that was held out, over that between random halves: 1 is noise"
+    ),
+    mark("The same for the Kolmogorov-Smirnov distance"),
+    mark("Mean energy distance of pairs of descriptors: 0 for equal distributions"),
+    mark("Share that a classifier tells right: 0.5 cannot be told apart"),
+    mark("Median distance to the nearest measured particle, over that between measured ones: 0 is a copy"),
+    mark("Draws thrown away"),
 )
 NUMBERS = Qt.AlignmentFlag.AlignCenter
 LEGIBLE = 0.55
@@ -68,18 +82,18 @@ class JudgementPanel(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setObjectName("model_judgement")
-        self.all_models = QCheckBox("all models")
+        self.all_models = QCheckBox(tr("all models"))
         self.splits, self.repeats = QSpinBox(), QSpinBox()
         self.ranking = QTableWidget(0, len(HEADERS))
         self.notes = remark()
-        self.pictures = {name: PictureLabel(WAITING, LEGIBLE) for name in FIGURES}
+        self.pictures = {name: PictureLabel(tr(WAITING), LEGIBLE) for name in FIGURES}
         self.places = {name: _scrolled(label) for name, label in self.pictures.items()}
-        self.tabs = tabs("model_figures", [(self._ranked(), "Ranking")])
-        self.tables = {name: TableView(f"model_{name}", title) for name, (title, _) in TABLES.items()}
+        self.tabs = tabs("model_figures", [(self._ranked(), tr("Ranking"))])
+        self.tables = {name: TableView(f"model_{name}", tr(title)) for name, (title, _) in TABLES.items()}
         for name, (title, _) in TABLES.items():
-            self.tabs.addTab(self.tables[name], title)
+            self.tabs.addTab(self.tables[name], tr(title))
         for name, title in FIGURES.items():
-            self.tabs.addTab(self.places[name], title)
+            self.tabs.addTab(self.places[name], tr(title))
         inside = QWidget()
         column = QVBoxLayout(inside)
         column.setContentsMargins(0, 4, 0, 0)
@@ -96,7 +110,7 @@ class JudgementPanel(QWidget):
 
     def set_ready(self, why_not: str) -> None:
         """Whether there are measured particles to judge by; a sentence says why not."""
-        self.frame.start.setText("Judge")
+        self.frame.start.setText(tr("Judge"))
         self.frame.start.setEnabled(not why_not)
         self.frame.set_remark(why_not)
 
@@ -113,7 +127,7 @@ class JudgementPanel(QWidget):
 
     def _show_stopping(self, stopping: bool) -> None:
         self.frame.stop.setEnabled(not stopping)
-        self.frame.stop.setText("Stopping …" if stopping else self._stop_words)
+        self.frame.stop.setText(tr("Stopping …") if stopping else self._stop_words)
 
     def value(self) -> dict[str, Any]:
         """All models or only the chosen one, splits, and drawings from each fit."""
@@ -147,7 +161,7 @@ class JudgementPanel(QWidget):
         for row, cells in enumerate(table.rows):
             key, near, gap, energy, accuracy, novelty, rejected = cells
             words = (
-                MODELS[str(key)].label,
+                tr(MODELS[str(key)].label),
                 f"{near:.2f}",
                 f"{gap:.2f}",
                 f"{energy:.2f} %",
@@ -160,33 +174,33 @@ class JudgementPanel(QWidget):
                 if column:
                     item.setTextAlignment(NUMBERS)
                 self.ranking.setItem(row, column, item)
-        self.notes.setText(table.notes[0])
+        self.notes.setText(retold(table.notes[0]))
 
     def _options(self) -> QHBoxLayout:
         row = QHBoxLayout()
         row.setContentsMargins(8, 0, 8, 0)
         for name, field, words in (
-            ("splits", self.splits, "splits"),
-            ("repeats", self.repeats, "drawings from each fit"),
+            ("splits", self.splits, tr("splits")),
+            ("repeats", self.repeats, tr("drawings from each fit")),
         ):
             field.setRange(1, 50)
             field.setValue(5 if name == "splits" else 1)
             field.setObjectName(f"model_{name}")
-            field.setAccessibleName(words.capitalize())
+            field.setAccessibleName(words[:1].upper() + words[1:])
             row.addWidget(field)
             row.addWidget(QLabel(words))
         self.all_models.setObjectName("model_all_models")
-        self.all_models.setToolTip("Judge every model, not only the chosen one.")
+        self.all_models.setToolTip(tr("Judge every model, not only the chosen one."))
         row.addWidget(self.all_models)
         row.addStretch(1)
         return row
 
     def _ranked(self) -> QWidget:
         self.ranking.setObjectName("model_ranking")
-        self.ranking.setAccessibleName("Ranking of the models")
+        self.ranking.setAccessibleName(tr("Ranking of the models"))
         for at, (words, tip) in enumerate(zip(HEADERS, TIPS, strict=True)):
-            item = QTableWidgetItem(words)
-            item.setToolTip(tip)
+            item = QTableWidgetItem(tr(words))
+            item.setToolTip(tr(tip))
             self.ranking.setHorizontalHeaderItem(at, item)
         self.ranking.verticalHeader().hide()
         self.ranking.setShowGrid(False)
@@ -202,7 +216,7 @@ class JudgementPanel(QWidget):
         column.addWidget(self.notes)
         page = QWidget()
         self._stack = QStackedLayout(page)
-        self._stack.addWidget(PictureLabel(WAITING))
+        self._stack.addWidget(PictureLabel(tr(WAITING)))
         self._stack.addWidget(filled)
         return page
 

@@ -35,8 +35,10 @@ from regolith_studio.ui.pages.model.judgement import JudgementPanel
 from regolith_studio.ui.pages.model.sources import Sources, usual_sizes
 from regolith_studio.ui.pages.model.views import Gallery, LiveShape
 from regolith_studio.ui.theme import Theme
+from regolith_studio.ui.translation import mark, tr
 
-SOURCE_FILTER = "Fits, models and material cards (*.json *.npz);;All files (*)"
+SOURCE_FILTER = mark("Fits, models and material cards (*.json *.npz);;All files (*)")
+DRAWN = mark("A drawn particle")
 POPULATION_LEVEL = 4
 MOST_ADOPTED = 2000
 """Particles that are opened at most: each becomes a mesh in memory."""
@@ -106,7 +108,7 @@ class ModelPage(PageWidget):
 
     def open_source(self) -> None:
         """Ask for a fit, model or card and choose it."""
-        name, _ = QFileDialog.getOpenFileName(self, "Open a fit, model or card", "", SOURCE_FILTER)
+        name, _ = QFileDialog.getOpenFileName(self, tr("Open a fit, model or card"), "", tr(SOURCE_FILTER))
         if name:
             self.add_source(Path(name))
 
@@ -138,25 +140,29 @@ class ModelPage(PageWidget):
     def adopt(self) -> None:
         """Open the drawn particles: they replace those that are open, and are coarsened and exported."""
         if self._drawn is None or self._fitted is None:
-            self._context.toast.problem("There are no drawn particles yet: draw some first.")
+            self._context.toast.problem(tr("There are no drawn particles yet: draw some first."))
             return
         draws = self._drawn.draws
         if len(draws) > MOST_ADOPTED:
             self._context.toast.problem(
-                f"{len(draws):,} particles are too many to open; at most {MOST_ADOPTED:,}. For more use: "
-                "regolith-studio generate."
+                tr(
+                    "{count:,} particles are too many to open; at most {most:,}. For more use: "
+                    "regolith-studio generate.",
+                    count=len(draws),
+                    most=MOST_ADOPTED,
+                )
             )
             return
         origin = Drawn.of(self._drawn, self._fitted, POPULATION_LEVEL)
         job = Job(make_particles, (draws, self._drawn.model, origin.population.name, POPULATION_LEVEL))
         self._context.start(
-            "Making virtual particles", job, lambda made: self._take_over(made, origin), lane="adopt"
+            tr("Making virtual particles"), job, lambda made: self._take_over(made, origin), lane="adopt"
         )
 
     def save_model(self) -> None:
         """Ask for a file and write the model."""
         if self._model is None or self._fitted is None:
-            self._context.toast.problem("There is no model to save: fit one first.")
+            self._context.toast.problem(tr("There is no model to save: fit one first."))
             return
         ask_model(self, self._context.toast, self._model, self._fitted.source)
 
@@ -164,7 +170,7 @@ class ModelPage(PageWidget):
         """Ask for a file and write a card of the sample."""
         sample = self._sample()
         if sample is None or self._fitted is None:
-            self._context.toast.problem("A card is made of a fitted sample: fit a model to one first.")
+            self._context.toast.problem(tr("A card is made of a fitted sample: fit a model to one first."))
             return
         ask_card(self, self._context.toast, sample, self._fitted.source)
 
@@ -174,18 +180,18 @@ class ModelPage(PageWidget):
         origin = self._sources.origin(self.source.value()["source"])
         order = self._order()
         job = Job(fit_shapes, (origin, order, bool(self.source.value()["half"])))
-        self._context.start("Fitting a model of shapes", job, self._show_fitted, lane="fit")
+        self._context.start(tr("Fitting a model of shapes"), job, self._show_fitted, lane="fit")
 
     def _draw(self) -> None:
         if self._model is None:
-            raise InputError("There is no model to draw from: fit one first.")
+            raise InputError(tr("There is no model to draw from: fit one first."))
         job = Job(draw_shapes, (self._model, self._order()))
-        self._context.start("Drawing particles", job, self._show_drawn, lane="draw")
+        self._context.start(tr("Drawing particles"), job, self._show_drawn, lane="draw")
 
     def _judge(self) -> None:
         sample = self._sample()
         if sample is None:
-            raise InputError("Models are judged on measured particles: fit one to a sample first.")
+            raise InputError(tr("Models are judged on measured particles: fit one to a sample first."))
         order, chosen = self._order(), self.judgement.value()
         key = str(self.source.value()["model"])
         options = {
@@ -196,7 +202,7 @@ class ModelPage(PageWidget):
         }
         job = Job(judge_shapes, (sample, None if chosen["all_models"] else (key,)), options)
         show = self.judgement.show_judged
-        self._context.start("Judging models", job, show, partial=show, lane=JUDGE)
+        self._context.start(tr("Judging models"), job, show, partial=show, lane=JUDGE)
 
     def _order(self) -> GenerateOrder:
         return order_from(self.source.value(), self.drawing.value(), self._brings())
@@ -223,13 +229,16 @@ class ModelPage(PageWidget):
     def _show_drawn(self, drawn: DrawnShapes) -> None:
         self._drawn = drawn
         radii = drawn.draws.equivalent_radii() if len(drawn.draws) <= 10_000 else None
-        sizes = "" if radii is None else f", r_eq {radii.min():.3g} to {radii.max():.3g} µm"
-        thrown = f"; {drawn.draws.rejected:,} draws thrown away" if drawn.draws.rejected else ""
-        self.drawing.findings.setText(f"{len(drawn.draws):,} particles{sizes}{thrown}.")
+        words = tr("{count:,} particles", count=len(drawn.draws))
+        if radii is not None:
+            words += ", " + tr("r_eq {low:.3g} to {high:.3g} µm", low=radii.min(), high=radii.max())
+        if drawn.draws.rejected:
+            words += "; " + tr("{count:,} draws thrown away", count=drawn.draws.rejected)
+        self.drawing.findings.setText(f"{words}.")
         self.gallery.show_shapes(self._fitted.examples if self._fitted else (), drawn.examples)
         job = Job(compare_distributions, (self._sample(), drawn.draws))
         show = self.distributions.show_compared
-        self._context.start("Comparing distributions", job, show, lane="compare")
+        self._context.start(tr("Comparing distributions"), job, show, lane="compare")
         self._show_state()
 
     def _show_live(self, again: bool = False) -> None:
@@ -239,10 +248,10 @@ class ModelPage(PageWidget):
         try:
             mesh = live_mesh(self._model, self._live_seed)
         except RegolithError as error:
-            self.live.frame.set_texts("A drawn particle", str(error))
+            self.live.frame.set_texts(tr(DRAWN), str(error))
             return
         radius = float(np.cbrt(3 * mesh.volume / (4 * np.pi)))
-        self.live.show_mesh(mesh, f"equivalent radius {radius:.3g} µm", again)
+        self.live.show_mesh(mesh, tr("equivalent radius {radius:.3g} µm", radius=radius), again)
 
     def _edit(self, amplitudes: np.ndarray[Any, np.dtype[np.float64]]) -> None:
         if self._fitted is not None and can_be_edited(self._fitted.model):
@@ -264,7 +273,7 @@ class ModelPage(PageWidget):
     def _take_over(self, particles: tuple[Particle, ...], origin: Drawn) -> None:
         self._context.session.shelf.put("population", particles)
         self._context.session.adopt(particles, origin=origin)
-        self._context.toast.note(f"{len(particles):,} virtual particles are open now.")
+        self._context.toast.note(tr("{count:,} virtual particles are open now.", count=len(particles)))
 
     # --- the state of the controls -------------------------------------------------------------
 
@@ -279,7 +288,8 @@ class ModelPage(PageWidget):
 
     def _show_state(self) -> None:
         self.drawing.set_ready(model=self._model is not None, drawn=self._drawn is not None)
-        self.judgement.set_ready("" if self._sample() else "Fit a model to a sample of 20 particles or more.")
+        missing = tr("Fit a model to a sample of 20 particles or more.")
+        self.judgement.set_ready("" if self._sample() else missing)
 
     def _show_tasks(self) -> None:
         lane = f"{self._context.key}:{JUDGE}"
@@ -306,8 +316,8 @@ class ModelPage(PageWidget):
             self._context.toast.problem(str(error))
 
     def _place(self) -> None:
-        shown = [(self.gallery, "Gallery"), (self.distributions, "Distributions")]
-        below = tabs("model_tabs", [*shown, (self.judgement, "Judgement")])
+        shown = [(self.gallery, tr("Gallery")), (self.distributions, tr("Distributions"))]
+        below = tabs("model_tabs", [*shown, (self.judgement, tr("Judgement"))])
         middle = stacked([self.live, below], [380, 420], stretch=1)
         middle.setObjectName("model_rows")
         parts = [scrolled_column([self.source, self.drawing]), padded(middle, 2, 10, 10, 8)]

@@ -12,6 +12,8 @@ from regolith_studio.model.models import MODELS
 from regolith_studio.model.sample import Sample
 from regolith_studio.readers.shape_files import ShapeSource
 from regolith_studio.session.session import Session
+from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation.sentences import retold
 
 OPEN_PARTICLES = "open"
 """Key of the particles that are open in the window."""
@@ -53,24 +55,24 @@ class Sources:
     def labels(self) -> dict[str, str]:
         """What to show for each key."""
         count = len(self._session.particles)
-        found = {OPEN_PARTICLES: f"Open particles ({count})"}
+        found = {OPEN_PARTICLES: tr("Open particles ({count})", count=count)}
         found |= {key: source.name for key, source in self._files.items()}
-        return found | {name: card.label for name, card in materials().items()}
+        return found | {name: tr(card.label) for name, card in materials().items()}
 
     def kind(self, key: str) -> SourceKind:
         """What a source is."""
         if key == OPEN_PARTICLES:
-            return SourceKind("", FIT_DEGREE, "They are expanded in spherical harmonics first.")
+            return SourceKind("", FIT_DEGREE, tr("They are expanded in spherical harmonics first."))
         content = self._files[key].content if key in self._files else materials()[key]
         match content:
             case MaterialCard():
-                return SourceKind(CARD_MODEL, content.l_max, content.origin)
+                return SourceKind(CARD_MODEL, content.l_max, retold(content.origin))
             case Sample():
-                return SourceKind("", content.l_max, f"{len(content)} particles up to l = {content.l_max}.")
+                words = tr("{count} particles up to l = {degree}.", count=len(content), degree=content.l_max)
+                return SourceKind("", content.l_max, words)
             case _:
-                return SourceKind(
-                    content.key, content.l_max, f"A fitted model: {MODELS[content.key].label.lower()}."
-                )
+                words = tr("A fitted model: {name}.", name=_inside(MODELS[content.key].label))
+                return SourceKind(content.key, content.l_max, words)
 
     def origin(self, key: str) -> Origin:
         """What a job is given.
@@ -83,9 +85,15 @@ class Sources:
         if key == OPEN_PARTICLES:
             particles = tuple(entry.particle for entry in self._session.particles)
             if not particles:
-                raise InputError("No particle is open: open some, or choose a material.")
+                raise InputError(tr("No particle is open: open some, or choose a material."))
             return particles
         return self._files[key] if key in self._files else ShapeSource(materials()[key], key)
+
+
+def _inside(label: str) -> str:
+    """A label inside a sentence: English ones begin small there, other languages know better."""
+    words = tr(label)
+    return label.lower() if words == label else words
 
 
 def usual_sizes(source: ShapeSource) -> tuple[float, float] | None:

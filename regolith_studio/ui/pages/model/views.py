@@ -8,11 +8,12 @@ from regolith_studio.scene import surfaces
 from regolith_studio.scene.cameras import framing_pose
 from regolith_studio.scene.gallery import gallery_pose, show_gallery
 from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.views.factory import make_view
 from regolith_studio.ui.views.view_frame import ViewFrame
 from regolith_studio.ui.widgets.spectrum_editor import SpectrumEditor
 
-NO_MODEL = "The spectrum appears when a model is fitted."
+NO_MODEL = mark("The spectrum appears when a model is fitted.")
 
 
 class LiveShape(QWidget):
@@ -26,10 +27,10 @@ class LiveShape(QWidget):
 
     def __init__(self, kind: str, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self.spectrum = SpectrumEditor(NO_MODEL)
+        self.spectrum = SpectrumEditor(tr(NO_MODEL))
         self.spectrum.setObjectName("model_spectrum")
         self.frame = ViewFrame(make_view(kind, current_theme().surroundings), "drawn")
-        self.reset, self.another = QPushButton("Reset the spectrum"), QPushButton("Another particle")
+        self.reset, self.another = QPushButton(tr("Reset the spectrum")), QPushButton(tr("Another particle"))
         self.reset.setObjectName("model_reset_spectrum")
         self.another.setObjectName("model_another")
         buttons = QHBoxLayout()
@@ -59,7 +60,7 @@ class LiveShape(QWidget):
         """
         self.another.setEnabled(mesh is not None)
         self.reset.setEnabled(self.spectrum.is_changed())
-        self.frame.set_texts("A drawn particle", detail)
+        self.frame.set_texts(tr("A drawn particle"), detail)
         view = self.frame.view
         if mesh is None:
             view.draw(surfaces.clear)
@@ -93,12 +94,12 @@ class Gallery(QWidget):
     def show_shapes(self, measured: tuple[Mesh, ...], drawn: tuple[Mesh, ...]) -> None:
         """Show both rows to one scale."""
         words = {
-            (True, True): "measured above, drawn below",
-            (True, False): "measured; draw particles to compare",
-            (False, True): "drawn; the source holds no measured particles",
-            (False, False): "empty until a model is fitted",
+            (True, True): tr("measured above, drawn below"),
+            (True, False): tr("measured; draw particles to compare"),
+            (False, True): tr("drawn; the source holds no measured particles"),
+            (False, False): tr("empty until a model is fitted"),
         }
-        self.frame.set_texts("Gallery", words[bool(measured), bool(drawn)])
+        self.frame.set_texts(tr("Gallery"), words[bool(measured), bool(drawn)])
         self._shown = (measured, drawn)
         self.frame.view.draw(lambda plotter: show_gallery(plotter, measured, drawn))
         self._frame()
