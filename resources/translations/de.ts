@@ -6318,6 +6318,11 @@
    <translation>schnell</translation>
   </message>
   <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>figures</source>
+   <translation>Abbildungen</translation>
+  </message>
+  <message>
    <location filename="ui/pages/lecture/words.py" />
    <source>finer and finer bumps</source>
    <translation>immer feinere Höcker</translation>
@@ -6528,6 +6533,11 @@
    <translation>oben gemessen, unten gezogen</translation>
   </message>
   <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>measured particles</source>
+   <translation>gemessene Partikel</translation>
+  </message>
+  <message>
    <location filename="ui/pages/model/views.py" />
    <source>measured; draw particles to compare</source>
    <translation>gemessen; ziehen Sie Partikel zum Vergleich</translation>
@@ -6579,6 +6589,11 @@
    <location filename="ui/pages/dataset/plots.py" />
    <source>noise</source>
    <translation>Rauschen</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>noise of sampling, split {split}</source>
+   <translation>Rauschen der Stichprobe, Teilung {split}</translation>
   </message>
   <message>
    <location filename="ui/dialogs/export.py" />
@@ -6850,6 +6865,11 @@
    <location filename="ui/translation/sentences.py" />
    <source>split</source>
    <translation>Teilung</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>split {split} of {total}</source>
+   <translation>Teilung {split} von {total}</translation>
   </message>
   <message>
    <location filename="ui/pages/model/judgement.py" />
@@ -7419,6 +7439,16 @@
    <location filename="ui/widgets/number_slider.py" />
    <source>{name}, slider</source>
    <translation>{name}, Schieberegler</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>{name}, split {split}, draw {draw}</source>
+   <translation>{name}, Teilung {split}, Ziehung {draw}</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>{name}, split {split}, fit</source>
+   <translation>{name}, Teilung {split}, Fit</translation>
   </message>
   <message>
    <location filename="ui/pages/dataset/shown.py" />

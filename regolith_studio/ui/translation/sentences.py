@@ -61,6 +61,10 @@ SENTENCES = (
         " micrometres and no measured particle is contained."
     ),
     mark("Statistics of {count} particles of {name}, made by Regolith Studio."),
+    mark("noise of sampling, split {split}"),
+    mark("split {split} of {total}"),
+    mark("{name}, split {split}, fit"),
+    mark("{name}, split {split}, draw {draw}"),
     mark(
         "{count} measured particles at l_max = {degree}, {left} left out; fitted to one half, judged on the"
         " other; {splits} {split}, {draws} draws once from each fit, seed {seed}."
@@ -106,6 +110,7 @@ TARGETS = (
     mark("pairs of r_eq, A, AR: the largest energy distance [%]"),
     mark("draws thrown away [%]"),
     mark("median novelty"),
+    *(mark("measured particles"), mark("figures")),
 )
 """Words of the judgement of models."""
 
