@@ -843,12 +843,12 @@
   <message>
    <location filename="ui/pages/model/judgement.py" />
    <source>By number (Fig. 4)</source>
-   <translation>Nach Anzahl (Abb. 4)</translation>
+   <translation>Anzahl (Abb. 4)</translation>
   </message>
   <message>
    <location filename="ui/pages/model/judgement.py" />
    <source>By volume (Fig. 5)</source>
-   <translation>Nach Volumen (Abb. 5)</translation>
+   <translation>Volumen (Abb. 5)</translation>
   </message>
   <message>
    <location filename="ui/pages/scan/volume_dialog.py" />
@@ -3530,7 +3530,7 @@
   <message>
    <location filename="ui/pages/model/judgement.py" />
    <source>Pairs in numbers</source>
-   <translation>Paare in Zahlen</translation>
+   <translation>Paarwerte</translation>
   </message>
   <message>
    <source>Parametric, with facets: size, form, roughness and hull ratio go together as in the sample.</source>
