@@ -8,7 +8,7 @@ body fills grows steadily with s and can be set.
 """
 
 from dataclasses import dataclass
-from functools import cache
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -139,9 +139,9 @@ def supports(radii: Floats, cosines: Floats, reaches: IntArray) -> Floats:
     return found
 
 
-@cache
+@lru_cache(maxsize=2)
 def hull_grid(degree: int, l_max: int) -> HullGrid:
-    """The Gauss-Legendre grid of `degree` with harmonics up to `l_max`; cached and read-only."""
+    """The Gauss-Legendre grid of `degree` with harmonics up to `l_max`; kept and read-only."""
     grid = sphere_grid(degree, l_max)
     cosines = grid.directions @ grid.directions.T
     near = np.logical_or.reduceat(cosines > 0, np.arange(0, len(cosines), ROWS), axis=0)

@@ -3,7 +3,7 @@
 They stand for the descriptors of meshes where thousands of particles are compared at every step of a fit.
 """
 
-from functools import cache
+from functools import lru_cache
 
 import numpy as np
 
@@ -58,7 +58,7 @@ def _squared_slopes(rows: FloatArray, l_max: int) -> FloatArray:
     return np.asarray((rows @ along) ** 2 + (rows @ across) ** 2)
 
 
-@cache
+@lru_cache(maxsize=2)
 def _slope_bases(l_max: int) -> tuple[FloatArray, FloatArray]:
     """Derivatives of the harmonics along two tangents at the nodes, by central differences."""
     u = shape_grid(l_max).grid.directions

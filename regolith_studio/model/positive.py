@@ -1,6 +1,6 @@
 """Is a radius positive everywhere, not only at the nodes of a grid, and a particle of the right size?"""
 
-from functools import cache
+from functools import lru_cache
 from math import isqrt
 
 import numpy as np
@@ -43,6 +43,6 @@ def acceptable(bounds: tuple[float, float] | None, coefficients: FloatArray) -> 
     return good
 
 
-@cache
+@lru_cache(maxsize=2)
 def _fine_basis(l_max: int) -> FloatArray:
     return harmonics(icosphere(CLOSE_LEVEL).vertices, l_max)

@@ -1,12 +1,15 @@
 """Many expansions at once: values on a Gauss-Legendre grid, and back, as products of matrices."""
 
 from dataclasses import dataclass
-from functools import cache
+from functools import lru_cache
 
 import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.harmonics.legendre import harmonics
+
+GRIDS_KEPT = 8
+"""As many as the models use for one l_max; one of l_max = 30 takes up to 60 MB."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,9 +36,9 @@ class SphereGrid:
         return np.asarray((values * self.weights) @ self.basis.T)
 
 
-@cache
+@lru_cache(maxsize=GRIDS_KEPT)
 def sphere_grid(degree: int, l_max: int) -> SphereGrid:
-    """The Gauss-Legendre grid of `degree` with harmonics up to `l_max`, cached and read-only."""
+    """The Gauss-Legendre grid of `degree` with harmonics up to `l_max`, kept and read-only."""
     cosines, weights = np.polynomial.legendre.leggauss(degree + 1)
     n_longitudes = 2 * degree + 1
     longitudes = np.tile(2 * np.pi * np.arange(n_longitudes) / n_longitudes, degree + 1)
