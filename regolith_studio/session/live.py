@@ -77,8 +77,9 @@ class LiveResults:
             if not (same and self._may_finish(request.kind)):
                 self._board.stop_lane(request.kind)
         self._due = {request.kind for request in requests} | (self._due if after.selected else set())
-        if self._owner.results.fit is None and not self._is_open(Kind.FIT):
-            self._drop_dependents(Kind.FIT)
+        for kind, result in ((Kind.FIT, self._owner.results.fit), (Kind.SURFACE, self._owner.results.surface)):
+            if result is None and not self._is_open(kind):
+                self._drop_dependents(kind)
         self._advance()
 
     def _take_fit_at_hand(self, choices: Choices) -> None:

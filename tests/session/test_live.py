@@ -126,6 +126,24 @@ def test_that_an_outdated_failure_is_not_told(session: Session, held: Held) -> N
     assert session.results.surface_l_max == 6
 
 
+def test_that_nothing_is_made_of_a_surface_that_could_not_be_drawn(session: Session, held: Held) -> None:
+    failures: list[str] = []
+    session.topics.failed.connect(lambda failure: failures.append(failure.sentence))
+    session.choose(l_max=5)
+    held.waiting["surface"][0].job = Job(_refuse)
+    held.all()
+    assert len(failures) == 1
+    session.choose(n_faces=15)
+    session.choose(box_metric="trimesh")
+    held.all()
+    assert len(failures) == 1
+    assert session.results.coarsened is None
+    session.choose(l_max=6)
+    held.all()
+    assert session.results.coarsened is not None
+    assert session.results.coarsened.n_faces_asked == 15
+
+
 def _refuse():  # type: ignore[no-untyped-def]
     raise ValueError("an old degree")
     yield
