@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
-from regolith_studio.dem.case import CohesionKind, ReposeCase, prepare
+from regolith_studio.dem.case import CohesionKind, ReposeCase, ShapeKind, prepare
 from regolith_studio.dem.engine import Ending
 from regolith_studio.dem.engines.lammps import ENGINE
 from regolith_studio.dem.engines.lammps.clumps import clump_shape, clumps_of
@@ -53,6 +53,12 @@ def test_that_balls_are_single_spheres_of_the_same_volume(boxes: Dataset) -> Non
     body, _, radius = (clumps := clumps_of(prepared, 8)).atoms(clumps.centres, clumps.turns)
     assert len(body) == 40
     assert 2 * radius * prepared.mean_diameter == pytest.approx(prepared.diameters)
+    bodies, places, radii = clumps.atoms_of_bodies()
+    assert (np.bincount(bodies) == 2).all()
+    assert radii[:40] == pytest.approx(radius)
+    away = np.linalg.norm(places[40:] - clumps.centres, axis=1)
+    assert (away > 0.0).all()
+    assert (away + radii[40:] < 0.3 * radius).all()  # nothing from outside reaches them
 
 
 def test_that_the_material_is_softened_only_as_far_as_asked(boxes: Dataset) -> None:
@@ -112,9 +118,13 @@ def test_that_bad_settings_are_one_sentence() -> None:
 
 @pytest.mark.slow
 @pytest.mark.skipif(not ENGINE.find().there, reason="LAMMPS or its MPI library is not here")
-@pytest.mark.parametrize("cohesion", ["none", "scaled"])
-def test_that_lammps_fills_lifts_and_comes_to_rest(boxes: Dataset, cohesion: CohesionKind) -> None:
-    prepared = prepare(boxes, replace(SMALL, cohesion=cohesion))
+@pytest.mark.parametrize(
+    ("cohesion", "shapes"), [("none", "polyhedra"), ("scaled", "polyhedra"), ("none", "spheres")]
+)
+def test_that_lammps_fills_lifts_and_comes_to_rest(
+    boxes: Dataset, cohesion: CohesionKind, shapes: ShapeKind
+) -> None:
+    prepared = prepare(boxes, replace(SMALL, cohesion=cohesion, shapes=shapes))
     steps = ENGINE.simulate(prepared, LammpsSettings(spheres=4, rest=15.0, snapshots=30))
     moments = []
     while True:

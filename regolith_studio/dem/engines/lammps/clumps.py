@@ -15,6 +15,9 @@ from regolith_studio.geometry.half_spaces import HalfSpaces
 
 BALL = (3 / (4 * np.pi)) ** (1 / 3)
 """Radius of a ball of unit volume."""
+COMPANION = 0.1
+"""Radius of the second sphere of a body that has only one, and its place along each axis, in radii of the
+first."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,6 +69,20 @@ class Clumps:
         scale = self.scales[body]
         places = centres[body] + turns[body].apply(local[:, :3] * scale[:, None])
         return body, places, local[:, 3] * scale
+
+    def atoms_of_bodies(self) -> tuple[IntArray, FloatArray, FloatArray]:
+        """As :meth:`atoms`, where the simulation begins, with at least two spheres a body.
+
+        LAMMPS knows no rigid body of one: a second one within, so small that nothing can touch it, keeps it
+        company. Mass and inertia are given for the whole body and do not change.
+        """
+        body, places, radius = self.atoms(self.centres, self.turns)
+        alone = np.bincount(body)[body] == 1
+        return (
+            np.concatenate([body, body[alone]]),
+            np.concatenate([places, places[alone] + COMPANION * np.outer(radius[alone], [1.0, 1.0, 1.0])]),
+            np.concatenate([radius, COMPANION * radius[alone]]),
+        )
 
     def inertias(self) -> FloatArray:
         """Of every particle about its centre, along the axes of space, shape (n, 3, 3)."""

@@ -94,7 +94,7 @@ def schedule(prepared: Prepared, settings: LammpsSettings, top: float) -> Schedu
 
 def data_file(clumps: Clumps, reach: float, top: float) -> str:
     """Atoms of all clumps; each atom carries the number of its body."""
-    body, places, radius = clumps.atoms(clumps.centres, clumps.turns)
+    body, places, radius = clumps.atoms_of_bodies()
     lines = [
         "clumps",
         "",
