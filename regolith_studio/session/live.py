@@ -77,8 +77,9 @@ class LiveResults:
             if not (same and self._may_finish(request.kind)):
                 self._board.stop_lane(request.kind)
         self._due = {request.kind for request in requests} | (self._due if after.selected else set())
-        for kind, result in ((Kind.FIT, self._owner.results.fit), (Kind.SURFACE, self._owner.results.surface)):
-            if result is None and not self._is_open(kind):
+        results = self._owner.results
+        for kind, made in ((Kind.FIT, results.fit), (Kind.SURFACE, results.surface)):
+            if made is None and not self._is_open(kind):
                 self._drop_dependents(kind)
         self._advance()
 
