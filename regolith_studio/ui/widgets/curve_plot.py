@@ -109,6 +109,7 @@ class CurvePlot(Plot):
             item.setSymbolSize(5)
             item.setSymbolBrush(curve.colour)
             item.setSymbolPen(None)
+        self.count_axis.whole = all(float(x).is_integer() for curve in self._curves for x in curve.x)
         self.set_legend([(curve.colour, curve.label) for curve in self._curves if curve.label])
         self._draw_marker()
 

@@ -21,6 +21,7 @@ from PySide6.QtWidgets import (
 from regolith_studio.errors import RegolithError
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
+from regolith_studio.ui.widgets.count_axis import CountAxis
 from regolith_studio.ui.widgets.labels import unbroken
 from regolith_studio.ui.widgets.plot_files import DRAWN, plain_text, save_figure, save_numbers
 
@@ -46,7 +47,8 @@ class Plot(QWidget):
         self.theme: Theme = current_theme()
         self._labels = (x, y)
         self._legend_entries: list[tuple[str, str]] = []
-        self.canvas = pg.PlotWidget(background=None, enableMenu=False)
+        self.count_axis = CountAxis("bottom")
+        self.canvas = pg.PlotWidget(background=None, enableMenu=False, axisItems={"bottom": self.count_axis})
         self.canvas.setFrameShape(self.canvas.Shape.NoFrame)
         self.canvas.setMouseEnabled(x=False, y=False)
         self.canvas.hideButtons()
