@@ -11,14 +11,14 @@ BoolArray = NDArray[np.bool_]
 
 
 def locked_floats(values: ArrayLike, shape: tuple[int | None, ...], name: str) -> FloatArray:
-    """A read-only float64 copy of `values`; ``None`` in `shape` stands for any length.
+    """`values` as float64 that nobody can change, copied unless they are that; ``None``: any length.
 
     Raises
     ------
     ValueError
         If the shape differs or a value is not finite.
     """
-    array = np.array(values, dtype=np.float64)
+    array = _own(values, np.float64)
     _check_shape(array, shape, name)
     if not np.isfinite(array).all():
         raise ValueError(
@@ -29,7 +29,7 @@ def locked_floats(values: ArrayLike, shape: tuple[int | None, ...], name: str) -
 
 
 def locked_integers(values: ArrayLike, shape: tuple[int | None, ...], name: str) -> IntArray:
-    """A read-only int64 copy of `values`; ``None`` in `shape` stands for any length.
+    """`values` as int64 that nobody can change, copied unless they are that; ``None``: any length.
 
     Raises
     ------
@@ -37,12 +37,21 @@ def locked_integers(values: ArrayLike, shape: tuple[int | None, ...], name: str)
         If the shape differs or a value is not a whole number.
     """
     given = np.asarray(values)
-    array = np.array(given, dtype=np.int64)
+    array = _own(given, np.int64)
     _check_shape(array, shape, name)
-    if not np.array_equal(array, given):
+    if array is not given and not np.array_equal(array, given):
         raise ValueError(f"{name} must be whole numbers")
     array.flags.writeable = False
     return array
+
+
+def _own(values: ArrayLike, kind: type[np.float64] | type[np.int64]) -> NDArray[Any]:
+    """A copy, unless nobody can change `values`: a locked array that owns its memory, as all of ours are."""
+    if isinstance(values, np.ndarray) and values.dtype == kind:
+        flags = values.flags
+        if flags.owndata and flags.c_contiguous and not flags.writeable:
+            return values
+    return np.array(values, dtype=kind)
 
 
 def _check_shape(array: NDArray[Any], shape: tuple[int | None, ...], name: str) -> None:

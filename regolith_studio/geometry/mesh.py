@@ -11,6 +11,7 @@ from scipy.spatial import ConvexHull, QhullError
 
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats, locked_integers
+from regolith_studio.geometry.derived import Derived
 from regolith_studio.geometry.moments import volume_moments
 
 
@@ -49,18 +50,18 @@ class Mesh:
     def __reduce__(self) -> tuple[Callable[..., "Mesh"], tuple[ArrayLike, ArrayLike]]:
         return Mesh, (self.vertices, self.faces)
 
-    @cached_property
+    @Derived
     def triangles(self) -> FloatArray:
         """Corner coordinates, shape (m, 3, 3): triangle, corner, axis."""
         return self.vertices[self.faces]
 
-    @cached_property
+    @Derived
     def face_area_vectors(self) -> FloatArray:
         """Normal of each triangle times its area, shape (m, 3)."""
         a, b, c = np.moveaxis(self.triangles, 1, 0)
         return np.asarray(np.cross(b - a, c - a) / 2)
 
-    @cached_property
+    @Derived
     def face_areas(self) -> FloatArray:
         """Area of each triangle, shape (m,)."""
         return np.asarray(np.linalg.norm(self.face_area_vectors, axis=1))
@@ -103,7 +104,7 @@ class Mesh:
         second = self._moments[2]
         return np.asarray(np.trace(second) * np.eye(3) - second)
 
-    @cached_property
+    @Derived
     def hull(self) -> "Mesh":
         """Convex hull (Qhull), triangulated, with outward normals.
 

@@ -51,8 +51,8 @@ What a page can rely on
   ``choose(...)``, ``adopt(particles)`` for particles made by a page (they replace or join the open
   ones and are measured and shown everywhere), ``shelf`` for anything else that pages hand to each
   other: ``session.shelf.put("population", value)``, ``.get("population")``, topic ``shelf`` (carries
-  the name). Names on the shelf so far: ``population`` (virtual particles drawn by a model),
-  ``dataset_folder`` (Path written last), ``contact`` (contact parameters).
+  the name). Names on the shelf so far: ``dataset_folder`` and ``runs_folder`` (Paths written last), and those
+  of :mod:`~regolith_studio.session.recipe_dataset`. What lies there stays: no particles, no meshes.
 * **Refreshing**: ``context.wiring.refresh("particles choices", action)`` calls `action` soon after these
   topics, and now; ``slow=True`` for tables and plots. Nothing is refreshed while the page is hidden;
   what was missed follows at the next visit. ``context.wiring.hear(topic, action)`` is not held back.

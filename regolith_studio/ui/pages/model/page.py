@@ -271,7 +271,6 @@ class ModelPage(PageWidget):
             self.drawing.show_names(getattr(self._model, "names", ()))
 
     def _take_over(self, particles: tuple[Particle, ...], origin: Drawn) -> None:
-        self._context.session.shelf.put("population", particles)
         self._context.session.adopt(particles, origin=origin)
         self._context.toast.note(tr("{count:,} virtual particles are open now.", count=len(particles)))
 

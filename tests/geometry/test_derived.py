@@ -1,0 +1,93 @@
+"""What is measured of a mesh is kept, but not of hundreds."""
+
+import gc
+import sys
+import weakref
+
+import numpy as np
+import pytest
+
+from regolith_studio.geometry import derived
+from regolith_studio.geometry.directions import icosphere
+from regolith_studio.geometry.mesh import Mesh
+
+
+@pytest.fixture
+def a_megabyte(monkeypatch):
+    """Room for what two spheres of 1,280 triangles are measured by."""
+    monkeypatch.setattr(derived, "KEPT", 1_000_000)
+    monkeypatch.setattr(derived, "_kept", derived._Kept())
+
+
+def spheres(count):
+    base = icosphere(3)
+    return [Mesh(base.vertices * (1 + number), base.faces) for number in range(count)]
+
+
+def test_that_what_is_asked_for_twice_is_computed_once():
+    (sphere,) = spheres(1)
+    assert sphere.triangles is sphere.triangles
+    assert sphere.hull is sphere.hull
+
+
+@pytest.mark.usefixtures("a_megabyte")
+def test_that_many_meshes_hold_no_more_than_there_is_room_for():
+    many = spheres(40)
+    for sphere in many:
+        sphere.face_area_vectors  # noqa: B018
+    held = sum(v.nbytes for sphere in many for k, v in vars(sphere).items() if k not in ("vertices", "faces"))
+    assert 0 < held <= 1_000_000
+    assert "triangles" in vars(many[-1])
+    assert "triangles" not in vars(many[0])
+
+
+@pytest.mark.usefixtures("a_megabyte")
+def test_that_what_was_forgotten_is_the_same_when_it_is_asked_for_again():
+    many = spheres(20)
+    before = [sphere.face_areas.copy() for sphere in many]
+    hulls = [sphere.hull.volume for sphere in many]
+    for sphere, areas, volume in zip(many, before, hulls, strict=True):
+        np.testing.assert_array_equal(sphere.face_areas, areas)
+        assert sphere.hull.volume == volume
+
+
+def test_that_one_mesh_larger_than_the_room_keeps_its_own(monkeypatch):
+    monkeypatch.setattr(derived, "KEPT", 1)
+    (sphere,) = spheres(1)
+    assert sphere.face_area_vectors is sphere.face_area_vectors
+    assert "triangles" in vars(sphere)
+
+
+def test_that_nothing_keeps_a_mesh_alive():
+    (sphere,) = spheres(1)
+    sphere.hull.triangles  # noqa: B018
+    known, hull = weakref.ref(sphere), weakref.ref(sphere.hull)
+    del sphere
+    gc.collect()
+    assert known() is None
+    assert hull() is None
+
+
+def test_that_meshes_on_the_same_triangles_share_them():
+    first, second = spheres(2)
+    assert first.faces is second.faces is icosphere(3).faces
+    assert first.moved(shift=(1, 2, 3)).faces is first.faces
+
+
+def test_that_a_callers_array_is_neither_locked_nor_shared():
+    vertices, faces = icosphere(1).vertices.copy(), icosphere(1).faces.copy()
+    mesh = Mesh(vertices, faces)
+    vertices[0] = 7.0
+    faces[0] = 0
+    assert mesh.vertices[0, 0] != 7.0
+    assert mesh.faces[0].max() > 0
+    window = np.zeros((4, 3))[:3]
+    window.flags.writeable = False  # its owner can still write
+    assert not np.shares_memory(Mesh(window, [[0, 1, 2]]).vertices, window)
+
+
+def test_that_a_count_of_references_stays_as_it_is():
+    (sphere,) = spheres(1)
+    before = sys.getrefcount(sphere)
+    sphere.face_areas  # noqa: B018
+    assert sys.getrefcount(sphere) == before
