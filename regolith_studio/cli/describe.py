@@ -59,7 +59,7 @@ def describe(
     loaded = read_inputs(meshes, unit, repair)
     facts = follow(examine_sample(loaded.particles, workers=jobs))
     pairs = list(zip(loaded.particles, facts, strict=True))
-    entries = [ParticleEntry(p.name, p, each.health, each.descriptors) for p, each in pairs]
+    entries = [ParticleEntry(p.name, p, each.health, each.descriptors, sight=each.sight) for p, each in pairs]
     if csv is not None:
         _write_csv(csv, entries)
     spread = _statistics(entries, weighting, border_weights) if statistics else None

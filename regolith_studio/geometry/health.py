@@ -95,7 +95,13 @@ class MeshHealth:
 
     def as_dict(self) -> dict[str, Any]:
         """Findings as numbers, truth values and lists, ready for JSON."""
-        return {**asdict(self), "problems": list(self.problems), "handles": self.handles, "sound": self.sound}
+        return {
+            **asdict(self),
+            "volume_sign": (self.volume > 0.0) - (self.volume < 0.0),
+            "problems": list(self.problems),
+            "handles": self.handles,
+            "sound": self.sound,
+        }
 
 
 def inspect(mesh: Mesh, *, self_intersections: bool = True) -> MeshHealth:

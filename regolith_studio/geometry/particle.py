@@ -1,8 +1,12 @@
 """A measured particle: its mesh with what is known about where it came from."""
 
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from regolith_studio.geometry.mesh import Mesh
+
+if TYPE_CHECKING:
+    from regolith_studio.geometry.repair import Repair
 
 
 @dataclass(frozen=True)
@@ -46,6 +50,8 @@ class Particle:
     weight
         How many grains of its population it stands for: above 1 where larger grains were more often
         left out because the border of a scan cut them (Miles and Lantuejoul).
+    repair
+        What the mesh was like before it was mended and what was done; ``None`` if it was taken as it is.
     """
 
     name: str
@@ -54,3 +60,4 @@ class Particle:
     source: Source | None = None
     notes: tuple[str, ...] = field(default=())
     weight: float = 1.0
+    repair: "Repair | None" = field(default=None, compare=False, repr=False)

@@ -1,6 +1,8 @@
 """From a mesh as scanned to one closed body that faces outwards, with a sentence for each change."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -8,6 +10,7 @@ from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
 from regolith_studio.geometry.crowded_edges import without_crowded_edges
 from regolith_studio.geometry.edges import bodies, edge_table, neighbours
+from regolith_studio.geometry.enclosure import refuse_sheet
 from regolith_studio.geometry.health import MeshHealth, body_volumes, inspect, unit_size
 from regolith_studio.geometry.holes import filled
 from regolith_studio.geometry.mesh import Mesh
@@ -16,8 +19,8 @@ from regolith_studio.geometry.welding import welded
 TOLERANCES = (1e-7, 1e-6, 1e-5)
 """Shares of the mesh's size within which the vertices of an open mesh may be joined."""
 
-LARGEST_FILLED_SHARE = 0.4
-"""A mesh with more than this share of its closed surface missing is an open sheet, not a particle."""
+LEAST_JUDGED_SHARE = 0.002
+"""Up to this share of the surface holes are closed without asking whether there is a body about them."""
 
 LARGEST_TWISTED_SHARE = 0.05
 """A mesh from which more of the surface must be cut to have two sides is one-sided."""
@@ -40,8 +43,14 @@ class Repair:
         What the inspection found.
     actions
         One plain sentence for each change; empty if there was none.
-    filled_area
-        Area of the triangles that close holes, in the square of the mesh's unit.
+    filled_area, filled_share
+        Area of the triangles that close holes, in the square of the mesh's unit; its share of the surface.
+    holes, filling_faces
+        How many holes were closed, and by how many triangles: the last ones of `mesh`.
+    dropped_bodies, kept_volume_share
+        How many bodies were left out, and the share of the volume of all that the kept one has.
+    given
+        The mesh as it came; ``None`` if nothing was changed.
     """
 
     mesh: Mesh
@@ -49,6 +58,23 @@ class Repair:
     health_after: MeshHealth
     actions: tuple[str, ...]
     filled_area: float = 0.0
+    filled_share: float = 0.0
+    holes: int = 0
+    filling_faces: int = 0
+    dropped_bodies: int = 0
+    kept_volume_share: float = 1.0
+    given: Mesh | None = None
+
+    def as_dict(self) -> dict[str, Any]:
+        """What was done, as numbers and sentences, ready for JSON; lengths in micrometres."""
+        return {
+            "actions": list(self.actions),
+            "filled_holes": self.holes,
+            "filled_area": self.filled_area,
+            "filled_share": self.filled_share,
+            "dropped_bodies": self.dropped_bodies,
+            "kept_volume_share": self.kept_volume_share,
+        }
 
 
 @dataclass(frozen=True)
@@ -58,16 +84,23 @@ class _Draft:
     vertices: FloatArray
     faces: IntArray
     actions: tuple[str, ...] = ()
-    filled_area: float = 0.0
+    numbers: Mapping[str, Any] = field(default_factory=dict)
+    """Fields of :class:`Repair` that a step has found out."""
 
     def changed(
-        self, action: str, *, vertices: FloatArray | None = None, faces: IntArray | None = None
+        self,
+        action: str,
+        *,
+        vertices: FloatArray | None = None,
+        faces: IntArray | None = None,
+        **numbers: float,
     ) -> "_Draft":
-        return _Draft(
-            self.vertices if vertices is None else vertices,
-            self.faces if faces is None else faces,
-            (*self.actions, action) if action else self.actions,
-            self.filled_area,
+        return replace(
+            self,
+            vertices=self.vertices if vertices is None else vertices,
+            faces=self.faces if faces is None else faces,
+            actions=(*self.actions, action) if action else self.actions,
+            numbers={**self.numbers, **numbers},
         )
 
 
@@ -101,7 +134,11 @@ def repair(mesh: Mesh) -> Repair:
     after = inspect(mended)
     if not after.sound:
         raise GeometryError(f"The mesh cannot be repaired: {_lower(after.problems[0])}")
-    return Repair(mended, before, after, draft.actions, draft.filled_area * _size(mesh) ** 2)
+    return Repair(mended, before, after, draft.actions, given=mesh, **_in_unit_of(mesh, draft.numbers))
+
+
+def _in_unit_of(mesh: Mesh, numbers: Mapping[str, Any]) -> dict[str, Any]:
+    return {**numbers, "filled_area": numbers.get("filled_area", 0.0) * _size(mesh) ** 2}
 
 
 def _weld(draft: _Draft) -> _Draft:
@@ -238,7 +275,12 @@ def _keep_largest(draft: _Draft) -> _Draft:
     largest = int(np.argmax(volumes))
     share = volumes[largest] / volumes.sum() if volumes.sum() > 0.0 else 1.0
     text = f"Kept the largest of {parts.count:,} bodies, with {_percent(share)} of their volume."
-    return draft.changed(text, faces=draft.faces[parts.body == largest])
+    return draft.changed(
+        text,
+        faces=draft.faces[parts.body == largest],
+        dropped_bodies=parts.count - 1,
+        kept_volume_share=float(share),
+    )
 
 
 def _fill(draft: _Draft) -> _Draft:
@@ -249,12 +291,18 @@ def _fill(draft: _Draft) -> _Draft:
         holes = filled(draft.vertices, draft.faces, only_fans=True)
     whole = Mesh(holes.vertices, holes.faces).surface_area
     share = holes.area / whole if whole > 0.0 else 1.0
-    if share > LARGEST_FILLED_SHARE:
-        raise GeometryError(
-            f"The mesh is an open sheet, not a body: to close it would take {_percent(share)} of the surface."
-        )
+    if share > LEAST_JUDGED_SHARE:
+        refuse_sheet(Mesh(holes.vertices, holes.faces), len(holes.faces) - len(draft.faces), share)
     text = f"Filled {_count(holes.count, 'hole', 'holes')} with {_percent(share)} of the surface."
-    return _Draft(holes.vertices, holes.faces, (*draft.actions, text), holes.area)
+    return draft.changed(
+        text,
+        vertices=holes.vertices,
+        faces=holes.faces,
+        filled_area=holes.area,
+        filled_share=share,
+        holes=holes.count,
+        filling_faces=len(holes.faces) - len(draft.faces),
+    )
 
 
 def _face_outwards(draft: _Draft) -> _Draft:

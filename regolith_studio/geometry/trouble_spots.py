@@ -2,10 +2,11 @@
 
 import numpy as np
 
-from regolith_studio.geometry.arrays import IntArray
+from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.edges import bodies, edge_table, neighbours
 from regolith_studio.geometry.health import MOST_FACES_SEARCHED, body_volumes, degenerate, unit_size
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.self_intersection import crossing_pairs
 
 
@@ -36,3 +37,16 @@ def trouble_spots(mesh: Mesh) -> dict[str, IntArray]:
         "small bodies": parts.body != np.argmax(volumes),
     }
     return {kind: np.flatnonzero(marked) for kind, marked in spots.items() if marked.any()}
+
+
+def fault_triangles(particle: Particle) -> dict[str, FloatArray]:
+    """Corners (k, 3, 3) of the triangles at each kind of fault that the mesh had when it came.
+
+    The keys are those of :func:`trouble_spots`, and ``filled`` for the triangles that now close holes.
+    """
+    done = particle.repair
+    given = particle.mesh if done is None or done.given is None else done.given
+    found = {kind: given.triangles[at] for kind, at in trouble_spots(given).items()}
+    if done is not None and done.filling_faces:
+        found["filled"] = done.mesh.triangles[-done.filling_faces :]
+    return found

@@ -3,10 +3,16 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from regolith_studio.descriptors.describe import Descriptors, describe
 from regolith_studio.errors import RegolithError
+from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.health import MeshHealth, inspect
 from regolith_studio.geometry.particle import Particle
+from regolith_studio.geometry.trouble_spots import fault_triangles
+from regolith_studio.harmonics.sight import Sight, sight
+from regolith_studio.harmonics.visibility import hidden_faces
 from regolith_studio.jobs.batch import value_of
 from regolith_studio.jobs.crew import Crew, hired
 from regolith_studio.jobs.events import Job, Partial, Progress, Started, Steps
@@ -22,20 +28,46 @@ class Examined:
         ``None`` where the mesh has none, for example because it is flat.
     problem
         Why, in one sentence.
+    sight
+        What its star point cannot see; ``None`` where the mesh has no inside, for example because it is open.
     """
 
     health: MeshHealth
     descriptors: Descriptors | None
     problem: str = ""
+    sight: Sight | None = None
 
 
 def examine(particle: Particle, box_metric: str = "exact") -> Examined:
-    """Health and descriptors of one particle; never raises for what is wrong with the mesh."""
-    health = inspect(particle.mesh)
+    """Health, descriptors and sight of one particle; never raises for what is wrong with the mesh."""
+    known = particle.repair
+    health = known.health_after if known and known.mesh is particle.mesh else inspect(particle.mesh)
+    seen = _seen(particle)
     try:
-        return Examined(health, describe(particle.mesh, box_metric=box_metric))
+        return Examined(health, describe(particle.mesh, box_metric=box_metric), "", seen)
     except RegolithError as error:
-        return Examined(health, None, str(error))
+        return Examined(health, None, str(error), seen)
+
+
+def _seen(particle: Particle) -> Sight | None:
+    try:
+        return sight(particle.mesh)
+    except RegolithError:
+        return None
+
+
+def find_faults(particle: Particle, seen: Sight | None = None) -> Steps:
+    """Where a mesh is wrong or was before it was mended, and what its star point cannot see.
+
+    Returns the corners (k, 3, 3) of the triangles of each kind, as ``fault_triangles`` names them, and
+    ``hidden``.
+    """
+    yield Started("Looking for faults")
+    found: dict[str, FloatArray] = fault_triangles(particle)
+    if seen is not None and seen.hidden_surface_share > 0.0:
+        hidden = hidden_faces(particle.mesh, np.array(seen.star_point))
+        found["hidden"] = particle.mesh.triangles[hidden]
+    return found
 
 
 def examine_one(particle: Particle, box_metric: str = "exact") -> Steps:

@@ -135,6 +135,7 @@ def _read_mesh(file: MeshFile, unit: str, repair: bool, guard: Guard | None) -> 
         vertices, faces = welded(vertices, faces)
     mesh = Mesh(vertices * factor, faces)
     notes = tuple(answer.header["notes"])
+    mended = None
     try:
         if repair:
             mended = mending.repair(mesh)
@@ -144,7 +145,7 @@ def _read_mesh(file: MeshFile, unit: str, repair: bool, guard: Guard | None) -> 
     except GeometryError as error:
         raise GeometryError(sentence_about(path, f"holds no particle: {_lower(str(error))}")) from None
     source = Source(str(path), answer.header["sha256"], unit, repair)
-    return Particle(path.stem, mesh, file.group, source, notes, file.weight)
+    return Particle(path.stem, mesh, file.group, source, notes, file.weight, mended)
 
 
 def mesh_files(paths: Sequence[str | Path]) -> list[MeshFile]:

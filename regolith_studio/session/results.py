@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from regolith_studio.descriptors.describe import Descriptors
     from regolith_studio.geometry.health import MeshHealth
     from regolith_studio.harmonics.fit import HarmonicFit
+    from regolith_studio.harmonics.sight import Sight
     from regolith_studio.session.origins import Place
     from regolith_studio.studies.coarsening import CoarseningStudy
     from regolith_studio.studies.lmax import LmaxStudy
@@ -27,6 +28,8 @@ class ParticleEntry:
     ----------
     place
         Where a recipe finds it again; ``None`` if nowhere.
+    sight
+        What its star point cannot see; follows with the health, ``None`` where the mesh has no inside.
     """
 
     id: str
@@ -34,6 +37,7 @@ class ParticleEntry:
     health: "MeshHealth | None" = None
     descriptors: "Descriptors | None" = None
     place: "Place | None" = None
+    sight: "Sight | None" = None
 
 
 @dataclass(frozen=True)

@@ -359,7 +359,7 @@ class Session:
             for at, facts in enumerate(seen):
                 if rows[at].health is None:
                     rows[at] = dataclasses.replace(
-                        rows[at], health=facts.health, descriptors=facts.descriptors
+                        rows[at], health=facts.health, descriptors=facts.descriptors, sight=facts.sight
                     )
             self.particles = tuple(rows)
             self.topics.particles.emit()

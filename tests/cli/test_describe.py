@@ -121,3 +121,42 @@ def test_that_a_mesh_inside_out_is_told_and_not_measured_where_repair_is_switche
     said = command("describe", tmp_path / "inverted.stl", "--no-repair")
     assert said.code == 1
     assert "inverted: The mesh is inside out: its signed volume is -120" in said.err
+
+
+def test_that_json_tells_the_mesh_as_it_came_what_was_done_and_what_is_hidden(
+    command, tmp_path: Path
+) -> None:
+    """A cube of 2 that lacks one face of 4 um^2, inside out, with a second cube of 1 beside it."""
+    large = trimesh.creation.box((2, 2, 2))
+    large.update_faces([face not in (0, 1) for face in range(12)])
+    square = abs(large.area - 20) < 1e-9
+    large.invert()
+    small = trimesh.creation.box((1, 1, 1), transform=trimesh.transformations.translation_matrix((9, 0, 0)))
+    path = tmp_path / "ugly.stl"
+    path.write_bytes(trimesh.util.concatenate([large, small]).export(file_type="stl"))
+    (entry,) = command("describe", path, "--json").json
+    before, after, done = (entry[key] for key in ("health_before_repair", "health", "repair"))
+    assert square
+    assert (before["bodies"], before["watertight"], before["volume_sign"]) == (2, False, -1)
+    assert (after["bodies"], after["watertight"], after["volume_sign"]) == (1, True, 1)
+    for report in (before, after):
+        assert {"consistent_winding", "euler_number", "self_intersections", "degenerate_faces"} <= set(report)
+    assert after["volume"] == pytest.approx(8.0)
+    assert after["hidden_surface_share"] == after["unrepresentable_volume_share"] == 0.0
+    assert done["filled_area"] == pytest.approx(4.0)
+    assert done["filled_share"] == pytest.approx(1 / 6)
+    assert (done["filled_holes"], done["dropped_bodies"]) == (1, 1)
+    assert any("inside out" in action for action in done["actions"])
+    (left,) = command("describe", path, "--json", "--no-repair").json
+    assert left["repair"] is None
+    assert left["health"]["hidden_surface_share"] is None
+    assert left["health"]["volume"] == left["health_before_repair"]["volume"]
+
+
+def test_that_the_table_has_the_hidden_shares_and_the_repairs(command, grains: Path, tmp_path: Path) -> None:
+    table = tmp_path / "grains.csv"
+    command("describe", grains / "grain-a.stl", "--csv", table)
+    header, row = table.read_text(encoding="utf-8").splitlines()[:2]
+    cells = dict(zip(header.split(","), row.split(","), strict=True))
+    assert float(cells["hidden_surface_share"]) == 0.0
+    assert cells["repairs"] == ""

@@ -221,6 +221,35 @@ def test_that_a_rim_of_many_corners_is_closed_about_its_middle():
     assert result.filled_area == pytest.approx(np.pi * (1 - 0.9**2), rel=0.05)
 
 
+def test_that_a_repair_tells_the_mesh_as_it_came_and_what_was_done_in_numbers():
+    """A cube of 3 without a face (9 of 54 units of area), and a cube of 1 beside it."""
+    small = Mesh(CORNERS, FACES).moved(shift=(5, 0, 0))
+    large = without(CUBE, 0, 6).moved(scale=3)
+    both = Mesh(
+        np.concatenate([large.vertices, small.vertices]),
+        np.concatenate([large.faces, small.faces + len(large.vertices)]),
+    )
+    result = repair(both)
+    assert result.given is both
+    assert not result.health_before.watertight
+    assert result.health_before.bodies == 2
+    assert result.health_after.watertight
+    told = result.as_dict()
+    assert told["filled_area"] == pytest.approx(9.0)
+    assert told["filled_share"] == pytest.approx(9 / 54)
+    assert (told["filled_holes"], told["dropped_bodies"]) == (1, 1)
+    assert told["actions"] == list(result.actions)
+    filling = result.mesh.triangles[-result.filling_faces :]
+    assert np.ptp(filling.reshape(-1, 3), axis=0).min() == pytest.approx(0.0, abs=1e-12)
+
+
+def test_that_a_sound_mesh_has_nothing_to_tell():
+    result = repair(Mesh(CORNERS, FACES))
+    assert result.given is None
+    assert result.as_dict()["actions"] == []
+    assert result.as_dict()["filled_area"] == 0.0
+
+
 NOTHING = {
     "no faces": (Mesh(CORNERS, np.zeros((0, 3))), "point cloud"),
     "nothing": (Mesh(np.zeros((0, 3)), np.zeros((0, 3))), "point cloud"),
@@ -228,8 +257,8 @@ NOTHING = {
     "a square": (Mesh(CORNERS, FACES[[0, 6]]), "open sheet"),
     "two sides": (Mesh(CORNERS, FACES[[0, 6, 1, 7]]), "(open sheet|flat)"),
     "three sides": (Mesh(CORNERS, FACES[[0, 6, 2, 8, 4, 10]]), "open sheet"),
-    "half a sphere and less": (
-        Mesh(icosphere(3).vertices, icosphere(3).faces[icosphere(3).triangles[:, :, 2].mean(axis=1) > 0.4]),
+    "a tenth of a sphere": (
+        Mesh(icosphere(3).vertices, icosphere(3).faces[icosphere(3).triangles[:, :, 2].mean(axis=1) > 0.8]),
         "open sheet",
     ),
     "a sheet with two sides": (

@@ -4,7 +4,9 @@ import numpy as np
 
 from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.geometry.trouble_spots import trouble_spots
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.geometry.repair import repair
+from regolith_studio.geometry.trouble_spots import fault_triangles, trouble_spots
 
 BALL = icosphere(2)
 
@@ -45,3 +47,18 @@ def test_that_small_and_crossing_bodies_are_found():
     spots = trouble_spots(both)
     assert spots["small bodies"].tolist() == list(range(len(small.faces)))
     assert {bool(face < len(small.faces)) for face in spots["crossing"]} == {True, False}
+
+
+def test_that_a_mended_mesh_shows_its_rim_and_what_now_fills_it():
+    """Of a ball that lacks one triangle three others lie at the rim; one fills it, just where it was missing."""
+    done = repair(Mesh(BALL.vertices, BALL.faces[1:]))
+    shown = fault_triangles(Particle("ball", done.mesh, repair=done))
+    assert set(shown) == {"open", "filled"}
+    assert len(shown["open"]) == 3
+    (filling,) = shown["filled"]
+    assert sorted(map(tuple, filling.round(9))) == sorted(map(tuple, BALL.triangles[0].round(9)))
+
+
+def test_that_a_mesh_left_as_it_is_shows_its_own_faults():
+    shown = fault_triangles(Particle("ball", Mesh(BALL.vertices, BALL.faces[1:])))
+    assert set(shown) == {"open"}

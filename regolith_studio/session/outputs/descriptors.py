@@ -8,14 +8,23 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.examining import Examined
 from regolith_studio.studies.tables import Column, Table
 
+SHARES = ("hidden_surface_share", "unrepresentable_volume_share")
+"""What no radius function keeps, of :class:`~regolith_studio.harmonics.sight.Sight`."""
+UNSEEN = dict.fromkeys((*SHARES, "star_point", "star_point_rule"))
+"""In the place of :meth:`~regolith_studio.harmonics.sight.Sight.as_dict` where a mesh has no inside."""
 _POWERS = {0: "", 1: "um", 2: "um^2", 3: "um^3", 5: "um^5"}
 
 
 def described(particle: Particle, facts: Examined) -> dict[str, Any]:
-    """One particle as ``describe --json`` prints it: name, descriptors by key, health, source."""
+    """One particle as ``describe --json`` prints it: name, descriptors by key, health, source.
+
+    ``health`` is that of the mesh that was measured, with what its star point cannot see;
+    ``health_before_repair`` is that of the mesh as it came, and ``repair`` says what was done in between.
+    """
     entry: dict[str, Any] = {"name": particle.name, "group": particle.group, "unit": "um"}
     entry |= dict(facts.descriptors or {})
-    entry["health"] = facts.health.as_dict()
+    entry["health"] = facts.health.as_dict() | (facts.sight.as_dict() if facts.sight else UNSEEN)
+    entry |= _mended(particle, facts)
     entry["notes"] = list(particle.notes)
     if particle.weight != 1.0:
         entry["weight"] = particle.weight
@@ -30,6 +39,12 @@ def described(particle: Particle, facts: Examined) -> dict[str, Any]:
             "repaired": source.repaired,
         }
     return entry
+
+
+def _mended(particle: Particle, facts: Examined) -> dict[str, Any]:
+    done = particle.repair
+    before = done.health_before if done else facts.health
+    return {"health_before_repair": before.as_dict(), "repair": done.as_dict() if done else None}
 
 
 def short_table(particles: Sequence[Particle], facts: Sequence[Examined]) -> Table:
@@ -63,8 +78,10 @@ def descriptor_table(particles: Sequence[Named], facts: Sequence[Examined]) -> T
             particle.name,
             particle.group,
             *[_value(each, key) for key in keys],
+            *(getattr(each.sight, key, None) for key in SHARES),
             each.health.sound,
             " ".join(filter(None, [*each.health.problems, each.problem])),
+            " ".join(getattr(getattr(particle, "repair", None), "actions", ())),
         )
         for particle, each in zip(particles, facts, strict=True)
     ]
@@ -74,14 +91,19 @@ def descriptor_table(particles: Sequence[Named], facts: Sequence[Examined]) -> T
 def table_columns(keys: Sequence[str]) -> tuple[Column, ...]:
     """The columns of :func:`descriptor_table` where the descriptors `keys` are known."""
     named = [Column(key, _POWERS[CATALOGUE[key].dimension]) for key in keys]
-    return Column("name"), Column("group"), *named, Column("sound"), Column("problems")
+    shares = [Column(key) for key in SHARES]
+    words = [Column(word) for word in ("sound", "problems", "repairs")]
+    return Column("name"), Column("group"), *named, *shares, *words
 
 
 def table_row(entry: Mapping[str, Any], keys: Sequence[str]) -> list[Any]:
     """A row of :func:`descriptor_table` from what :func:`described` says of the particle."""
     health = entry["health"]
     problems = " ".join(filter(None, [*health["problems"], entry.get("problem", "")]))
-    return [entry["name"], entry["group"], *[entry.get(key) for key in keys], health["sound"], problems]
+    repairs = " ".join((entry.get("repair") or {}).get("actions", ()))
+    shares = [health.get(key) for key in SHARES]
+    numbers = [entry.get(key) for key in keys]
+    return [entry["name"], entry["group"], *numbers, *shares, health["sound"], problems, repairs]
 
 
 def _value(facts: Examined, key: str) -> float | None:
