@@ -55,9 +55,8 @@ def least_on_curve(
     bottom = denominator(curve)
     least, at = np.inf, 0.0
     todo = found.todo
-    middle = 0.5 * (curve.low + curve.high)
-    todo[0, 0], todo[0, 1], todo[1, 0], todo[1, 1] = curve.low, middle, middle, curve.high
-    n, pieces, finest = 2, 0, FINEST
+    todo[0, 0], todo[0, 1] = curve.low, curve.high
+    n, pieces, finest = 1, 0, FINEST
     while n > 0:
         n -= 1
         low, high = todo[n, 0], todo[n, 1]

@@ -1,4 +1,4 @@
-"""Search for the minimum-volume box of a convex solid, and for all boxes that come near it.
+"""Search for the minimum-volume box of a convex solid.
 
 O'Rourke (1985): two adjacent sides of a minimum-volume box are each flush with an edge of the hull. So every
 pair of edges is asked: the boxes flush with both are a curve or two
@@ -20,7 +20,6 @@ from regolith_studio.geometry.box_curve import (
     curve_between,
     denominator,
     factors_of,
-    frame_on,
     nowhere_below,
     numerator,
     unit,
@@ -33,7 +32,16 @@ from regolith_studio.geometry.box_facets import (
     with_all_edges,
     worth_asking,
 )
-from regolith_studio.geometry.box_record import TIE, Found, drop_far, keep, note, nothing_below
+from regolith_studio.geometry.box_lanes import LANES
+from regolith_studio.geometry.box_record import TIE, Found, keep, nothing_below
+from regolith_studio.geometry.box_sieve import (
+    MOST_WAITING,
+    Sieve,
+    add_pair,
+    empty_sieve,
+    whole_curves,
+    work_off,
+)
 from regolith_studio.geometry.box_widths import (
     SpanTable,
     between,
@@ -92,19 +100,19 @@ def minimum_box(points: FloatArray, faces: IntArray) -> FloatArray:
     graph = hull_graph(points, faces)
     if not graph.closed:
         return np.zeros((3, 3))
-    return boxes_near_least(facets_of(graph), TIE, np.inf).axes
+    return least_box(facets_of(graph), np.inf).axes
 
 
 @kernel
-def boxes_near_least(facets: Facets, margin: float, known: float) -> Found:
-    """The least box of all, and that of every curve where it is at most (1 + margin) times as large.
+def least_box(facets: Facets, known: float) -> Found:
+    """The least box of all.
 
     Parameters
     ----------
     known
-        Volume of some box; infinite if none is known. Only smaller ones are kept in `record`.
+        Volume of some box; infinite if none is known. Only smaller ones are kept.
     """
-    found = nothing_below(known)
+    found, margin = nothing_below(known), TIE
     points, normals, edges = facets
     table, arcs, n = span_table(points), arcs_of(facets), len(normals)
     work = Work(np.empty((2, n)), np.empty(n, np.int8), np.empty((2, 2, 2)))
@@ -113,7 +121,7 @@ def boxes_near_least(facets: Facets, margin: float, known: float) -> Found:
         _on_facets(facets, arcs, table, work, asked, n // FIRST_FACETS, margin, found)
         worth = worth_asking(facets, arcs, table, found.record[0] * (1.0 + margin))
         slack = LEAST_SLACK
-        while worth.sum() > MANY_EDGES and margin <= TIE and slack < MOST_SLACK:
+        while worth.sum() > MANY_EDGES and slack < MOST_SLACK:
             slack *= 10.0
             margin = -slack
             worth = worth_asking(facets, arcs, table, found.record[0] * (1.0 + margin))
@@ -123,18 +131,23 @@ def boxes_near_least(facets: Facets, margin: float, known: float) -> Found:
     if n > MANY_FACETS:
         worth = worth_asking(facets, arcs, table, found.record[0] * (1.0 + margin))
         facets, arcs = Facets(points, normals, facets.edges[worth]), arcs[worth]
-    _on_curves(facets, arcs, table, work, margin, found)
-    drop_far(margin, found)
+    _on_curves(facets, arcs, table, work, margin, found, empty_sieve())
     return found
 
 
 @leaf
 def _on_curves(
-    facets: Facets, arcs: FloatArray, table: SpanTable, work: Work, margin: float, found: Found
+    facets: Facets,
+    arcs: FloatArray,
+    table: SpanTable,
+    work: Work,
+    margin: float,
+    found: Found,
+    sieve: Sieve,
 ) -> None:
     """Boxes flush with any two edges."""
-    _, normals, edges = facets
-    dots, side, ends = work
+    points, normals, edges = facets
+    dots, side, _ = work
     least_width = np.inf
     for e in range(len(edges)):
         least_width = min(least_width, arcs[e, 6])
@@ -150,8 +163,38 @@ def _on_curves(
             sides = arcs[i, 6] * arcs[k, 6]
             if sides * least_width >= limit or sides * least_third(arcs, table, i, k) >= limit:
                 continue
-            for branch in range(_branches(dots, edges[k, 2], edges[k, 3], ends)):
-                _search_curve(facets, arcs, table, i, k, ends[branch], margin, found)
+            add_pair(facets, arcs, i, k, sieve)
+            if sieve.filled[0] == LANES:
+                _sift(facets, arcs, table, work, margin, found, sieve)
+    _sift(facets, arcs, table, work, margin, found, sieve)
+    work_off(points, table, margin, found, sieve)
+
+
+@leaf
+def _sift(
+    facets: Facets,
+    arcs: FloatArray,
+    table: SpanTable,
+    work: Work,
+    margin: float,
+    found: Found,
+    sieve: Sieve,
+) -> None:
+    """Empty the lanes; pairs with two curves are searched at once."""
+    dots, _, ends = work
+    normals, edges = facets.normals, facets.edges
+    whole_curves(table, found.record[0] * (1.0 + margin), sieve)
+    for at in range(sieve.filled[0]):
+        i, k = sieve.pairs[at, 0], sieve.pairs[at, 1]
+        for other in range(2, 4):
+            for side in range(2):
+                normal = row(normals, edges[i, 2 + side])
+                dots[side, edges[k, other]] = along(normals, edges[k, other], normal)
+        for branch in range(_branches(dots, edges[k, 2], edges[k, 3], ends)):
+            _search_curve(facets, arcs, table, i, k, ends[branch], margin, found)
+    sieve.filled[0] = 0
+    if sieve.filled[1] > MOST_WAITING - LANES:
+        work_off(facets.points, table, margin, found, sieve)
 
 
 @leaf
@@ -190,9 +233,7 @@ def _on_facets(
                 top, bottom = ends_along(points, b)
                 wide = dot(between(points, top, bottom), b)
                 top, bottom = ends_along(points, c)
-                volume = keep(height, wide, dot(between(points, top, bottom), c), a, b, c, found)
-                if margin > TIE:
-                    note(volume, a, b, c, margin, found)
+                keep(height, wide, dot(between(points, top, bottom), c), a, b, c, found)
 
 
 @leaf
@@ -274,7 +315,4 @@ def _search_curve(
         numerator(factors), bottom, limit, curve.low, curve.high
     ):
         return
-    volume, x = least_on_curve(points, table, curve, edges[i, 0], edges[k, 0], margin, found)
-    if volume < np.inf and margin > TIE:
-        a, b, c = frame_on(curve, x)
-        note(volume, a, b, c, margin, found)
+    least_on_curve(points, table, curve, edges[i, 0], edges[k, 0], margin, found)

@@ -9,7 +9,7 @@ from regolith_studio.geometry.compiled import kernel, leaf
 from regolith_studio.geometry.inlined import inlined
 from regolith_studio.geometry.vectors import Vector
 
-FEWEST_CELLS, MOST_CELLS = 9, 64
+FEWEST_CELLS, MOST_CELLS = 20, 64
 """Directions are told apart by a grid of so many cells along the edge of a cube: as many as the square root
 of the number of vertices."""
 BLOCK = 256
@@ -54,7 +54,7 @@ def between(points: FloatArray, one: int, two: int) -> Vector:
 @kernel
 def ends_along_each(points: FloatArray, directions: FloatArray) -> IntArray:
     """:func:`ends_along` for all directions, shape (3, m), several at once: shape (2, m), top and bottom."""
-    m = directions.shape[1]
+    m, n = directions.shape[1], points.shape[1]
     ends = np.empty((2, m), np.int64)
     one, two, three = np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)
     low, high, bottom, top = np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)
@@ -67,14 +67,17 @@ def ends_along_each(points: FloatArray, directions: FloatArray) -> IntArray:
                 directions[2, start + k],
             )
             low[k], high[k], bottom[k], top[k] = np.inf, -np.inf, 0.0, 0.0
-        for i in range(points.shape[1]):
+        for i in range(0, n, 2):
+            j = min(i + 1, n - 1)
             x, y, z, number = points[0, i], points[1, i], points[2, i], float(i)
+            u, v, w, other = points[0, j], points[1, j], points[2, j], float(j)
             for k in range(count):
                 here = x * one[k] + y * two[k] + z * three[k]
-                bottom[k] = number if here < low[k] else bottom[k]
-                low[k] = min(low[k], here)
-                top[k] = number if here > high[k] else top[k]
-                high[k] = max(high[k], here)
+                there = u * one[k] + v * two[k] + w * three[k]
+                at, least = number if here < low[k] else bottom[k], min(low[k], here)
+                bottom[k], low[k] = other if there < least else at, min(least, there)
+                at, most = number if here > high[k] else top[k], max(high[k], here)
+                top[k], high[k] = other if there > most else at, max(most, there)
         for k in range(count):
             ends[0, start + k], ends[1, start + k] = int(top[k]), int(bottom[k])
     return ends

@@ -20,8 +20,7 @@ from regolith_studio.geometry.box_curve import (
     value,
 )
 from regolith_studio.geometry.box_facets import arcs_of, facets_of, least_third, with_all_edges
-from regolith_studio.geometry.box_record import note, nothing_below
-from regolith_studio.geometry.box_search import boxes_near_least, minimum_box
+from regolith_studio.geometry.box_record import nothing_below
 from regolith_studio.geometry.box_widths import ends_along, ends_along_each, span_near, span_table
 from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.hull_graph import hull_graph
@@ -117,29 +116,6 @@ def test_that_the_least_box_on_a_curve_is_that_of_a_fine_grid(seed: int) -> None
         volume, _ = search(on(points), span_table(on(points)), curve, 0, 0, 0.0, nothing_below(np.inf))
         assert volume == pytest.approx(min(volumes), rel=1e-4)
         assert volume <= min(volumes) * (1 + 1e-12)
-
-
-@pytest.mark.parametrize("seed", range(4))
-def test_that_all_boxes_on_the_list_hold_the_solid_and_come_near_the_least(seed: int) -> None:
-    hull = random_polyhedron(seed, 20).hull
-    vertices = np.array(hull.vertices)
-    found = boxes_near_least(facets_of(hull_graph(vertices, hull.faces)), 0.05, np.inf)
-    least = np.prod(np.ptp(vertices @ minimum_box(vertices, hull.faces).T, axis=0))
-    count = int(found.record[2])
-    assert count > 0
-    assert found.volumes[:count].min() == pytest.approx(least, rel=1e-9)
-    for volume, frame in zip(found.volumes[:count], found.frames[:count], strict=True):
-        assert volume == pytest.approx(np.prod(np.ptp(vertices @ frame.T, axis=0)), rel=1e-9)
-        assert volume <= found.record[0] * 1.05 * (1 + 1e-9)
-
-
-def test_that_of_too_many_boxes_the_largest_goes() -> None:
-    found = nothing_below(1.0)
-    for k in range(100):
-        angle = 0.01 * k
-        a, b = (np.cos(angle), np.sin(angle), 0.0), (-np.sin(angle), np.cos(angle), 0.0)
-        note(2.0 - 0.01 * k, a, b, (0.0, 0.0, 1.0), 2.0, found)
-    assert np.sort(found.volumes) == pytest.approx(1.01 + 0.01 * np.arange(64))
 
 
 def test_that_a_facet_with_an_edge_that_is_ruled_out_is_not_asked() -> None:

@@ -1,0 +1,178 @@
+"""Many curves of boxes side by side, against one at a time and against plain arithmetic."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.box_curve import frame_on
+from regolith_studio.geometry.box_facets import Facets, arcs_of, facets_of
+from regolith_studio.geometry.box_lanes import (
+    BROKEN,
+    CUT,
+    FEET,
+    HIGH,
+    LANES,
+    LOW,
+    NORMALS,
+    OTHER,
+    RULED_OUT,
+    SPANS,
+    X,
+    cells_of,
+    curve_in,
+    curves_between,
+    look_along,
+    look_up,
+    rule_out,
+    set_aside,
+    take_back,
+    where_bounds_meet,
+)
+from regolith_studio.geometry.box_record import nothing_below
+from regolith_studio.geometry.box_search import minimum_box
+from regolith_studio.geometry.box_sieve import Sieve, add_pair, empty_sieve, whole_curves, work_off
+from regolith_studio.geometry.box_widths import span_near, span_table
+from regolith_studio.geometry.hull_graph import hull_graph
+from tests.geometry.solids import random_polyhedron
+
+
+def facets(seed: int) -> Facets:
+    hull = random_polyhedron(seed, 20).hull
+    return facets_of(hull_graph(np.array(hull.vertices), hull.faces))
+
+
+def full_lanes(solid: Facets, seed: int = 0) -> tuple[Sieve, FloatArray]:
+    """Curves of pairs of edges with orthogonal normals, one piece of arc each, in all lanes; and the rows."""
+    sieve, arcs = empty_sieve(), arcs_of(solid)
+    rng = np.random.default_rng(seed)
+    while sieve.filled[0] < LANES:
+        i, k = rng.integers(len(arcs), size=2)
+        products = solid.normals[solid.edges[i, 2:]] @ solid.normals[solid.edges[k, 2:]].T >= 0.0
+        if i != k and products.any() and not products.all() and (products[0] != products[1]).any():
+            if products[0, 0] == products[1, 1] and products[0, 1] == products[1, 0]:
+                continue
+            add_pair(solid, arcs, i, k, sieve)
+    curves_between(sieve.lanes, LANES)
+    return sieve, sieve.lanes.reshape(-1, LANES)
+
+
+def volumes_along(solid: Facets, sieve: Sieve, k: int, low: float, high: float) -> FloatArray:
+    """Volumes of boxes on a grid along the curve of lane k."""
+    curve = curve_in.py_func(sieve.lanes, k)  # type: ignore[attr-defined]
+    frames = np.array([frame_on(curve, x) for x in np.linspace(low, high, 101)])
+    return np.asarray(np.prod(np.ptp(frames @ solid.points, axis=2), axis=1))
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_that_curves_in_lanes_run_between_facets_and_are_flush_with_their_edges(seed: int) -> None:
+    solid = facets(seed)
+    sieve, rows = full_lanes(solid, seed)
+    for k in range(LANES):
+        curve = curve_in.py_func(sieve.lanes, k)  # type: ignore[attr-defined]
+        feet = rows[FEET : FEET + 2, k].astype(int)
+        assert curve.low < curve.high
+        for x in np.linspace(curve.low, curve.high, 5):
+            frame = np.array(frame_on(curve, x))
+            assert frame @ frame.T == pytest.approx(np.eye(3), abs=1e-11)
+            reach = frame[:2] @ solid.points
+            assert reach[[0, 1], feet] == pytest.approx(reach.max(axis=1), abs=1e-11)
+        for x in (curve.low, curve.high):
+            a, b, _ = frame_on(curve, x)
+            on_facets = rows[NORMALS : NORMALS + 12, k].reshape(4, 3) @ np.array([a, b]).T
+            assert np.sort(on_facets.ravel())[-1] == pytest.approx(1.0, abs=1e-12)
+
+
+def test_that_a_hyperbola_with_two_branches_in_the_square_is_called_broken() -> None:
+    rng = np.random.default_rng(2)
+    sieve = empty_sieve()
+    normals = rng.normal(size=(4, 3, LANES))
+    rows = sieve.lanes.reshape(-1, LANES)
+    rows[NORMALS : NORMALS + 12] = (normals / np.linalg.norm(normals, axis=1, keepdims=True)).reshape(12, -1)
+    curves_between(sieve.lanes, LANES)
+    signs = np.einsum("ick,jck->kij", normals[:2], normals[2:]) >= 0.0
+    diagonal = (signs[:, 0, 0] == signs[:, 1, 1]) & (signs[:, 0, 1] == signs[:, 1, 0])
+    broken = diagonal & (signs[:, 0, 0] != signs[:, 0, 1])
+    assert 0 < broken.sum() < LANES
+    assert (rows[BROKEN] == broken).all()
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_that_spans_in_lanes_are_those_of_the_table_and_of_the_farthest_vertices(seed: int) -> None:
+    solid = facets(seed)
+    table, (sieve, rows) = span_table(solid.points), full_lanes(solid, seed)
+    rows[X] = np.random.default_rng(seed).uniform(rows[LOW], rows[HIGH])
+    cells_of(sieve.lanes, LANES, table.cells)
+    look_up(sieve.lanes, LANES, table, 0)
+    looked_up = rows[SPANS : SPANS + 9].copy()
+    look_along(sieve.lanes, LANES, solid.points)
+    for k in range(LANES):
+        axes = frame_on(curve_in.py_func(sieve.lanes, k), rows[X, k])  # type: ignore[attr-defined]
+        for axis, near, far in zip(
+            axes, looked_up[:, k].reshape(3, 3), rows[SPANS : SPANS + 9, k].reshape(3, 3), strict=True
+        ):
+            reach = np.array(axis) @ solid.points
+            assert np.array(axis) @ far == pytest.approx(np.ptp(reach), rel=1e-12)
+            assert near.tolist() == list(span_near(table, axis))
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_that_no_box_on_a_piece_that_is_ruled_out_is_below_the_limit(seed: int) -> None:
+    solid = facets(seed)
+    sieve, rows = full_lanes(solid, seed)
+    least = [volumes_along(solid, sieve, k, rows[LOW, k], rows[HIGH, k]).min() for k in range(LANES)]
+    limit = float(np.median(least)) * 0.97
+    rows[X] = rows[LOW]
+    look_along(sieve.lanes, LANES, solid.points)
+    set_aside(sieve.lanes, LANES)
+    begin, begins = rows[SPANS : SPANS + 9].copy(), rows[LOW].copy()
+    rows[X] = rows[HIGH]
+    look_along(sieve.lanes, LANES, solid.points)
+    where_bounds_meet(sieve.lanes, LANES)
+    assert ((rows[CUT] > rows[LOW]) & (rows[CUT] < rows[HIGH])).all()
+    rows[LOW] = rows[CUT]
+    rule_out(sieve.lanes, LANES, limit)
+    after = rows[RULED_OUT].copy() == 1.0
+    take_back(sieve.lanes, LANES)
+    assert (rows[SPANS : SPANS + 9] == begin).all()
+    assert (rows[OTHER : OTHER + 9] == begin).all()
+    ends = rows[HIGH].copy()
+    rows[LOW], rows[HIGH], rows[X] = begins, rows[CUT], begins
+    rule_out(sieve.lanes, LANES, limit)
+    before = rows[RULED_OUT] == 1.0
+    cuts = rows[CUT].copy()
+    assert 0 < (before & after).sum() < LANES
+    for k in range(LANES):
+        for ruled_out, (low, high) in zip(
+            (before[k], after[k]), pairwise((begins[k], cuts[k], ends[k])), strict=True
+        ):
+            rows[LOW, k], rows[HIGH, k] = begins[k], ends[k]
+            volumes = volumes_along(solid, sieve, k, low, high)
+            assert not ruled_out or volumes.min() >= limit * (1.0 - 1e-12)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_that_what_waits_holds_the_least_box_and_working_it_off_finds_it(seed: int) -> None:
+    """All pairs but those with two curves; the least box of the solids here is on none of those."""
+    solid = facets(seed)
+    hull = random_polyhedron(seed, 20).hull
+    axes = minimum_box(np.array(hull.vertices), hull.faces)
+    least = float(np.prod(np.ptp(axes @ hull.vertices.T, axis=1)))
+    arcs, table, sieve = arcs_of(solid), span_table(solid.points), empty_sieve()
+    found = nothing_below(1.02 * least)
+    for i in range(len(arcs)):
+        for k in range(i, len(arcs)):
+            products = solid.normals[solid.edges[i, 2:]] @ solid.normals[solid.edges[k, 2:]].T >= 0.0
+            if products.all() or not products.any():
+                continue
+            add_pair(solid, arcs, i, k, sieve)
+            if sieve.filled[0] == LANES:
+                whole_curves(table, float(found.record[0]), sieve)
+                sieve.filled[0] = 0
+                work_off(solid.points, table, 0.0, found, sieve)
+    whole_curves(table, float(found.record[0]), sieve)
+    work_off(solid.points, table, 0.0, found, sieve)
+    assert sieve.filled[1] == 0
+    assert found.record[0] == pytest.approx(least, rel=1e-8)
+    assert np.prod(np.ptp(found.axes @ solid.points, axis=1)) == pytest.approx(least, rel=1e-8)
