@@ -30,6 +30,8 @@ from regolith_studio.cli.options import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from regolith_studio.session.choices import Choices
 
 FACES = 20
@@ -58,17 +60,17 @@ def coarsen(
     seed: Seed = 0,
 ) -> None:
     """Coarsen meshes to convex polyhedra that keep the chosen descriptors (section 2.4)."""
-    from dataclasses import replace
-
     from regolith_studio.cli.inputs import exit_code, read_inputs
     from regolith_studio.cli.terminal import complain, follow, print_json, print_table
     from regolith_studio.jobs.coarsening import coarsen_sample
     from regolith_studio.session.outputs.coarsening import coarsening_document, error_table, write_coarsening
     from regolith_studio.session.outputs.staging import staged_folder
 
-    faces = faces_from(faces, triangles, max_error)
-    wish = choices_from(faces, method, preset, weight, set_, target, l_max, seed, star_point, rule, reference)
-    order = replace(wish.order, largest_error=None if max_error is None else max_error / 100.0)
+    wish = choices_from(
+        *(faces, method, preset, weight, set_, target, l_max, seed, star_point, rule, reference),
+        fineness=fineness_from(faces, triangles, max_error),
+    )
+    order = wish.order
     loaded = read_inputs(meshes, unit, repair)
     done = follow(coarsen_sample(loaded.particles, order, jobs))
     with staged_folder(output) as stage:
@@ -86,17 +88,15 @@ def coarsen(
     raise typer.Exit(exit_code(meshes, loaded, len(failed)))
 
 
-def faces_from(faces: int, triangles: int | None, max_error: float | None) -> int:
-    """The number of facets that the options ask for; more than one of them is bad use."""
-    from regolith_studio.coarsening.budgets import faces_for_triangles
-    from regolith_studio.errors import InputError
-
-    with as_bad_use():
-        if (faces != FACES) + (triangles is not None) + (max_error is not None) > 1:
-            raise InputError("Only one of --faces, --triangles and --max-error can say how fine to be.")
-        if max_error is not None and not max_error > 0.0:
-            raise InputError(f"The largest error must be above 0 per cent, got {max_error:g}.")
-        return faces if triangles is None else faces_for_triangles(triangles)
+def fineness_from(faces: int, triangles: int | None, max_error: float | None) -> dict[str, object]:
+    """The choices that the options stand for which say how fine to be; more than one is bad use."""
+    if (faces != FACES) + (triangles is not None) + (max_error is not None) > 1:
+        raise typer.BadParameter("Only one of --faces, --triangles and --max-error can say how fine to be.")
+    if triangles is not None:
+        return {"stop_at": "triangles", "n_triangles": triangles}
+    if max_error is not None:
+        return {"stop_at": "error", "largest_error": round(max_error / 100.0, 12)}
+    return {}
 
 
 def choices_from(
@@ -111,8 +111,15 @@ def choices_from(
     star_point: str,
     rule: str,
     reference: str,
+    fineness: "Mapping[str, object] | None" = None,
 ) -> "Choices":
-    """The choices that the options of a coarsening stand for; a bad one is bad use."""
+    """The choices that the options of a coarsening stand for; a bad one is bad use.
+
+    Parameters
+    ----------
+    fineness
+        From :func:`fineness_from`, where more than the number of facets can be asked for.
+    """
     from regolith_studio.coarsening.coarsen import DEFAULT_PRESET
     from regolith_studio.coarsening.weights import LossWeights
     from regolith_studio.session.choices import Choices
@@ -126,6 +133,7 @@ def choices_from(
         "rule": rule,
         "reference": reference,
         "seed": seed,
+        **(fineness or {}),
     }
     with as_bad_use():
         if method:

@@ -5,13 +5,14 @@ from typing import Annotated
 
 import typer
 
-from regolith_studio.cli.coarsen import choices_from
+from regolith_studio.cli.coarsen import FACES, choices_from, fineness_from
 from regolith_studio.cli.options import (
     Faces,
     Folder,
     Jobs,
     Json,
     LMax,
+    MaxError,
     Meshes,
     Method,
     Preset,
@@ -22,6 +23,7 @@ from regolith_studio.cli.options import (
     Settings,
     StarPoint,
     Target,
+    Triangles,
     Unit,
     Weights,
     as_bad_use,
@@ -44,7 +46,9 @@ app = typer.Typer(
 def build(
     meshes: Meshes,
     output: Folder,
-    faces: Faces = 20,
+    faces: Faces = FACES,
+    triangles: Triangles = None,
+    max_error: MaxError = None,
     method: Method = "",
     preset: Preset = "",
     weight: Weights = None,
@@ -97,7 +101,10 @@ def build(
     from regolith_studio.studies.representatives import quality_table
     from regolith_studio.studies.tables import csv_text
 
-    wish = choices_from(faces, method, preset, weight, set_, target, l_max, seed, star_point, rule, reference)
+    wish = choices_from(
+        *(faces, method, preset, weight, set_, target, l_max, seed, star_point, rule, reference),
+        fineness=fineness_from(faces, triangles, max_error),
+    )
     with as_bad_use():
         parse_sizes(sizes)
         chosen = RepresentativesOrder.of(representatives or 10, weighting, size_importance, seed)

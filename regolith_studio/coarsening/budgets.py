@@ -1,10 +1,17 @@
 """Other ways to say how fine a polyhedron shall be: by triangles, or by the largest error."""
 
-from collections.abc import Generator
-from dataclasses import dataclass
+import math
+from collections.abc import Generator, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
-from regolith_studio.coarsening.coarsen import DEFAULT_METHOD, FACES_LIMITS, coarsen
+from regolith_studio.coarsening.coarsen import (
+    DEFAULT_METHOD,
+    DEFAULT_PRESET,
+    FACES_LIMITS,
+    coarsening_steps,
+)
+from regolith_studio.coarsening.progress import CoarseningProgress
 from regolith_studio.coarsening.result import Coarsened
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import JACCARD, LossWeights
@@ -29,8 +36,10 @@ def faces_for_triangles(n_triangles: int) -> int:
     Raises
     ------
     InputError
-        If the budget does not reach for 5 facets.
+        If the budget is no whole number or does not reach for 5 facets.
     """
+    if isinstance(n_triangles, bool) or n_triangles != int(n_triangles):
+        raise InputError(f"The number of triangles must be a whole number, got {n_triangles}.")
     n_faces = (int(n_triangles) + 12) // 4
     low, high = FACES_LIMITS
     if n_faces < low:
@@ -63,10 +72,12 @@ def fewest_faces(
     seed: int = 0,
     particle_index: int = 0,
     settings: Any = None,
-) -> Generator[Trial, None, Coarsened]:
+) -> Generator[CoarseningProgress | Trial, None, Coarsened]:
     """The polyhedron with the fewest faces whose weighted descriptors are all off by at most `limit`.
 
-    Doubles the number of faces from 5 until the limit is met, then halves the interval; yields each trial.
+    Doubles the number of faces from 5 until the limit is met, then halves the interval; yields the steps of
+    each coarsening, counted through, and each :class:`Trial`. Where not even 200 faces meet the limit, the
+    trial with the least error is the result, and its `reason` says so.
 
     Parameters
     ----------
@@ -78,39 +89,75 @@ def fewest_faces(
     Raises
     ------
     InputError
-        If the limit is not positive, or not even 200 faces meet it.
+        If the limit is not positive, or no descriptor has a weight.
     """
-    if not limit > 0.0:
-        raise InputError(f"The largest error must be above 0, got {limit}.")
-    if weights is None:
-        weights = LossWeights.from_preset("all")
+    check_limit(limit)
+    weights = LossWeights.from_preset(DEFAULT_PRESET) if weights is None else weights
     if jaccard_limit is None and weights.replaced(**{JACCARD: 0.0}).all_zero:
         raise InputError("No descriptor has a weight, so there is no error to stop at.")
     target = mesh if isinstance(mesh, Target) else Target.of(mesh)
+    done = 0
 
-    def tried(n_faces: int) -> Trial:
-        found = coarsen(target, n_faces, method, weights, seed, particle_index, settings)
-        return Trial(n_faces, largest_error(found, weights, jaccard_limit), found)
+    def tried(n_faces: int) -> Generator[CoarseningProgress | Trial, None, Trial]:
+        nonlocal done
+        before = done
+        steps = coarsening_steps(target, n_faces, method, weights, seed, particle_index, settings)
+        while True:
+            try:
+                step = next(steps)
+            except StopIteration as end:
+                trial = Trial(n_faces, largest_error(end.value, weights, jaccard_limit), end.value)
+                yield trial
+                return trial
+            done = before + step.step
+            yield replace(step, step=done, steps=before + step.steps)
 
     low, high = FACES_LIMITS
-    failed, n_faces = low - 1, low
-    while True:
-        trial = tried(n_faces)
-        yield trial
-        if trial.largest_error <= limit:
-            break
+    failed: list[Trial] = []
+    n_faces = low
+    while (best := (yield from tried(n_faces))).largest_error > limit:
+        failed.append(best)
         if n_faces == high:
-            raise InputError(
-                f"Not even {high} faces bring all errors below {100 * limit:g} %:"
-                f" the largest is still {100 * trial.largest_error:.2g} %."
-            )
-        failed, n_faces = n_faces, min(2 * n_faces, high)
-    best = trial
-    while best.n_faces - failed > 1:
-        trial = tried((best.n_faces + failed) // 2)
-        yield trial
+            return _least(failed, limit)
+        n_faces = min(2 * n_faces, high)
+    bottom = failed[-1].n_faces if failed else low - 1
+    while best.n_faces - bottom > 1:
+        trial = yield from tried((best.n_faces + bottom) // 2)
         if trial.largest_error <= limit:
             best = trial
         else:
-            failed = trial.n_faces
+            bottom = trial.n_faces
     return best.result
+
+
+def coarsen_below(mesh: Mesh | Target, limit: float, **options: Any) -> Coarsened:
+    """The result of :func:`fewest_faces`, whose `options` it takes."""
+    steps = fewest_faces(mesh, limit, **options)
+    while True:
+        try:
+            next(steps)
+        except StopIteration as end:
+            found: Coarsened = end.value
+            return found
+
+
+def check_limit(limit: float) -> None:
+    """Refuse what is no largest error.
+
+    Raises
+    ------
+    InputError
+        If it is not a positive number.
+    """
+    if not 0.0 < limit < math.inf:
+        raise InputError(f"The largest error must be above 0 per cent, got {100 * limit:g}.")
+
+
+def _least(failed: Sequence[Trial], limit: float) -> Coarsened:
+    """The best of the trials, with the reason why it is not good enough."""
+    least = min(failed, key=lambda trial: trial.largest_error)
+    reason = (
+        f"Not even {failed[-1].n_faces} faces bring all errors below {100 * limit:g} %:"
+        f" the least is {100 * least.largest_error:.2g} %, with {least.n_faces} faces."
+    )
+    return replace(least.result, reason=reason)

@@ -99,14 +99,18 @@ class CoarseningRecord:
 
     Parameters
     ----------
-    method, n_faces, seed
+    method, seed
         As asked.
+    n_faces
+        As asked; where `largest_error` is given, the most that may be taken.
     target
         ``particle`` or ``fit``: what was imitated.
     preset, weights
         Name of the preset, if one was used, and the loss weights of Eq. 9.
     settings
         Of the method, by name.
+    largest_error
+        Where given, each shape has the fewest facets whose weighted relative errors are all below it.
     """
 
     method: str
@@ -116,6 +120,7 @@ class CoarseningRecord:
     preset: str | None = None
     weights: Mapping[str, float] = field(default_factory=dict)
     settings: Mapping[str, Setting] = field(default_factory=dict)
+    largest_error: float | None = None
 
 
 @dataclass(frozen=True)

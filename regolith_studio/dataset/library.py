@@ -10,7 +10,7 @@ from regolith_studio.dataset.document import shape_of
 from regolith_studio.dataset.exporting import FORMAT as EXPORT_FORMAT
 from regolith_studio.dataset.exporting import RECORD
 from regolith_studio.dataset.reading import DOCUMENT, dataset_hash, read_document
-from regolith_studio.dataset.schema import DatasetDocument
+from regolith_studio.dataset.schema import CoarseningRecordModel, DatasetDocument
 from regolith_studio.dataset.strict_json import strict_json
 from regolith_studio.errors import DatasetError, RegolithError, reason_of
 from regolith_studio.geometry.mesh import Mesh
@@ -138,7 +138,7 @@ def _facts(document: DatasetDocument) -> dict[str, str]:
         "Sources": _few(sources),
         "Steps": " ".join(metadata.processing_steps),
         "Model": metadata.model or "",
-        "Coarsening": f"{coarsening.method}, {coarsening.n_faces} faces, seed {coarsening.seed}"
+        "Coarsening": f"{coarsening.method}, {_fineness(coarsening)}, seed {coarsening.seed}"
         if coarsening
         else "",
         "Software": ", ".join(f"{name} {version}" for name, version in sorted(metadata.software.items())),
@@ -185,6 +185,12 @@ def _record(path: Path, format: str) -> dict[str, Any]:
     if not isinstance(content, dict) or content.get("format") != format:
         raise DatasetError(f"{path} was not written by Regolith Studio.")
     return content
+
+
+def _fineness(coarsening: CoarseningRecordModel) -> str:
+    if coarsening.largest_error is None:
+        return f"{coarsening.n_faces} faces"
+    return f"errors below {100 * coarsening.largest_error:g} %"
 
 
 def _few(names: Sequence[str], most: int = 5) -> str:

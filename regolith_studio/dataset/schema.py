@@ -99,12 +99,16 @@ class CoarseningRecordModel(Record):
     """What was asked of the coarsening of all shapes."""
 
     method: str
-    n_faces: int
+    n_faces: int = Field(description="The most that may be taken where largest_error is given.")
     seed: int
     target: str = Field(description="particle, or fit: what was imitated.")
     preset: str | None
     weights: dict[str, float] = Field(description="Loss weights of Eq. 9.")
     settings: dict[str, Scalar]
+    largest_error: float | None = Field(
+        default=None,
+        description="Where given, each shape has the fewest facets whose weighted errors are all below it.",
+    )
 
 
 class RepresentationRecord(Record):

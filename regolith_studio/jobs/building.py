@@ -88,7 +88,7 @@ def build_dataset_folder(
     """
     check_place(folder, options.overwrite)
     chosen_count = len(particles) if options.representatives is None else options.representatives.count
-    check_count(chosen_count, order.n_faces)
+    check_count(chosen_count, order.most_faces)
     sizing = parse_sizes(options.sizes)
     if options.representatives is None:
         chosen, outcomes = None, (yield from coarsen_sample(particles, order, options.workers))
@@ -208,18 +208,19 @@ def story(fitted: Sequence[ShCoefficients], order: CoarseningOrder, preset: str 
     lengths = order.expansion.reference == USUAL.reference
     record = CoarseningRecord(
         method=order.method,
-        n_faces=order.n_faces,
+        n_faces=order.most_faces,
         seed=order.seed,
         target=order.target,
         preset=preset,
         weights=dict(order.weights),
         settings=dict(order.settings),
+        largest_error=order.largest_error,
     )
     return Provenance(
         processing_steps=(
             "Meshes read and repaired.",
             *(fit if order.target == "fit" else ()),
-            f"Coarsened to {order.n_faces} faces by the method {order.method}.",
+            f"Coarsened to {order.fineness} by the method {order.method}.",
             "Turned to principal axes and scaled to unit volume.",
         ),
         seed=order.seed,

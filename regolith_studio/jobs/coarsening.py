@@ -6,8 +6,9 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
-from regolith_studio.coarsening.budgets import fewest_faces
-from regolith_studio.coarsening.coarsen import DEFAULT_METHOD, coarsening_steps
+from regolith_studio.coarsening.budgets import Trial, fewest_faces
+from regolith_studio.coarsening.coarsen import DEFAULT_METHOD, FACES_LIMITS, coarsening_steps
+from regolith_studio.coarsening.progress import CoarseningProgress
 from regolith_studio.coarsening.result import Coarsened
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import LossWeights
@@ -52,6 +53,18 @@ class CoarseningOrder:
     level: int = 4
     expansion: Expansion = USUAL
     largest_error: float | None = None
+
+    @property
+    def most_faces(self) -> int:
+        """Facets that no polyhedron exceeds."""
+        return self.n_faces if self.largest_error is None else FACES_LIMITS[1]
+
+    @property
+    def fineness(self) -> str:
+        """How fine the polyhedra are, to be put into a sentence."""
+        if self.largest_error is None:
+            return f"{self.n_faces} faces"
+        return f"the fewest faces whose errors are all below {100 * self.largest_error:g} %"
 
 
 @dataclass(frozen=True)
@@ -147,42 +160,26 @@ def _target(mesh: Mesh) -> Target:
 
 
 def _told(mesh: Mesh, order: CoarseningOrder, index: int) -> Generator[Step, None, Any]:
-    if order.largest_error is not None:
-        return (yield from _tried(mesh, order, order.largest_error, index))
-    steps = coarsening_steps(
-        _target(mesh),
-        n_faces=order.n_faces,
-        method=order.method,
-        weights=order.weights,
-        seed=order.seed,
-        particle_index=index,
-        settings=dict(order.settings),
-    )
+    common: dict[str, Any] = {
+        "method": order.method,
+        "weights": order.weights,
+        "seed": order.seed,
+        "particle_index": index,
+        "settings": dict(order.settings),
+    }
+    steps: Generator[CoarseningProgress | Trial, None, Coarsened]
+    if order.largest_error is None:
+        steps = coarsening_steps(_target(mesh), order.n_faces, **common)
+    else:
+        steps = fewest_faces(_target(mesh), order.largest_error, **common)
+    tried = ""
     while True:
         try:
             step = next(steps)
         except StopIteration as end:
             return end.value
+        if isinstance(step, Trial):
+            tried = f"{step.n_faces} faces: {100 * step.largest_error:.2g} %"
+            continue
         yield Partial(step)
-        yield Progress(step.step, step.steps)
-
-
-def _tried(mesh: Mesh, order: CoarseningOrder, limit: float, index: int) -> Generator[Step, None, Any]:
-    """Ever other numbers of facets until the fewest are known that meet the limit."""
-    trials = fewest_faces(
-        _target(mesh),
-        limit,
-        method=order.method,
-        weights=order.weights,
-        seed=order.seed,
-        particle_index=index,
-        settings=dict(order.settings),
-    )
-    done = 0
-    while True:
-        try:
-            trial = next(trials)
-        except StopIteration as end:
-            return end.value
-        done += 1
-        yield Progress(done, 0, f"{trial.n_faces} faces: {100 * trial.largest_error:.2g} %")
+        yield Progress(step.step, step.steps, tried)

@@ -237,4 +237,4 @@ def _shaped(order: CoarseningOrder, key: str, value: float | str) -> CoarseningO
         return replace(order, weights=known[str(value)].weights)
     if not isinstance(value, int) or not 4 <= value <= 1000:
         raise InputError(f"A particle has between 4 and 1,000 facets, got {value}.")
-    return replace(order, n_faces=value)
+    return replace(order, n_faces=value, largest_error=None)

@@ -4,6 +4,7 @@ import dataclasses
 from dataclasses import dataclass, field
 from typing import Any, Self
 
+from regolith_studio.coarsening.budgets import check_limit, faces_for_triangles
 from regolith_studio.coarsening.coarsen import DEFAULT_METHOD, DEFAULT_PRESET, FACES_LIMITS, settings_of
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.descriptors.facts import BOX_METRICS
@@ -18,6 +19,14 @@ L_MAX_LIMIT = 30
 """Highest degree that is fitted; every lower one is a truncation of that fit."""
 LEVEL_LIMITS = (0, 7)
 TARGETS = {"fit": "surface of the spherical-harmonics fit", "particle": "CT particle itself"}
+
+
+STOPS = {
+    "faces": "a number of facets",
+    "triangles": "a number of triangles",
+    "error": "the fewest facets whose errors are all small enough",
+}
+"""What says how fine a polyhedron is."""
 
 
 @dataclass(frozen=True)
@@ -35,8 +44,14 @@ class Choices:
         Degree at which the spherical-harmonics series is cut, 0 to 30.
     level
         Subdivisions of the icosahedron that the fit is drawn on; 4 gives 5,120 triangles.
+    stop_at
+        Key of :data:`STOPS`; of the next three numbers only one counts, the others are kept.
     n_faces
         Facets asked of the coarsened polyhedron.
+    n_triangles
+        Most triangles that it may have.
+    largest_error
+        That its weighted descriptors may have, a fraction.
     method, settings
         Key of the coarsening method, and those of its settings that differ from its defaults, as
         sorted (name, value) pairs.
@@ -66,7 +81,10 @@ class Choices:
     reference: str = USUAL.reference
     l_max: int = 10
     level: int = 4
+    stop_at: str = "faces"
     n_faces: int = 20
+    n_triangles: int = 68
+    largest_error: float = 0.01
     method: str = DEFAULT_METHOD
     settings: tuple[tuple[str, Scalar], ...] = ()
     weights: LossWeights = field(default_factory=lambda: LossWeights.from_preset(DEFAULT_PRESET))
@@ -81,6 +99,9 @@ class Choices:
         _within("l_max", self.l_max, 0, L_MAX_LIMIT)
         _within("The subdivision level", self.level, *LEVEL_LIMITS)
         _within("The number of faces", self.n_faces, *FACES_LIMITS)
+        _one_of("number that coarsening stops at", self.stop_at, tuple(STOPS))
+        faces_for_triangles(self.n_triangles)
+        check_limit(self.largest_error)
         _within("The seed", self.seed, 0, 2**63 - 1)
         _one_of("target of the coarsening", self.target, tuple(TARGETS))
         _one_of("box metric", self.box_metric, tuple(BOX_METRICS))
@@ -112,11 +133,21 @@ class Choices:
         return Expansion(self.star_point, self.rule, self.reference)
 
     @property
+    def face_count(self) -> int:
+        """Facets that are asked for; where the errors say so, those that studies take."""
+        return faces_for_triangles(self.n_triangles) if self.stop_at == "triangles" else self.n_faces
+
+    @property
+    def fineness(self) -> tuple[int, float | None]:
+        """What of :attr:`stop_at` and its numbers makes a difference to a polyhedron."""
+        return (0, self.largest_error) if self.stop_at == "error" else (self.face_count, None)
+
+    @property
     def order(self) -> CoarseningOrder:
         """What is asked of a coarsening."""
         return CoarseningOrder(
             weights=self.weights,
-            n_faces=self.n_faces,
+            n_faces=self.face_count,
             method=self.method,
             settings=self.settings,
             seed=self.seed,
@@ -124,6 +155,7 @@ class Choices:
             l_max=self.l_max,
             level=self.level,
             expansion=self.expansion,
+            largest_error=self.fineness[1],
         )
 
     @property

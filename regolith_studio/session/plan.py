@@ -28,11 +28,11 @@ DEPENDS_ON: Mapping[Kind, tuple[str, ...]] = {
     Kind.FIT: ("selected", *_EXPANSION),
     Kind.SURFACE: ("selected", *_EXPANSION, "l_max", "level"),
     Kind.DESCRIPTORS: ("selected", *_EXPANSION, "l_max", "level", "box_metric"),
-    Kind.COARSENING: ("selected", "target", "n_faces", "method", "settings", "weights", "seed"),
+    Kind.COARSENING: ("selected", "target", "fineness", "method", "settings", "weights", "seed"),
     Kind.LMAX_STUDY: (*_EXPANSION, "level"),
-    Kind.COARSENING_STUDY: ("target", "n_faces", "method", "settings", "seed"),
+    Kind.COARSENING_STUDY: ("target", "face_count", "method", "settings", "seed"),
 }
-"""The choices that each kind of result depends on."""
+"""The choices, and what follows from them, that each kind of result depends on."""
 _COARSENING_OF_FIT = (*_EXPANSION, "l_max", "level")
 
 _UPSTREAM: Mapping[Kind, tuple[Kind, ...]] = {

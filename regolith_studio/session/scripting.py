@@ -9,7 +9,7 @@ from regolith_studio.session.recipe import SAMPLE
 def as_command(choices: Choices, inputs: list[str]) -> str:
     """The ``coarsen`` command that does to all particles what the window does to one."""
     words = ["regolith-studio", "coarsen", *inputs]
-    words += ["-o", "coarsened", "--faces", str(choices.n_faces), "--method", choices.method]
+    words += ["-o", "coarsened", *_fineness_options(choices), "--method", choices.method]
     words += ["--seed", str(choices.seed), "--target", choices.target]
     if choices.target == "fit":
         words += ["--l-max", str(choices.l_max)]
@@ -41,9 +41,11 @@ def as_python(choices: Choices, source: str) -> str:
         named = "" if source == SAMPLE or not name else f" if each.name == {name!r}"
         reading = f"next(each for each in sample_particles(){named})"
     body = "reconstruct(fit, l_max, level)" if choices.target == "fit" else "particle.mesh"
-    doors = "coarsen, fit_harmonics" if sample else "coarsen, fit_harmonics, read_mesh"
+    until = choices.stop_at == "error"
+    doors = [*([] if until else ["coarsen"]), "fit_harmonics", *([] if sample else ["read_mesh"])]
     lines = [
-        f"from regolith_studio import {doors}",
+        f"from regolith_studio import {', '.join(doors)}",
+        *(["from regolith_studio.coarsening.budgets import coarsen_below"] if until else []),
         "from regolith_studio.coarsening.coarsen import settings_of",
         "from regolith_studio.coarsening.weights import LossWeights",
         "from regolith_studio.harmonics.surface import reconstruct",
@@ -55,13 +57,32 @@ def as_python(choices: Choices, source: str) -> str:
         f"target = {body}",
         f"weights = LossWeights.of(**{dict(choices.weights)!r})",
         f"settings = settings_of({choices.method!r}, {dict(choices.settings)!r})",
-        "done = coarsen(",
-        f"    target, n_faces={choices.n_faces}, method={choices.method!r}, weights=weights,",
-        f"    seed={choices.seed}, settings=settings,",
-        ")",
+        *_coarsening(choices),
         "print(done.n_faces, done.errors, done.jaccard_distance)",
     ]
     return "\n".join(lines) + "\n"
+
+
+def _fineness_options(choices: Choices) -> list[str]:
+    match choices.stop_at:
+        case "triangles":
+            return ["--triangles", str(choices.n_triangles)]
+        case "error":
+            return ["--max-error", f"{100 * choices.largest_error:.12g}"]
+    return ["--faces", str(choices.n_faces)]
+
+
+def _coarsening(choices: Choices) -> list[str]:
+    """The call that coarsens; of a budget of triangles the number of facets that it allows."""
+    door, fineness = "coarsen", f"n_faces={choices.face_count}"
+    if choices.stop_at == "error":
+        door, fineness = "coarsen_below", f"limit={choices.largest_error!r}"
+    return [
+        f"done = {door}(",
+        f"    target, {fineness}, method={choices.method!r}, weights=weights,",
+        f"    seed={choices.seed}, settings=settings,",
+        ")",
+    ]
 
 
 def _expanding(choices: Choices) -> str:

@@ -43,7 +43,7 @@ def draw_solids(
     Parameters
     ----------
     order
-        Method, faces, settings, seed and target of all.
+        Method, number of faces, settings, seed and target of all.
     rows
         Whose weights are taken; those of Fig. 8 by default.
     """
@@ -64,9 +64,10 @@ def draw_solids(
 
 
 def _by_row(order: CoarseningOrder, row: StudyRow) -> CoarseningOrder:
+    plain = dataclasses.replace(order, weights=row.weights, largest_error=None)
     if row.weights.all_zero:  # the quadric start itself
-        return dataclasses.replace(order, weights=row.weights, method="quadric", settings=())
-    return dataclasses.replace(order, weights=row.weights)
+        return dataclasses.replace(plain, method="quadric", settings=())
+    return plain
 
 
 def _outcome(

@@ -12,7 +12,7 @@ CHOSEN = "chosen"
 
 def present_row(choices: Choices) -> StudyRow:
     """What is chosen now, as a row."""
-    return StudyRow("Chosen weights", choices.weights, choices.method, choices.n_faces, choices.settings)
+    return StudyRow("Chosen weights", choices.weights, choices.method, choices.face_count, choices.settings)
 
 
 def loss_names() -> dict[str, str]:

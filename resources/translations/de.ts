@@ -1568,6 +1568,11 @@
    <translation>Jedes mit</translation>
   </message>
   <message>
+   <location filename="ui/pages/dataset/shown.py" />
+   <source>Each with {fineness}; method: {method}; chosen on the page Explore.</source>
+   <translation>Jedes Polyeder mit {fineness}; Verfahren: {method}; gewählt auf der Seite Erkunden.</translation>
+  </message>
+  <message>
    <source>Earth</source>
    <translation>Erde</translation>
   </message>
@@ -1659,6 +1664,11 @@
    <location filename="ui/pages/studies/page.py" />
    <source>Error of coarsened particles</source>
    <translation>Fehler vergröberter Partikel</translation>
+  </message>
+  <message>
+   <location filename="ui/panels/coarsening.py" />
+   <source>Error ≤</source>
+   <translation>Fehler ≤</translation>
   </message>
   <message>
    <location filename="ui/pages/explore/plot_area.py" />
@@ -2543,6 +2553,11 @@
    <translation>Größter Äquivalentradius</translation>
   </message>
   <message>
+   <location filename="ui/panels/coarsening.py" />
+   <source>Largest error</source>
+   <translation>Größter Fehler</translation>
+  </message>
+  <message>
    <location filename="ui/panels/lmax_study.py" />
    <source>Largest error in percent</source>
    <translation>Größter Fehler in Prozent</translation>
@@ -2971,6 +2986,11 @@
    <translation>Mehr als {count:,} Partikel sind Sache anderer Programme: exportieren Sie den Datensatz.</translation>
   </message>
   <message>
+   <location filename="ui/panels/coarsening.py" />
+   <source>Most triangles</source>
+   <translation>Meiste Dreiecke</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/shortcuts.py" />
    <source>Mouse in the views</source>
    <translation>Maus in den Ansichten</translation>
@@ -3145,6 +3165,11 @@
   <message>
    <source>Normal force</source>
    <translation>Normalkraft</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>Not even {faces} faces bring all errors below {limit} %: the least is {error} %, with {count} faces.</source>
+   <translation>Nicht einmal {faces} Facetten bringen alle Fehler unter {limit} %: Der kleinste ist {error} %, mit {count} Facetten.</translation>
   </message>
   <message>
    <location filename="ui/panels/fit.py" />
@@ -5018,6 +5043,11 @@
    <translation>Die Entwicklung bis l = {degree} verfehlt den Radius im quadratischen Mittel um {error}: sie schwingt, wie sie es bei flachen und länglichen Körnern tut.</translation>
   </message>
   <message>
+   <location filename="ui/panels/coarsening.py" />
+   <source>The fewest facets are sought whose weighted descriptors are all off by no more than this; of V and CH, which cannot both be met, beyond what none can avoid.</source>
+   <translation>Gesucht werden die wenigsten Facetten, deren gewichtete Deskriptoren alle höchstens um so viel abweichen; bei V und CH, die nicht beide zu treffen sind, über das Unvermeidliche hinaus.</translation>
+  </message>
+  <message>
    <location filename="ui/pages/lecture/field.py" />
    <source>The field on the sphere</source>
    <translation>Das Feld auf der Kugel</translation>
@@ -5198,6 +5228,11 @@
    <location filename="ui/pages/studies/gallery.py" />
    <source>The polyhedra of six particles as each loss function makes them, as in Fig. 7 of the paper.</source>
    <translation>Die Polyeder von sechs Partikeln, wie jede Verlustfunktion sie macht, wie in Bild 7 des Artikels.</translation>
+  </message>
+  <message>
+   <location filename="ui/panels/coarsening.py" />
+   <source>The polyhedron has as many facets as surely have no more triangles than this.</source>
+   <translation>Das Polyeder hat so viele Facetten, wie sicher nicht mehr Dreiecke als diese haben.</translation>
   </message>
   <message>
    <location filename="ui/pages/lecture/annealing.py" />
@@ -5428,6 +5463,11 @@
    <location filename="ui/pages/explore/pictures.py" />
    <source>Transparent background</source>
    <translation>Durchsichtiger Hintergrund</translation>
+  </message>
+  <message>
+   <location filename="ui/panels/coarsening.py" />
+   <source>Triangles</source>
+   <translation>Dreiecke</translation>
   </message>
   <message>
    <source>Turn [rad]</source>
@@ -5771,6 +5811,11 @@
    <translation>Wonach Repräsentanten zählen</translation>
   </message>
   <message>
+   <location filename="ui/panels/coarsening.py" />
+   <source>What says how fine the polyhedron is</source>
+   <translation>Wonach sich richtet, wie fein das Polyeder ist</translation>
+  </message>
+  <message>
    <source>What the fit and the polyhedron keep</source>
    <translation>Was Fit und Polyeder bewahren</translation>
   </message>
@@ -6045,7 +6090,7 @@
    <translation>mindestens {limit}</translation>
   </message>
   <message>
-   <location filename="ui/dialogs/export.py" />
+   <location filename="ui/fineness.py" />
    <source>at most {faces} facets, {triangles} triangles</source>
    <translation>höchstens {faces} Facetten, {triangles} Dreiecken</translation>
   </message>
@@ -6576,6 +6621,7 @@
    <translation>fast ein Ellipsoid</translation>
   </message>
   <message>
+   <location filename="ui/pages/sample/health.py" />
    <location filename="ui/translation/sentences.py" />
    <source>no</source>
    <translation>nein</translation>
@@ -6945,6 +6991,11 @@
    <translation>die konvexen Polyeder selbst</translation>
   </message>
   <message>
+   <location filename="ui/fineness.py" />
+   <source>the fewest facets with all errors below {limit} %</source>
+   <translation>den wenigsten Facetten, deren Fehler alle unter {limit} % liegen</translation>
+  </message>
+  <message>
    <location filename="ui/pages/lecture/page.py" />
    <source>the fit at l&lt;sub&gt;max&lt;/sub&gt; = {degree}</source>
    <translation>der Fit bei l&lt;sub&gt;max&lt;/sub&gt; = {degree}</translation>
@@ -7123,6 +7174,7 @@
    <translation>y, x, z: wie Bilder in MATLAB</translation>
   </message>
   <message>
+   <location filename="ui/pages/sample/health.py" />
    <location filename="ui/translation/sentences.py" />
    <source>yes</source>
    <translation>ja</translation>
@@ -7211,11 +7263,6 @@
    <location filename="ui/pages/studies/gallery.py" />
    <source>{count} facets, Jaccard distance J = {distance:.3f}, loss of this row {loss:.3g}</source>
    <translation>{count} Facetten, Jaccard-Distanz J = {distance:.3f}, Verlust dieser Zeile {loss:.3g}</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/shown.py" />
-   <source>{count} facets, method: {method}; chosen on the page Explore.</source>
-   <translation>{count} Facetten, Verfahren: {method}; gewählt auf der Seite Erkunden.</translation>
   </message>
   <message>
    <location filename="ui/pages/studies/page.py" />
@@ -7323,6 +7370,11 @@
    <location filename="ui/dialogs/batch.py" />
    <source>{count} workers</source>
    <translation>{count} Arbeitsprozesse</translation>
+  </message>
+  <message>
+   <location filename="ui/dialogs/export.py" />
+   <source>{count}, as unit-volume STL files</source>
+   <translation>{count}, als STL-Dateien vom Volumen eins</translation>
   </message>
   <message>
    <location filename="ui/dialogs/export.py" />

@@ -34,6 +34,22 @@ def test_that_the_recipe_in_the_results_repeats_them(command, grains: Path, tmp_
         assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes()
 
 
+def test_that_a_recipe_stops_at_an_error_as_the_commands_do(command, grains: Path, tmp_path: Path) -> None:
+    grain = grains / "grain-b.stl"
+    entries = {"target": "particle", "method": "exact", "stop_at": "error", "largest_error": 0.02}
+    outputs = {"summary": True, "descriptors": False}
+    wish = recipe(tmp_path, grain, **entries, outputs=outputs)
+    assert command("run", wish, "-o", tmp_path / "out").code == 0
+    assert "the fewest faces whose errors are all below 2 %" in (tmp_path / "out/summary.html").read_text()
+    common = (grain, "--target", "particle", "--max-error", 2)
+    assert command("coarsen", *common, "-o", tmp_path / "few").code == 0
+    assert (tmp_path / "out/meshes/grain-b.stl").read_bytes() == (tmp_path / "few/grain-b.stl").read_bytes()
+    assert command("dataset", "build", *common, "-o", tmp_path / "set").code == 0
+    for name in ("out/dataset", "set"):
+        metadata = json.loads((tmp_path / name / "dataset.json").read_text())["metadata"]
+        assert (metadata["coarsening"]["n_faces"], metadata["coarsening"]["largest_error"]) == (200, 0.02)
+
+
 def test_that_another_seed_can_be_given(command, grains: Path, tmp_path: Path) -> None:
     wish = recipe(tmp_path, grains, outputs={"dataset": False, "summary": False})
     assert command("run", wish, "-o", tmp_path / "out", "--seed", 77).code == 0

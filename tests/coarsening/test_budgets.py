@@ -2,8 +2,9 @@
 
 import pytest
 
-from regolith_studio.coarsening.budgets import faces_for_triangles, fewest_faces
+from regolith_studio.coarsening.budgets import Trial, coarsen_below, faces_for_triangles, fewest_faces
 from regolith_studio.coarsening.coarsen import coarsen
+from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.mesh import Mesh
 
@@ -19,21 +20,47 @@ def test_that_too_few_triangles_are_refused() -> None:
         faces_for_triangles(7)
 
 
+@pytest.mark.parametrize("triangles", [8.5, True])
+def test_that_triangles_are_counted_in_whole_numbers(triangles: float) -> None:
+    with pytest.raises(InputError, match="whole number"):
+        faces_for_triangles(triangles)  # type: ignore[arg-type]
+
+
 def test_that_the_fewest_faces_meet_the_limit_and_one_less_does_not(particle: Mesh) -> None:
     steps = fewest_faces(particle, 0.01, settings={"retries": 1})
-    tried = []
+    tried, counted = [], []
     while True:
         try:
-            tried.append(next(steps))
+            step = next(steps)
         except StopIteration as end:
             found = end.value
             break
+        if isinstance(step, Trial):
+            tried.append(step)
+        else:
+            counted.append(step.step)
     failed = [trial.n_faces for trial in tried if trial.largest_error > 0.01]
     assert found.n_faces_asked not in failed
     assert found.n_faces_asked == 5 or found.n_faces_asked - 1 in failed
     assert coarsen(particle, found.n_faces_asked, settings={"retries": 1}).errors == found.errors
+    assert coarsen_below(particle, 0.01, settings={"retries": 1}).errors == found.errors
+    assert counted == sorted(counted)
 
 
-def test_that_a_limit_must_be_positive(particle: Mesh) -> None:
+def test_that_a_limit_out_of_reach_gives_the_least_error_and_says_so(particle: Mesh) -> None:
+    weights = LossWeights.of(volume=1.0, sphericity=1.0)
+    found = coarsen_below(particle, 1e-9, method="quadric", weights=weights)
+    assert found.reason is not None
+    assert found.reason.startswith("Not even 200 faces bring all errors below 1e-07 %: the least is ")
+    assert f" %, with {found.n_faces_asked} faces." in found.reason
+    for n_faces in (5, 20, 200):
+        other = coarsen(particle, n_faces, "quadric", weights)
+        assert max(other.errors["volume"], other.errors["sphericity"]) >= max(
+            found.errors["volume"] - found.bounds["volume"], found.errors["sphericity"]
+        )
+
+
+@pytest.mark.parametrize("limit", [0.0, -1.0, float("nan"), float("inf")])
+def test_that_a_limit_must_be_positive(particle: Mesh, limit: float) -> None:
     with pytest.raises(InputError, match="above 0"):
-        next(fewest_faces(particle, 0.0))
+        next(fewest_faces(particle, limit))

@@ -46,6 +46,11 @@ def test_that_any_mesh_gives_a_result_a_reason_or_a_sentence(number: int) -> Non
     assert outcome(number, 8) in expected.get(odd_mesh(number)[0], {"met", "reason", "sentence"})
 
 
+@pytest.mark.parametrize(("number", "n_faces"), [(5276, 12), (6008, 5), (6164, 5)])
+def test_that_boxes_that_tie_and_near_misses_lead_to_another_start(number: int, n_faces: int) -> None:
+    assert outcome(number, n_faces) == "met"
+
+
 @pytest.mark.slow
 def test_that_hundreds_of_meshes_give_results_reasons_or_sentences() -> None:
     found = [outcome(number, (8, 12, 20)[number % 3]) for number in range(100, 200)]

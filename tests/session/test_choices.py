@@ -18,6 +18,11 @@ from regolith_studio.session.choices import Choices
         ({"l_max": 3.5}, "whole number"),
         ({"l_max": True}, "whole number"),
         ({"n_faces": 4}, "from 5 to 200, got 4"),
+        ({"n_triangles": 7}, "7 triangles are too few"),
+        ({"n_triangles": 70.5}, "whole number"),
+        ({"largest_error": 0.0}, "above 0 per cent"),
+        ({"largest_error": float("nan")}, "above 0 per cent"),
+        ({"stop_at": "midnight"}, "'midnight'"),
         ({"seed": -1}, "seed"),
         ({"target": "moon"}, "'moon'"),
         ({"box_metric": "sphere"}, "'sphere'"),
@@ -46,6 +51,24 @@ def test_that_a_preset_brings_its_weights_and_a_moved_weight_marks_it_modified()
     moved = chosen.replaced(weights=LossWeights.of(volume=0.3))
     assert moved.preset_modified
     assert moved.replaced(preset="all") == chosen
+
+
+@pytest.mark.parametrize(
+    ("stop", "faces", "error", "most", "words"),
+    [
+        ("faces", 12, None, 12, "12 faces"),
+        ("triangles", 17, None, 17, "17 faces"),  # 17 facets have up to 56 triangles, 18 have 60
+        ("error", 12, 0.025, 200, "the fewest faces whose errors are all below 2.5 %"),
+    ],
+)
+def test_that_one_of_three_numbers_says_how_fine_a_polyhedron_is(
+    stop: str, faces: int, error: float | None, most: int, words: str
+) -> None:
+    order = Choices(stop_at=stop, n_faces=12, n_triangles=59, largest_error=0.025).order
+    assert (order.n_faces, order.largest_error, order.most_faces, order.fineness) == (
+        *(faces, error, most),
+        words,
+    )
 
 
 def test_that_the_order_of_a_coarsening_repeats_the_choices() -> None:

@@ -45,6 +45,11 @@ def test_that_a_particle_is_not_fitted_twice() -> None:
         ({"level": 3}, [SURFACE, DESCRIPTORS, COARSENING]),
         ({"box_metric": "trimesh"}, [DESCRIPTORS]),
         ({"n_faces": 30}, [COARSENING]),
+        ({"n_triangles": 30}, []),
+        ({"stop_at": "triangles", "n_triangles": 71}, []),  # 20 facets, as before
+        ({"stop_at": "triangles", "n_triangles": 72}, [COARSENING]),
+        ({"stop_at": "error"}, [COARSENING]),
+        ({"largest_error": 0.5}, []),
         ({"seed": 7}, [COARSENING]),
         ({"weights": LossWeights.of(volume=3.0)}, [COARSENING]),
         ({"target": "particle"}, [COARSENING]),

@@ -33,6 +33,7 @@ def written(folder: Path, text: str) -> Path:
         Choices().replaced(weights=LossWeights.of(volume=2.0, sphericity=0.1)),
         Choices(star_point="kernel_centre", rule="outermost", reference="ellipsoid"),
         Choices().replaced(method="quadric", settings=(("restore_volume", True),)),
+        Choices(stop_at="error", largest_error=0.0035, n_triangles=99),
     ],
 )
 def test_that_choices_survive_the_recipe(tmp_path: Path, choices: Choices) -> None:

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from regolith_studio.cli.entry import run
+from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.geometry.directions import icosphere
 from regolith_studio.imaging.stl import stl_bytes
 from regolith_studio.jobs.runners.inline import InlineRunner
@@ -63,6 +64,26 @@ def test_that_the_copied_command_is_understood_and_coarsens(
     assert shown is not None
     (row,) = told["particles"] if isinstance(told, dict) else told
     assert row["errors"] == pytest.approx(dict(shown.errors), abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    "fineness", [{"stop_at": "triangles", "n_triangles": 59}, {"stop_at": "error", "largest_error": 0.035}]
+)
+def test_that_what_is_copied_stops_where_the_window_does(
+    session: Session, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fineness: dict[str, object]
+) -> None:
+    weights = LossWeights.of(volume=1.0, max_diameter=1.0)
+    session.choose(method="exact", weights=weights, target="particle", **fineness)
+    shown = session.results.coarsened
+    assert shown is not None
+    names: dict[str, object] = {}
+    exec(as_python(session.choices, input_shown(session)), names)
+    monkeypatch.chdir(tmp_path)
+    assert run(shlex.split(as_command(session.choices, inputs_of(session)))[1:]) == 0
+    (row,) = json.loads((tmp_path / "coarsened" / "coarsening.json").read_text())["particles"]
+    for errors in (names["done"].errors, row["errors"]):  # type: ignore[attr-defined]
+        assert errors == pytest.approx(dict(shown.errors), abs=1e-12)
+    assert row["n_faces"] == shown.n_faces
 
 
 def test_that_the_copied_script_takes_the_particle_on_screen() -> None:

@@ -36,7 +36,10 @@ WEIGHTS = LossWeights.of(volume=0.5, sphericity=1.25, jaccard_distance=7.0)
 VALUES = {
     FitPanel: {"l_max": 17, "star_point": "kernel_centre", "rule": "first", "reference": "ellipsoid"},
     CoarseningPanel: {
+        "stop_at": "error",
         "n_faces": 33,
+        "n_triangles": 77,
+        "largest_error": 0.0035,
         "target": "particle",
         "method": "annealing",
         "settings": (("cooling", 0.8),),
@@ -127,6 +130,26 @@ def test_that_another_method_drops_the_settings_of_the_first(shown):
     panel.method.setCurrentIndex(panel.method.findData("quadric"))
     panel.method.activated.emit(panel.method.currentIndex())
     assert heard == [{"method": "quadric", "settings": ()}]
+
+
+@pytest.mark.parametrize(
+    ("stop", "field", "typed", "told"),
+    [
+        ("faces", "n_faces", 12, 12),
+        ("triangles", "n_triangles", 44, 44),
+        ("error", "largest_error", 2.5, 0.025),
+    ],
+)
+def test_that_the_number_of_what_is_stopped_at_is_the_one_that_can_be_set(shown, stop, field, typed, told):
+    panel = shown(CoarseningPanel())
+    said = []
+    panel.valueChanged.connect(said.append)
+    panel.stop_at.setCurrentIndex(panel.stop_at.findData(stop))
+    panel.stop_at.activated.emit(panel.stop_at.currentIndex())
+    names = ("n_faces", "n_triangles", "largest_error")
+    assert [name for name in names if getattr(panel, name).isVisible()] == [field]
+    getattr(panel, field).field.setValue(typed)
+    assert said == [{"stop_at": stop}, {field: told}]
 
 
 def test_that_the_dice_takes_the_next_seed(shown):

@@ -36,11 +36,14 @@ class Request:
         Which of them are conditions. The aspect ratio follows where both diameters are asked for.
     keeps_hull
         Whether V is sacrificed to CH.
+    ratio_counts
+        Whether the aspect ratio is asked for, as a condition or by both diameters.
     """
 
     values: tuple[float, ...]
     asked: tuple[bool, ...]
     keeps_hull: bool
+    ratio_counts: bool
 
     @classmethod
     def of(cls, target: Target, weights: LossWeights) -> "Request":
@@ -56,7 +59,7 @@ class Request:
             weights["aspect_ratio"] > 0 and not all(box),
         )
         values = (volume, *[wanted[key] for key in CONDITION_KEYS[1:]])
-        return cls(values, asked, not keeps_volume)
+        return cls(values, asked, not keeps_volume, weights["aspect_ratio"] > 0)
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -88,10 +91,13 @@ def reason_for(
 ) -> str | None:
     """One sentence about the condition that is missed by most, else about facets that are missing.
 
-    ``None`` where the descriptors `found` meet all conditions to 1e-6 with `n_real` = `n_faces` facets.
+    ``None`` where the descriptors `found` meet all conditions to 1e-6 with `n_real` = `n_faces` facets. The
+    aspect ratio is named where two diameters are within that and their ratio is not.
     """
     errors = relative_errors(target.descriptors, found)
     missed = {key: errors[_reported(key, request)] for key in request.keys}
+    if request.ratio_counts and max(missed.values()) <= EXACT:
+        missed["aspect_ratio"] = errors["aspect_ratio"]
     worst = max(missed, key=lambda key: missed[key], default=None)
     if worst is None or missed[worst] <= EXACT:
         return None if n_real == n_faces else facets_reason(n_real, n_faces)

@@ -13,9 +13,9 @@ from regolith_studio.coarsening.exact.compromise import compromise, with_facets_
 from regolith_studio.coarsening.exact.course import Attempt, course, densely_checked, start_planes
 from regolith_studio.coarsening.exact.growth import grown, numbers_to_grow_from, with_waiting
 from regolith_studio.coarsening.exact.problem import SPHERICITY, Problem
-from regolith_studio.coarsening.exact.record import Record
+from regolith_studio.coarsening.exact.record import AS_GOOD_AS_MET, Record
 from regolith_studio.coarsening.exact.request import CONDITION_KEYS, EXACT, Request, reason_for
-from regolith_studio.coarsening.polyhedra import facet_areas, polyhedron_of
+from regolith_studio.coarsening.polyhedra import facet_areas
 from regolith_studio.coarsening.progress import MethodStep
 from regolith_studio.coarsening.result import MethodResult
 from regolith_studio.coarsening.target import Target
@@ -24,6 +24,7 @@ from regolith_studio.descriptors.catalogue import LOSS_KEYS
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 
 
@@ -101,7 +102,7 @@ class Search:
                 yield from self._as_round_as_can_be()
             if self._record.best is None:
                 yield from self._record.told(tried, self._all_at_once())
-            if self._good_enough() or sum(self._misses) > OUT_OF_REACH:
+            if self._good_enough() or self._out_of_reach():
                 break
 
     def compromises(self) -> Iterator[MethodStep]:
@@ -127,7 +128,7 @@ class Search:
         """
         outcome = self._record.outcome or self._found()
         planes = real_planes(with_facets_back(self._target, self._full, outcome))
-        found = describe(polyhedron_of(planes), LOSS_KEYS)
+        found = describe(ConvexPolyhedron.from_half_spaces(planes), LOSS_KEYS)
         reason = reason_for(self._target, self._request, self._n_faces, len(planes), found)
         counts = {"starts": float(self._tried), "exact": float(self._record.met)}
         return MethodResult(planes, tuple(self._record.history), reason, counts)
@@ -165,6 +166,12 @@ class Search:
         all_facets = best.n_facets == self._n_faces
         return best.exact and (all_facets or self._tried >= self._level.starts + STARTS_FOR_FACETS)
 
+    def _out_of_reach(self) -> bool:
+        """Whether the sphericity is missed by so much that other starts would miss it too."""
+        best = self._record.best
+        nearly_met = best is not None and best.worst < AS_GOOD_AS_MET
+        return sum(self._misses) > OUT_OF_REACH and not nearly_met
+
     @property
     def _steps(self) -> tuple[int, int]:
         return self._level.free_steps, self._level.bound_steps
@@ -185,7 +192,8 @@ def confirmed(request: Request, problems: tuple[Problem, ...], found: Attempt) -
         found = densely_checked(problem, found)
         if not found.exact:
             return found
-        values = describe(polyhedron_of(real_planes(found)), CONDITION_KEYS)
+        solid = ConvexPolyhedron.from_half_spaces(real_planes(found))  # where boxes tie, the very same one
+        values = describe(solid, CONDITION_KEYS)
         worst = max((abs(values[key] / wanted[key] - 1.0) for key in request.keys), default=0.0)
         if worst <= EXACT / 2:  # so that the ratio of two diameters has no more than EXACT
             return found

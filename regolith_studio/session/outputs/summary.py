@@ -106,9 +106,10 @@ def summary_page(recipe: Recipe, summary: Summary, studies: Sequence[str], probl
 
 def _lead(recipe: Recipe, summary: Summary) -> str:
     target = f"surface at l_max = {recipe.l_max}" if recipe.target == "fit" else "measured surface"
+    fineness = recipe.choices().order.fineness
     return (
         f"<p>{summary.n_particles:,} particles; {summary.n_coarse:,} convex polyhedra "
-        f"of {recipe.n_faces} faces (method {escape(recipe.method)}, weights {escape(_weights(recipe))}, "
+        f"with {fineness} (method {escape(recipe.method)}, weights {escape(_weights(recipe))}, "
         f"seed {recipe.seed}) that imitate the {target}. Lengths are in micrometres.</p>"
     )
 

@@ -25,6 +25,7 @@ from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.jobs.building import DatasetOptions
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.tasks import Task
+from regolith_studio.ui.fineness import fineness_words
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import remark, rich_symbol
 
@@ -39,8 +40,6 @@ class ExportOrder:
 
 def summary(count: int, choices: Choices) -> list[tuple[str, str]]:
     """What will be written, as pairs of a word and rich text."""
-    triangles = 4 * choices.n_faces - 12
-    size = count * (84 + 50 * triangles)
     weights = ", ".join(
         f"{'Jaccard' if key == JACCARD else rich_symbol(CATALOGUE[key].symbol)}&nbsp;{value:g}"
         for key, value in choices.weights.items()
@@ -54,12 +53,14 @@ def summary(count: int, choices: Choices) -> list[tuple[str, str]]:
         target = tr(
             "the surface of the spherical-harmonics fit at l<sub>max</sub> = {l_max}", l_max=choices.l_max
         )
-    files = tr("{count}, as unit-volume STL files, {size:,.0f} KiB in all", count=count, size=size / 1024)
-    facets = tr("at most {faces} facets, {triangles} triangles", faces=choices.n_faces, triangles=triangles)
+    size = count * (84 + 50 * (4 * choices.face_count - 12)) / 1024
+    files = tr("{count}, as unit-volume STL files, {size:,.0f} KiB in all", count=count, size=size)
+    if choices.stop_at == "error":
+        files = tr("{count}, as unit-volume STL files", count=count)
     method = tr("{method}, seed {seed}", method=tr(METHODS[choices.method].label), seed=choices.seed)
     return [
         (tr("Particles"), files),
-        (tr("Each with"), facets),
+        (tr("Each with"), fineness_words(choices)),
         (tr("Imitating"), target),
         (tr("Method"), method),
         (tr("Weights"), f"{weights or tr('none')} ({preset})"),

@@ -25,13 +25,35 @@ from regolith_studio.ui.widgets.labels import heading, remark
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
 from regolith_studio.ui.widgets.settings_form import SettingsForm
 
+STOPS = {"faces": mark("Facets n"), "triangles": mark("Triangles"), "error": mark("Error ≤")}
 FACES = NumberSpec(
-    mark("Facets n"),
+    "",
     mark("Number of facets"),
     FACES_LIMITS[0],
     60,
     limit=FACES_LIMITS[1],
     tip=mark("Half-spaces of Eq. 5; n facets in general position have 2n−4 vertices and 4n−12 triangles."),
+)
+TRIANGLES = NumberSpec(
+    "",
+    mark("Most triangles"),
+    4 * FACES_LIMITS[0] - 12,
+    228,
+    limit=4 * FACES_LIMITS[1] - 12,
+    tip=mark("The polyhedron has as many facets as surely have no more triangles than this."),
+)
+ERROR = NumberSpec(
+    "",
+    mark("Largest error"),
+    0.05,
+    10.0,
+    0.05,
+    limit=50.0,
+    suffix=" %",
+    tip=mark(
+        "The fewest facets are sought whose weighted descriptors are all off by no more than this; of V and"
+        " CH, which cannot both be met, beyond what none can avoid."
+    ),
 )
 TARGET_LABELS = {"fit": mark("Spherical-harmonics fit"), "particle": mark("CT particle")}
 SEED_LIMIT = 2**31 - 1
@@ -40,16 +62,23 @@ SEED_LIMIT = 2**31 - 1
 class CoarseningPanel(QWidget):
     """Edits the coarsening, all but the weights of its loss."""
 
-    FIELDS = ("n_faces", "target", "method", "settings", "seed")
+    FIELDS = (
+        *("stop_at", "n_faces", "n_triangles", "largest_error"),
+        *("target", "method", "settings", "seed"),
+    )
     valueChanged = Signal(dict)  # noqa: N815
     editingFinished = Signal()  # noqa: N815
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setObjectName("coarsening")
-        self.n_faces = NumberSlider(FACES)
-        self.n_faces.slider.setObjectName("n_faces_slider")
-        self.n_faces.field.setObjectName("n_faces")
+        self.stop_at = ChoiceBox("stop_at", tr("What says how fine the polyhedron is"), STOPS)
+        self.stop_at.setToolTip(self.stop_at.accessibleName())
+        self.stop_at.setMinimumContentsLength(max(len(tr(label)) for label in STOPS.values()))
+        self.n_faces = _amount(FACES, "n_faces")
+        self.n_triangles = _amount(TRIANGLES, "n_triangles")
+        self.largest_error = _amount(ERROR, "largest_error")
+        self._amounts = {"faces": self.n_faces, "triangles": self.n_triangles, "error": self.largest_error}
         self.target = ChoiceBox("target", tr("What is imitated"), TARGET_LABELS)
         self.method = ChoiceBox("method", tr("Coarsening method"), {k: m.label for k, m in METHODS.items()})
         self.seed = _seed_field()
@@ -69,13 +98,17 @@ class CoarseningPanel(QWidget):
         self._arrange()
         self._connect()
         self._show_settings()
+        self._show_amount()
 
     def value(self) -> dict[str, Any]:
         """All of it."""
         form = self._forms.get(self.method.value())
         settings = form.value() if form else {}
         return {
+            "stop_at": self.stop_at.value(),
             "n_faces": int(self.n_faces.value()),
+            "n_triangles": int(self.n_triangles.value()),
+            "largest_error": _share(self.largest_error.value()),
             "target": self.target.value(),
             "method": self.method.value(),
             "settings": tuple(sorted(settings.items())),
@@ -84,7 +117,11 @@ class CoarseningPanel(QWidget):
 
     def setValue(self, value: Mapping[str, Any]) -> None:
         """Show other choices."""
+        self.stop_at.setValue(value["stop_at"])
         self.n_faces.setValue(value["n_faces"])
+        self.n_triangles.setValue(value["n_triangles"])
+        self.largest_error.setValue(100.0 * value["largest_error"])
+        self._show_amount()
         self.target.setValue(value["target"])
         self.method.setValue(value["method"])
         with QSignalBlocker(self.seed):
@@ -103,6 +140,10 @@ class CoarseningPanel(QWidget):
         self.dice.setIcon(icon("dice", theme.text, theme.muted))
 
     def _arrange(self) -> None:
+        amount = QHBoxLayout()
+        amount.addWidget(self.stop_at)
+        for slider in self._amounts.values():
+            amount.addWidget(slider, 1)
         seed = QHBoxLayout()
         seed.addWidget(self.seed, 1)
         seed.addWidget(self.dice)
@@ -114,14 +155,20 @@ class CoarseningPanel(QWidget):
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(heading(tr("Coarsened polyhedron")))
-        layout.addWidget(self.n_faces)
+        layout.addLayout(amount)
         layout.addLayout(form)
         layout.addWidget(self.more)
         layout.addWidget(self.outcome)
 
     def _connect(self) -> None:
         self.n_faces.valueChanged.connect(lambda n: self.valueChanged.emit({"n_faces": int(n)}))
-        self.n_faces.editingFinished.connect(self.editingFinished)
+        self.n_triangles.valueChanged.connect(lambda n: self.valueChanged.emit({"n_triangles": int(n)}))
+        self.largest_error.valueChanged.connect(
+            lambda percent: self.valueChanged.emit({"largest_error": _share(percent)})
+        )
+        for slider in self._amounts.values():
+            slider.editingFinished.connect(self.editingFinished)
+        self.stop_at.activated.connect(self._change_stop)
         self.target.activated.connect(lambda _: self._announce("target"))
         self.method.activated.connect(self._change_method)
         self.seed.valueChanged.connect(lambda _: self._announce("seed"))
@@ -131,6 +178,14 @@ class CoarseningPanel(QWidget):
         now = self.value()
         self.valueChanged.emit({name: now[name] for name in names})
         self.editingFinished.emit()
+
+    def _change_stop(self) -> None:
+        self._show_amount()
+        self._announce("stop_at")
+
+    def _show_amount(self) -> None:
+        for key, slider in self._amounts.items():
+            slider.setVisible(key == self.stop_at.value())
 
     def _change_method(self) -> None:
         self._show_settings()
@@ -145,6 +200,18 @@ class CoarseningPanel(QWidget):
         for name, form in self._forms.items():
             form.setVisible(name == key)
         self.more.setVisible(bool(key) and not self._forms[key].is_empty())
+
+
+def _amount(spec: NumberSpec, name: str) -> NumberSlider:
+    slider = NumberSlider(spec)
+    slider.slider.setObjectName(f"{name}_slider")
+    slider.field.setObjectName(name)
+    return slider
+
+
+def _share(percent: float) -> float:
+    """A percentage as a fraction that is written with as few digits."""
+    return round(percent / 100.0, 9)
 
 
 def _seed_field() -> QSpinBox:

@@ -33,6 +33,9 @@ SENTENCES = (
         "The result has {real} facets instead of {faces}: no place was found where the other half-spaces"
         " bound a facet and all descriptors are met."
     ),
+    mark(
+        "Not even {faces} faces bring all errors below {limit} %: the least is {error} %, with {count} faces."
+    ),
     mark("1 grain from 1 connected body"),
     mark("1 grain from {bodies} connected bodies"),
     mark("{grains} grains from 1 connected body"),

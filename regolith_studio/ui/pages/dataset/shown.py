@@ -7,6 +7,7 @@ from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.representing import ChosenParticles
 from regolith_studio.session.choices import Choices
+from regolith_studio.ui.fineness import fineness_words
 from regolith_studio.ui.pages.dataset.gallery import Shown
 from regolith_studio.ui.translation import tr, tr_count
 
@@ -59,8 +60,8 @@ def request_of(choices: Choices) -> str:
     """How the shapes will be made."""
     known = METHODS.get(choices.method)
     return tr(
-        "{count} facets, method: {method}; chosen on the page Explore.",
-        count=choices.n_faces,
+        "Each with {fineness}; method: {method}; chosen on the page Explore.",
+        fineness=fineness_words(choices),
         method=tr(known.label) if known else choices.method,
     )
 

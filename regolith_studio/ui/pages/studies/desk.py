@@ -103,5 +103,5 @@ class VariationDesk:
     def _is_outdated(self, key: str) -> bool:
         made, now = self._made[key], self._session.choices
         if key == "faces":
-            made = made.replaced(n_faces=now.n_faces)
+            made = made.replaced(stop_at="faces", n_faces=now.face_count)
         return made.weights != now.weights or depends(Kind.COARSENING_STUDY, made, now)
