@@ -2,6 +2,7 @@
 
 import os
 import time
+from pathlib import Path
 
 from regolith_studio.errors import Cancelled, InputError
 from regolith_studio.jobs.events import Progress, Started, Steps
@@ -71,3 +72,21 @@ def wait_for(path: str) -> Steps:
         yield Progress(0, 0)
         time.sleep(0.005)
     return path
+
+
+class SlowToImport:
+    """An argument that takes a minute to arrive in another process, as if it needed many modules."""
+
+    def __init__(self, path: str) -> None:
+        self.path = path
+
+    def __reduce__(self) -> tuple[object, tuple[str]]:
+        return import_slowly, (self.path,)
+
+
+def import_slowly(path: str) -> int:
+    """Say that it has begun by a file at `path`, and that it has ended by another one."""
+    Path(path).write_text("begun")
+    time.sleep(60)
+    Path(path).with_suffix(".ended").write_text("ended")
+    return 1

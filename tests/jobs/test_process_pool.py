@@ -15,6 +15,7 @@ from regolith_studio.jobs.runners.inline import InlineRunner
 from regolith_studio.jobs.runners.process_pool import ProcessPoolRunner
 
 from .small_jobs import (
+    SlowToImport,
     die,
     hold,
     process_id,
@@ -202,3 +203,19 @@ def test_that_a_process_that_cannot_start_is_a_sentence(monkeypatch: pytest.Monk
     runner.close()
     assert isinstance(ending, Failed)
     assert "could not be started" in ending.sentence
+
+
+def test_that_closing_waits_for_no_process_that_is_still_importing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("regolith_studio.jobs.runners.process_pool._LAST_WAIT", 300.0)
+    runner, heard, begun = ProcessPoolRunner(1), list[Event](), tmp_path / "slow.begun"
+    runner.submit(Job(square, (SlowToImport(str(begun)),)), heard.append)
+    end = time.monotonic() + 60
+    while not begun.exists() and time.monotonic() < end:
+        time.sleep(0.01)
+    runner.close()
+    assert begun.exists()
+    assert heard == [Stopped()]
+    assert not begun.with_suffix(".ended").exists()
+    assert not runner._team

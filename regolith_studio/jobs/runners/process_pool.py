@@ -14,7 +14,7 @@ from multiprocessing.connection import Connection, wait
 from typing import Any
 
 from regolith_studio.jobs.events import Ending, Failed, Finished, Job, Listener, Stopped
-from regolith_studio.jobs.runners.worker import SLOTS, work
+from regolith_studio.jobs.runners.worker import BEGUN, SLOTS, work
 
 _log = logging.getLogger(__name__)
 _THREAD_LIMITS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
@@ -73,11 +73,12 @@ class _PoolHandle:
 
 @dataclass(eq=False)
 class _Worker:
-    """One process, the pipe to it, and the job that it has."""
+    """One process, the pipe to it, the job that it has, and whether that has taken its first step."""
 
     process: Any
     pipe: Connection
     handle: _PoolHandle | None = None
+    begun: bool = False
 
     def dismiss(self) -> None:
         """Let it end by itself, as soon as it has answered."""
@@ -137,7 +138,10 @@ class ProcessPoolRunner:
         return handle
 
     def close(self) -> None:
-        """Stop the jobs between two of their steps and end the processes."""
+        """Stop the jobs between two of their steps and end the processes.
+
+        A process that is still importing what its job needs is not waited for.
+        """
         if self._closed:
             return
         self._closed = True
@@ -158,8 +162,10 @@ class ProcessPoolRunner:
         """In a thread: hand out jobs, hear answers, replace who dies, until closed and all have ended."""
         while True:
             self._drop_cancelled()
-            if self._closed and not self._busy:
-                break
+            if self._closed:
+                self._leave_unbegun()
+                if not self._busy:
+                    break
             self._hand_out()
             ready = wait([self._bell, *[worker.pipe for worker in self._team]], self._patience)
             if not ready:
@@ -191,6 +197,15 @@ class ProcessPoolRunner:
         for handle in dropped:
             handle.finish(Stopped())
 
+    def _leave_unbegun(self) -> None:
+        """End the processes whose jobs have not taken a step: what they import is of no use any more."""
+        for worker in [each for each in self._busy if not (each.begun or each.pipe.poll())]:
+            handle, worker.handle = worker.handle, None
+            worker.process.kill()
+            self._retire(worker)
+            if handle:
+                handle.finish(Stopped())
+
     def _hand_out(self) -> None:
         """Give waiting jobs to idle processes; a suspect only while nobody else works."""
         while len(self._busy) < self.workers and (handle := self._next()):
@@ -201,7 +216,7 @@ class ProcessPoolRunner:
                     Failed(f"A worker process could not be started ({error.strerror}).", repr(error))
                 )
                 continue
-            idle.handle = handle
+            idle.handle, idle.begun = handle, False
             with contextlib.suppress(OSError):  # it has died idle: its pipe tells so in a moment
                 idle.pipe.send_bytes(handle.message)
 
@@ -229,6 +244,9 @@ class ProcessPoolRunner:
             answer = worker.pipe.recv_bytes()
         except (EOFError, OSError):
             self._bury(worker)
+            return
+        if answer == BEGUN:
+            worker.begun = True
             return
         try:
             ending, memory = pickle.loads(answer)

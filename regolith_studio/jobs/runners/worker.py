@@ -13,10 +13,15 @@ from regolith_studio.jobs.runners.drive import drive
 
 SLOTS = 4096
 """Jobs that can be told apart by the shared flags; more than are ever under way."""
+BEGUN = b""
+"""Sent back when a job and all modules that it needs are there, before its first step."""
 
 
 def work(answers: Connection, flags: Any) -> None:
     """Run the jobs that come through `answers`, and send each one's ending back with the memory in use.
+
+    Before the first step of each :data:`BEGUN` is sent: a process that has not said so has done nothing yet
+    and can be ended at once. A job that shall stop by then takes no step.
 
     Parameters
     ----------
@@ -30,6 +35,7 @@ def work(answers: Connection, flags: Any) -> None:
             if not message:
                 return
             number, job = pickle.loads(message)
+            answers.send_bytes(BEGUN)
             answers.send_bytes(_packed(_ending(job, number, flags)))
         except (EOFError, OSError):
             return  # the parent is gone
