@@ -1,6 +1,7 @@
 """Share of each voxel that lies inside a closed mesh: what a perfect scanner would see of it."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.compiled import kernel
@@ -10,7 +11,7 @@ _ASIDE = np.array([1.23e-7, 2.17e-7, 0.0])
 """Keeps columns off edges that run along the grid."""
 
 
-def coverage(mesh: Mesh, shape: tuple[int, int, int], fine: int = 3) -> FloatArray:
+def coverage(mesh: Mesh, shape: tuple[int, int, int], fine: int = 3) -> NDArray[np.float32]:
     """Share of each voxel inside the mesh, whose corners are given in voxels; shape `shape`.
 
     Each voxel is cut into `fine` x `fine` columns along z, and along their middles the share is exact. What
@@ -20,7 +21,9 @@ def coverage(mesh: Mesh, shape: tuple[int, int, int], fine: int = 3) -> FloatArr
 
 
 @kernel
-def _covered(vertices: FloatArray, faces: IntArray, nx: int, ny: int, nz: int, fine: int) -> FloatArray:
+def _covered(
+    vertices: FloatArray, faces: IntArray, nx: int, ny: int, nz: int, fine: int
+) -> NDArray[np.float32]:
     """Sum of what each crossing adds to its own voxel and to those above it, column by column."""
     added = np.zeros((nx, ny, nz + 1))
     weight = 1.0 / (fine * fine)
@@ -47,7 +50,7 @@ def _covered(vertices: FloatArray, faces: IntArray, nx: int, ny: int, nz: int, f
                     above = 1.0 - (height - k)
                     added[i // fine, j // fine, k] += sign * above
                     added[i // fine, j // fine, k + 1] += sign * (1.0 - above)
-    share = np.zeros((nx, ny, nz))
+    share = np.empty((nx, ny, nz), dtype=np.float32)
     for i in range(nx):
         for j in range(ny):
             total = 0.0

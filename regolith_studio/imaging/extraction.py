@@ -21,11 +21,10 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle, Source
 from regolith_studio.imaging.bodies import largest_body, pores_filled
 from regolith_studio.imaging.boxes import Box, box_between, grown, touches, within
-from regolith_studio.imaging.contour import contour
 from regolith_studio.imaging.grey_surface import MARGIN, grey_mesh
 from regolith_studio.imaging.label_table import GrainCrop, grain_crops, label_masks, label_table
+from regolith_studio.imaging.mask_surface import mask_mesh
 from regolith_studio.imaging.slabs import SlabSource
-from regolith_studio.imaging.smoothing import windowed_sinc, with_volume
 
 Surface = Literal["mask", "grey"]
 SURFACES: tuple[Surface, ...] = get_args(Surface)
@@ -48,7 +47,7 @@ class ExtractionSettings:
     fill_pores
         Close pores that have no way out.
     iterations, pass_band
-        Of the smoothing (:func:`~regolith_studio.imaging.smoothing.windowed_sinc`).
+        Of the smoothing (:func:`~regolith_studio.imaging.smoothing.LowPass`).
     surface
         What surfaces are taken from: the ``grey`` values about each label where they are at hand
         (:mod:`~regolith_studio.imaging.grey_surface`), or its ``mask`` always.
@@ -270,7 +269,7 @@ def mask_surface(
         Edges of a voxel along x, y, z, in micrometres, shape (3,).
     """
     body, notes = _one_body(mask, settings)
-    return _placed(_mask_mesh(body, settings), box, voxel_size), tuple(notes)
+    return _placed(mask_mesh(body, settings.iterations, settings.pass_band), box, voxel_size), tuple(notes)
 
 
 def grey_surface(
@@ -289,15 +288,12 @@ def grey_surface(
     mesh = grey_mesh(crop, np.pad(body, padding), settings.iterations, settings.pass_band)
     if isinstance(mesh, str):
         notes.append(f"{_OF_MASK}: {mesh}.")
-        return _placed(_mask_mesh(body, settings), box, voxel_size), tuple(notes), "mask"
+        return (
+            _placed(mask_mesh(body, settings.iterations, settings.pass_band), box, voxel_size),
+            tuple(notes),
+            "mask",
+        )
     return _placed(mesh, wider, voxel_size), tuple(notes), "grey"
-
-
-def _mask_mesh(body: BoolArray, settings: ExtractionSettings) -> Mesh:
-    """Contour of a mask, smoothed, with the volume of its voxels; in voxels of its box."""
-    rough = contour(np.pad(body, 1).astype(np.float32), 0.5, (1.0, 1.0, 1.0))
-    smooth = windowed_sinc(rough, settings.iterations, settings.pass_band)
-    return with_volume(smooth, float(np.count_nonzero(body))).moved(shift=np.full(3, -1.0))
 
 
 def _placed(mesh: Mesh, box: Box, voxel_size: FloatArray) -> Mesh:

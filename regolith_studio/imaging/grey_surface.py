@@ -22,9 +22,10 @@ from regolith_studio.geometry.arrays import BoolArray
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.imaging.bodies import largest_body, pores_filled
 from regolith_studio.imaging.contour import contour
+from regolith_studio.imaging.depth import depth
 from regolith_studio.imaging.label_table import GrainCrop
 from regolith_studio.imaging.smoothing import windowed_sinc, with_volume
-from regolith_studio.imaging.surface_fit import FitSettings, fitted
+from regolith_studio.imaging.surface_fit import LIGHTLY, FitSettings, fitted, uncrossed
 
 MARGIN = 7
 """Voxels about a grain's box that are looked at."""
@@ -44,12 +45,14 @@ _STRANGEST = 2.0
 """Times that the volumes by brightness and by voxels may differ."""
 _CALMING = 0.42
 """Standard deviation in voxels of the Gaussian before the first contour."""
-_STEPS = 12
+_STEPS = 8
 """Moves of the surface towards the scan."""
-_WIDENING, _POWER, _WIDEST = 1.05, 0.6, 1.5
+_WIDENING, _POWER, _WIDEST = 0.65, 0.4, 0.3
 """The pass band that smooths it after each is so many times the usual over the noise (as a share of the
 contrast) to this power, at most so wide: chosen on balls, ellipsoids, polyhedra and rough grains at noise of
 2, 5 and 10 %."""
+_TWICING, _NARROWING = 0.9, 0.38
+"""How many times what one more smoothing takes is added, and its pass band as a share of that one."""
 
 Floats = NDArray[np.float32]
 
@@ -72,7 +75,7 @@ def grey_mesh(crop: GrainCrop, body: BoolArray, iterations: int = 20, pass_band:
         Of the smoothing; without any iteration the surface is the contour alone.
     """
     others, values = crop.others | (crop.own & ~body), crop.values.astype(np.float32)
-    inside, outside = _depth(body), _depth(~body)
+    inside, outside = depth(body), depth(~body)
     levels = _levels(values, others, inside, outside)
     if isinstance(levels, str):
         return levels
@@ -81,18 +84,21 @@ def grey_mesh(crop: GrainCrop, body: BoolArray, iterations: int = 20, pass_band:
     volume = float(rim.sum(dtype=np.float64))
     if not 1.0 / _STRANGEST < volume / np.count_nonzero(body) < _STRANGEST:
         return "its brightness and its number of voxels tell different volumes"
-    mesh = windowed_sinc(_contoured(ndimage.gaussian_filter(rim, _CALMING)), iterations, pass_band)
+    rough = _contoured(ndimage.gaussian_filter(rim, _CALMING))
+    mesh = windowed_sinc(rough, iterations, pass_band)
     if iterations:
         wider = min(_WIDENING * pass_band / max(noise, 1e-6) ** _POWER, _WIDEST)
+        how = FitSettings(_STEPS, iterations, wider, _TWICING, _NARROWING * wider)
         blur = _blur(rim, noise, mesh.surface_area)
-        mesh = fitted(mesh, rim, told, blur, FitSettings(_STEPS, iterations, wider))
+        fit = fitted(mesh, rim, told, blur, how)
+        mesh = uncrossed(fit, windowed_sinc(rough, iterations, min(LIGHTLY * pass_band, 2.0)))
     return with_volume(mesh, volume)
 
 
 def _levels(values: Floats, others: BoolArray, inside: Floats, outside: Floats) -> tuple[Floats, float] | str:
     """Share of grain in each voxel, and the noise of it; or why there is none."""
     within = inside > min(_RIM, float(inside.max()) - 0.5)
-    far = np.minimum(outside, _depth(~others)) if others.any() else outside
+    far = np.minimum(outside, depth(~others)) if others.any() else outside
     beyond = far > (_RIM if np.count_nonzero(far > _RIM) >= _FEWEST else _CONTACT)
     if np.count_nonzero(beyond) < _FEWEST:
         return "too little background lies about it"
@@ -120,13 +126,13 @@ def _rim(share: Floats, others: BoolArray, inside: Floats, outside: Floats) -> t
     strange = (share >= 0.5) & (outside > _CRUMB)
     others = others | np.asarray(_without_specks(strange.view(np.uint8), _SPECK) > 0)
     if others.any():
-        away = _depth(~others)
+        away = depth(~others)
         touched = body & (away <= _CONTACT)
         rim[touched] = 1.0
         rim[~body & (away == outside)] *= 0.5
         rim[~body & (away < outside)] = 0.0
         if touched.any():
-            told &= _depth(~touched) > _RIM
+            told &= depth(~touched) > _RIM
     rim[outside > _RIM] = 0.0
     return rim, told
 
@@ -163,8 +169,3 @@ def _usual(values: Floats, sample: Floats) -> BoolArray:
     middle = np.median(sample)
     spread = 1.4826 * np.median(np.abs(sample - middle))
     return np.asarray(np.abs(values - middle) <= max(4.0 * float(spread), 1e-6 * abs(float(middle)), 1e-12))
-
-
-def _depth(mask: BoolArray) -> Floats:
-    """Distance of each voxel of a mask to the nearest one outside, 0 outside; in voxels."""
-    return np.asarray(ndimage.distance_transform_edt(mask), dtype=np.float32)

@@ -1,37 +1,53 @@
-"""Windowed-sinc smoothing of contoured masks: a low-pass filter on the mesh that does not shrink it much."""
-
-from typing import Any
+"""Windowed-sinc smoothing of contours: a low-pass filter on the mesh that does not shrink it much."""
 
 import numpy as np
-import pyvista as pv
-from scipy import sparse
 
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
+from regolith_studio.geometry.compiled import kernel
 from regolith_studio.geometry.mesh import Mesh
 
 
-def windowed_sinc(mesh: Mesh, iterations: int = 20, pass_band: float = 0.13) -> Mesh:
-    """Smooth by the polynomial low-pass filter of Taubin, Zhang and Golub (1996), as VTK has it.
+class LowPass:
+    """The polynomial low-pass filter of Taubin, Zhang and Golub (1996) for meshes with the same faces.
 
-    The filter acts on each coordinate alone, so that it commutes with stretching along the axes:
-    anisotropic voxels need no special care.
+    A Chebyshev series of the ideal low-pass filter with a Hamming window, scaled so that what is constant
+    stays, of the mean of each corner's neighbours. It acts on each coordinate alone, so that it commutes with
+    stretching along the axes: anisotropic voxels need no special care. VTK's filter of this name shifts the
+    pass band, so that it lets more through.
 
     Parameters
     ----------
+    faces
+        Triangles, shape (m, 3).
+    n_vertices
+        Corners of the mesh.
     iterations
         Degree of the polynomial; 0 leaves the mesh as it is.
-    pass_band
-        Share of the mesh's frequencies that stay, 0 to 2; the smaller, the smoother.
     """
-    if iterations == 0:
-        return mesh
-    triangles: Any = np.array(mesh.faces)
-    surface = pv.PolyData.from_regular_faces(np.array(mesh.vertices), triangles)
-    smooth = surface.smooth_taubin(
-        n_iter=iterations, pass_band=pass_band, normalize_coordinates=True, non_manifold_smoothing=True
-    )
-    return Mesh(np.asarray(smooth.points), mesh.faces)
+
+    def __init__(self, faces: IntArray, n_vertices: int, iterations: int) -> None:
+        self._links = _linked(faces, n_vertices)
+        self._iterations = iterations
+
+    def __call__(self, vertices: FloatArray, pass_band: float) -> FloatArray:
+        """Smoothed corners, shape (n, 3).
+
+        Parameters
+        ----------
+        vertices
+            Shape (n, 3).
+        pass_band
+            Share of the mesh's frequencies that stay, 0 to 2; the smaller, the smoother.
+        """
+        if self._iterations == 0:
+            return vertices
+        return np.asarray(_filtered(*self._links, _series(self._iterations, pass_band), vertices))
+
+
+def windowed_sinc(mesh: Mesh, iterations: int = 20, pass_band: float = 0.13) -> Mesh:
+    """The mesh smoothed by :class:`LowPass`."""
+    return Mesh(LowPass(mesh.faces, len(mesh.vertices), iterations)(mesh.vertices, pass_band), mesh.faces)
 
 
 def with_volume(mesh: Mesh, volume: float) -> Mesh:
@@ -49,44 +65,70 @@ def with_volume(mesh: Mesh, volume: float) -> Mesh:
     return scaled.moved(shift=centre)
 
 
-class LowPass:
-    """The filter of :func:`windowed_sinc` for closed meshes that are smoothed again and again.
+def _series(iterations: int, pass_band: float) -> FloatArray:
+    """Chebyshev coefficients, shape (iterations + 1,)."""
+    order = np.arange(1, iterations + 1)
+    angle = np.arccos(1.0 - pass_band / 2.0)
+    window = 0.54 + 0.46 * np.cos(np.pi * order / (iterations + 1))
+    series = np.concatenate([[angle / np.pi], 2.0 * window * np.sin(order * angle) / (order * np.pi)])
+    return np.asarray(series / series.sum())
 
-    What depends on the faces alone is worked out once, while VTK looks the neighbours up each time. The
-    polynomial is Taubin, Zhang and Golub's: a Chebyshev series of the ideal low-pass filter with a Hamming
-    window, scaled so that what is constant stays. VTK shifts its pass band, so that it lets more through.
 
-    Parameters
-    ----------
-    faces
-        Triangles, shape (m, 3).
-    n_vertices
-        Corners of the mesh.
-    iterations, pass_band
-        As for :func:`windowed_sinc`; at least one iteration.
-    """
+@kernel
+def _linked(faces: IntArray, n_vertices: int) -> tuple[IntArray, IntArray, IntArray]:
+    """Neighbours of each corner: ``others[first[i]:stop[i]]``, each once."""
+    first = np.zeros(n_vertices + 1, dtype=np.int64)
+    for face in range(len(faces)):
+        for corner in range(3):
+            first[faces[face, corner] + 1] += 2
+    for corner in range(n_vertices):
+        first[corner + 1] += first[corner]
+    stop = first[:-1].copy()
+    others = np.empty(6 * len(faces), dtype=np.int64)
+    for face in range(len(faces)):
+        for corner in range(3):
+            one = faces[face, corner]
+            for turn in range(1, 3):
+                other, known = faces[face, (corner + turn) % 3], False
+                for at in range(first[one], stop[one]):
+                    known = known or others[at] == other
+                if not known:
+                    others[stop[one]] = other
+                    stop[one] += 1
+    return first, stop, others
 
-    def __init__(self, faces: IntArray, n_vertices: int, iterations: int, pass_band: float) -> None:
-        edges = faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
-        ones, shape = np.ones(len(edges)), (n_vertices, n_vertices)
-        linked = sparse.csr_array((ones, (edges[:, 0], edges[:, 1])), shape=shape)
-        linked = ((linked + linked.T) > 0).astype(np.float64)
-        count = np.maximum(linked.sum(axis=1), 1.0)
-        self._average = sparse.csr_array(
-            (sparse.eye_array(n_vertices) + sparse.diags_array(1.0 / count) @ linked) / 2
-        )
-        order = np.arange(1, iterations + 1)
-        angle = np.arccos(1.0 - pass_band / 2.0)
-        window = 0.54 + 0.46 * np.cos(np.pi * order / (iterations + 1))
-        series = np.concatenate([[angle / np.pi], 2.0 * window * np.sin(order * angle) / (order * np.pi)])
-        self._series: FloatArray = series / series.sum()
 
-    def __call__(self, vertices: FloatArray) -> FloatArray:
-        """Smoothed corners, shape (n, 3)."""
-        before: FloatArray = vertices
-        now = np.asarray(self._average @ before)
-        total: FloatArray = self._series[0] * before + self._series[1] * now
-        for factor in self._series[2:]:
-            before, now = now, 2.0 * np.asarray(self._average @ now) - before
-            total = total + factor * now
-        return total
+@kernel
+def _filtered(
+    first: IntArray, stop: IntArray, others: IntArray, series: FloatArray, vertices: FloatArray
+) -> FloatArray:
+    """Sum of series[k] T_k(M) x: M is the mean of a corner and of the mean of its neighbours."""
+    count = len(vertices)
+    before, now, later = vertices.copy(), np.empty((count, 3)), np.empty((count, 3))
+    total = np.multiply(series[0], vertices)
+    for degree in range(1, len(series)):
+        source, weight = (before, 0.5) if degree == 1 else (now, 1.0)
+        for corner in range(count):
+            x, y, z = 0.0, 0.0, 0.0
+            for at in range(first[corner], stop[corner]):
+                other = others[at]
+                x += source[other, 0]
+                y += source[other, 1]
+                z += source[other, 2]
+            share = weight / max(stop[corner] - first[corner], 1)
+            a = weight * source[corner, 0] + share * x
+            b = weight * source[corner, 1] + share * y
+            c = weight * source[corner, 2] + share * z
+            if degree > 1:
+                a -= before[corner, 0]
+                b -= before[corner, 1]
+                c -= before[corner, 2]
+            later[corner, 0], later[corner, 1], later[corner, 2] = a, b, c
+            total[corner, 0] += series[degree] * a
+            total[corner, 1] += series[degree] * b
+            total[corner, 2] += series[degree] * c
+        if degree > 1:
+            before, now, later = now, later, before
+        else:
+            now, later = later, now
+    return np.asarray(total)

@@ -1,50 +1,71 @@
 """A surface moved until it looks, through the scanner's blur, as the grain does.
 
-A contour of blurred grey values has lost its edges. The mesh is therefore scanned in its turn: shares of
-voxels, blurred as the grain was. Where the grain is brighter than that the surface moves outward, where it
-is darker inward, and after each step it is smoothed as much as the noise demands. Since a mesh is inside or
-outside and nothing between, far less of the noise comes with the edges than if the image were sharpened.
+A contour of blurred grey values has lost its edges, and one of a mask shows steps. The mesh is therefore
+scanned in its turn. Where the grain is brighter than that scan the surface moves outward, where it is darker
+inward, and after each step it is smoothed as much as the noise demands. Since a mesh is inside or outside and
+nothing between, far less of the noise comes with the edges than if the image were sharpened. A mask says of
+each voxel only on which side of its centre the surface lies: what is on its side moves nothing, so that the
+surface comes to lie smoothly between the centres.
+
+What the smoothing still takes from edges is given back by twicing (Tukey, Exploratory Data Analysis, 1977):
+the surface is smoothed once more, and what that takes is added.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from regolith_studio.geometry.arrays import BoolArray, FloatArray
+from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
+from regolith_studio.geometry.compiled import kernel
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.self_intersection import crossing_pairs
 from regolith_studio.imaging.coverage import coverage
 from regolith_studio.imaging.smoothing import LowPass
 
+Floats = NDArray[np.float32]
+
 _BOX = 1.0 / 12.0
 """Variance that a voxel's own width adds to the blur of an edge."""
-_REACH = 0.8
+_REACH, _REACH_OF_MASKS = 0.8, 0.5
 """Voxels over which what is missing is averaged, so that noise of single voxels moves nothing."""
 _FARTHEST = 0.3
 """Voxels that a corner moves at most in a step."""
 _EAGERNESS = 1.6
 """Share of the way to where a flat surface would explain the voxels that is gone in a step."""
+_COLUMNS, _COLUMNS_OF_MASKS = 3, 2
+"""Columns along the edge of a voxel that its share is measured by."""
+
+LIGHTLY = 4.0
+"""Times the usual pass band: a contour smoothed with so wide a one does not cross itself."""
+_RINGS, _ATTEMPTS = 3, 4
+"""Corners about crossing faces that go back to where they were, and how often faces are looked for."""
 
 
 @dataclass(frozen=True)
 class FitSettings:
-    """How often the surface moves, and the pass band that smooths it after each step.
+    """How often the surface moves, and what smooths it.
 
     Parameters
     ----------
     steps
         How often.
     iterations, pass_band
-        Of the smoothing (:func:`~regolith_studio.imaging.smoothing.windowed_sinc`).
+        Of the smoothing after each step (:class:`~regolith_studio.imaging.smoothing.LowPass`).
+    twicing, twicing_pass_band
+        At the end, what one more smoothing with this pass band takes is added so many times.
     """
 
     steps: int
     iterations: int
     pass_band: float
+    twicing: float = 0.0
+    twicing_pass_band: float = 0.13
 
 
-def fitted(mesh: Mesh, share: NDArray[np.float32], rim: BoolArray, blur: float, how: FitSettings) -> Mesh:
+def fitted(mesh: Mesh, share: Floats, rim: BoolArray, blur: float, how: FitSettings) -> Mesh:
     """The mesh, in voxels, moved to where it explains the shares best.
 
     Parameters
@@ -57,25 +78,83 @@ def fitted(mesh: Mesh, share: NDArray[np.float32], rim: BoolArray, blur: float, 
         Standard deviation of the blur as an edge shows it, in voxels, the voxel's own width in it.
     """
     point_spread = float(np.sqrt(max(blur**2 - _BOX, 0.0)))
-    slope = 1.0 / np.sqrt(2.0 * np.pi * (blur**2 + _REACH**2))
-    smooth = LowPass(mesh.faces, len(mesh.vertices), how.iterations, how.pass_band)
+
+    def missing(mesh: Mesh) -> Floats:
+        seen = ndimage.gaussian_filter(coverage(mesh, _shape(share), _COLUMNS), point_spread)
+        return np.asarray(np.where(rim, share - seen, np.float32(0.0)))
+
+    return _moved(mesh, missing, blur, _REACH, how)
+
+
+def fitted_to_mask(mesh: Mesh, mask: BoolArray, how: FitSettings) -> Mesh:
+    """The mesh, in voxels, moved so that the centres of a mask's voxels lie within it and no others."""
+    side = np.where(mask, np.float32(0.5), np.float32(-0.5))
+
+    def missing(mesh: Mesh) -> Floats:
+        """Voxels more than half covered are inside; only those on the wrong side miss something."""
+        beyond = 0.5 - coverage(mesh, _shape(mask), _COLUMNS_OF_MASKS)
+        return np.asarray(np.where(beyond * side > 0.0, beyond, np.float32(0.0)))
+
+    return _moved(mesh, missing, _BOX**0.5, _REACH_OF_MASKS, how)
+
+
+def uncrossed(mesh: Mesh, safe: Mesh) -> Mesh:
+    """The mesh with the corners of the safe one, of the same faces, where its faces cross each other.
+
+    That happens about tunnels and in plates of one voxel, whose two sides come too near. If it does not end,
+    or is too much to look through, the safe mesh.
+    """
+    for _ in range(_ATTEMPTS):
+        found = crossing_pairs(mesh.vertices, mesh.faces)
+        if found is None:
+            break
+        count, crossing = found
+        if count == 0:
+            return mesh
+        near = np.zeros(len(mesh.vertices), dtype=np.bool_)
+        for _ in range(_RINGS):
+            near[mesh.faces[crossing]] = True
+            crossing = np.asarray(near[mesh.faces].any(axis=1))
+        mesh = Mesh(np.where(near[:, None], safe.vertices, mesh.vertices), mesh.faces)
+    return safe
+
+
+def _moved(
+    mesh: Mesh, missing: Callable[[Mesh], Floats], blur: float, reach: float, how: FitSettings
+) -> Mesh:
+    """The mesh after all steps and the twicing; an edge that `blur` has widened tells how far to go."""
+    pace = _EAGERNESS * float(np.sqrt(2.0 * np.pi * (blur**2 + reach**2)))
+    smooth = LowPass(mesh.faces, len(mesh.vertices), how.iterations)
     for _ in range(how.steps):
-        seen = ndimage.gaussian_filter(coverage(mesh, _shape(share)).astype(np.float32), point_spread)
-        missing = ndimage.gaussian_filter(np.where(rim, share - seen, 0.0), _REACH)
-        there = ndimage.map_coordinates(missing, mesh.vertices.T, order=1)
-        away = np.clip(_EAGERNESS * there / slope, -_FARTHEST, _FARTHEST)
-        mesh = Mesh(smooth(mesh.vertices + away[:, None] * _normals(mesh)), mesh.faces)
-    return mesh
+        lacking = ndimage.gaussian_filter(missing(mesh), reach)
+        there = ndimage.map_coordinates(lacking, mesh.vertices.T, order=1)
+        away = np.clip(pace * there.astype(np.float64), -_FARTHEST, _FARTHEST)
+        outward = _normals(mesh.vertices, mesh.faces)
+        mesh = Mesh(smooth(mesh.vertices + away[:, None] * outward, how.pass_band), mesh.faces)
+    taken = mesh.vertices - smooth(mesh.vertices, how.twicing_pass_band)
+    return Mesh(mesh.vertices + how.twicing * taken, mesh.faces)
 
 
-def _normals(mesh: Mesh) -> FloatArray:
+@kernel
+def _normals(vertices: FloatArray, faces: IntArray) -> FloatArray:
     """Unit normals of the corners: sums of those of the faces about them, weighted by area."""
-    corners = mesh.faces.ravel(order="F")
-    areas = np.tile(mesh.face_area_vectors, (3, 1))
-    total = np.stack([np.bincount(corners, axis, len(mesh.vertices)) for axis in areas.T], axis=1)
-    return np.asarray(total / np.maximum(np.linalg.norm(total, axis=1), 1e-300)[:, None])
+    total = np.zeros(vertices.shape)
+    for face in range(len(faces)):
+        a, b, c = vertices[faces[face, 0]], vertices[faces[face, 1]], vertices[faces[face, 2]]
+        ux, uy, uz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
+        vx, vy, vz = c[0] - a[0], c[1] - a[1], c[2] - a[2]
+        x, y, z = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+        for corner in range(3):
+            total[faces[face, corner], 0] += x
+            total[faces[face, corner], 1] += y
+            total[faces[face, corner], 2] += z
+    for corner in range(len(vertices)):
+        x, y, z = total[corner]
+        length = max(np.sqrt(x * x + y * y + z * z), 1e-300)
+        total[corner, 0], total[corner, 1], total[corner, 2] = x / length, y / length, z / length
+    return total
 
 
-def _shape(array: NDArray[np.float32]) -> tuple[int, int, int]:
+def _shape(array: Floats | BoolArray) -> tuple[int, int, int]:
     nx, ny, nz = array.shape
     return nx, ny, nz

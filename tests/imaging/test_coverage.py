@@ -33,12 +33,12 @@ def test_that_shares_add_up_to_the_volume(centre: tuple[float, float, float]) ->
     ball = Mesh(np.array(centre) + 7.0 * sphere.vertices, sphere.faces)
     share = coverage(ball, (21, 21, 21))
     assert share.sum() == pytest.approx(ball.volume, rel=2e-3)
-    assert share.min() > -1e-9
-    assert share.max() < 1 + 1e-9
+    assert share.min() > -1e-6
+    assert share.max() < 1 + 1e-6
     assert share[10, 10, 10] == pytest.approx(1.0)
 
 
 def test_that_the_kernel_is_its_python() -> None:
     ball = Mesh(4.2 + 2.5 * icosphere(1).vertices, icosphere(1).faces)
     one, other = (f(ball.vertices, ball.faces, 9, 9, 9, 2) for f in (_covered, _covered.py_func))
-    assert np.allclose(one, other, atol=1e-12)
+    assert np.allclose(one, other, atol=1e-6)
