@@ -33,13 +33,14 @@ OF_A_CURVE = 19
 SPANS, CELLS, X, RULED_OUT = 19, 28, 31, 32
 """Rows of a bound: the spans along three axes, their cells in the table, where the spans were looked up,
 and 1 where no box on the piece is below the limit."""
-NORMALS, EDGES, ACROSS, BROKEN = 33, 45, 51, 57
-"""Rows of a pair of edges: normals of the facets of each, directions, spans; 1 where its curves are two."""
+NORMALS, EDGES, ACROSS, SECOND, BROKEN = 33, 45, 51, 57, 58
+"""Rows of a pair of edges: normals of the facets of each, directions, spans; 1 where the second of two curves
+is wanted; 1 where there is a second curve and the first was wanted."""
 AXES, ENDS = 33, 42
 """Rows of a look at the vertices: the three axes, and how far and which vertices reach along one."""
 OTHER, CUT = 47, 56
 """Rows of a piece with spans from both of its ends: those of its beginning, and where the bounds meet."""
-ROWS = 58
+ROWS = 59
 
 
 @inlined
@@ -88,7 +89,7 @@ def curves_between(lanes: FloatArray, count: int) -> None:
     """Curves of pairs of edges, from end to end; empty (low = high) where there is none.
 
     See :func:`regolith_studio.geometry.box_curve.curve_between`. With a = one + s (two - one) and b likewise
-    with t, a . b is bilinear in (s, t): a hyperbola, that enters and leaves the square of (s, t).
+    with t, a . b is bilinear in (s, t): a hyperbola, that cuts the square of (s, t) once or twice.
     """
     for k in range(count):
         one, two = three(lanes, NORMALS, k), three(lanes, NORMALS + 3, k)
@@ -101,11 +102,19 @@ def curves_between(lanes: FloatArray, count: int) -> None:
             s00 / (s00 - s10),
             s01 / (s01 - s11),
         )
-        from_s = 0.0 if p00 != p01 else (1.0 if p10 != p11 else s_low)
-        from_t = t_low if p00 != p01 else (t_high if p10 != p11 else 0.0)
-        to_s = s_high if p01 != p11 else (s_low if p00 != p10 else 1.0)
-        to_t = 1.0 if p01 != p11 else (0.0 if p00 != p10 else t_high)
-        lanes[BROKEN * LANES + k] = 1.0 if (p00 == p11) & (p00 != p01) & (p00 != p10) else 0.0
+        both, second = (p00 == p11) & (p00 != p01) & (p00 != p10), lanes[SECOND * LANES + k] == 1.0
+        around = ((s00 * s11 - s01 * s10) / (s00 + s11 - s01 - s10) >= 0.0) == p00
+        lanes[BROKEN * LANES + k] = 1.0 if both & (not second) else 0.0
+        on_low, on_high = (p00 != p01) & (not (both & second)), p10 != p11
+        from_s, from_t = (
+            0.0 if on_low else (1.0 if on_high else s_low),
+            t_low if on_low else (t_high if on_high else 0.0),
+        )
+        on_high, on_low = (p01 != p11) & (not (both & (around == second))), p00 != p10
+        to_s, to_t = (
+            s_high if on_high else (s_low if on_low else 1.0),
+            1.0 if on_high else (0.0 if on_low else t_high),
+        )
         a_from, a_to = (
             unit(mixed(one, 1.0 - from_s, two, from_s)),
             unit(mixed(one, 1.0 - to_s, two, to_s)),

@@ -14,16 +14,6 @@ from typing import NamedTuple
 import numpy as np
 
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
-from regolith_studio.geometry.box_branch import least_on_curve
-from regolith_studio.geometry.box_curve import (
-    all_positive,
-    curve_between,
-    denominator,
-    factors_of,
-    nowhere_below,
-    numerator,
-    unit,
-)
 from regolith_studio.geometry.box_facets import (
     Facets,
     arcs_of,
@@ -36,6 +26,7 @@ from regolith_studio.geometry.box_lanes import LANES
 from regolith_studio.geometry.box_record import TIE, Found, keep, nothing_below
 from regolith_studio.geometry.box_sieve import (
     MOST_WAITING,
+    PAIRS,
     Sieve,
     add_pair,
     empty_sieve,
@@ -73,13 +64,10 @@ class Work(NamedTuple):
         Scalar products of two normals with those of all n facets, shape (2, n).
     side
         How many of them are not negative, shape (n,).
-    ends
-        Of at most two curves: piece, end, place on either arc; shape (2, 2, 2).
     """
 
     dots: FloatArray
     side: IntArray
-    ends: FloatArray
 
 
 @kernel
@@ -115,7 +103,7 @@ def least_box(facets: Facets, known: float) -> Found:
     found, margin = nothing_below(known), TIE
     points, normals, edges = facets
     table, arcs, n = span_table(points), arcs_of(facets), len(normals)
-    work = Work(np.empty((2, n)), np.empty(n, np.int8), np.empty((2, 2, 2)))
+    work = Work(np.empty((2, n)), np.empty(n, np.int8))
     asked = np.full(n, True)
     if n > MANY_FACETS:
         _on_facets(facets, arcs, table, work, asked, n // FIRST_FACETS, margin, found)
@@ -147,7 +135,7 @@ def _on_curves(
 ) -> None:
     """Boxes flush with any two edges."""
     points, normals, edges = facets
-    dots, side, _ = work
+    dots, side = work
     least_width = np.inf
     for e in range(len(edges)):
         least_width = min(least_width, arcs[e, 6])
@@ -163,38 +151,26 @@ def _on_curves(
             sides = arcs[i, 6] * arcs[k, 6]
             if sides * least_width >= limit or sides * least_third(arcs, table, i, k) >= limit:
                 continue
-            add_pair(facets, arcs, i, k, sieve)
-            if sieve.filled[0] == LANES:
-                _sift(facets, arcs, table, work, margin, found, sieve)
-    _sift(facets, arcs, table, work, margin, found, sieve)
+            add_pair(facets, arcs, i, k, False, sieve)
+            while sieve.filled[PAIRS] == LANES:
+                _sift(facets, arcs, table, margin, found, sieve)
+    while sieve.filled[PAIRS] > 0:
+        _sift(facets, arcs, table, margin, found, sieve)
     work_off(points, table, margin, found, sieve)
 
 
 @leaf
 def _sift(
-    facets: Facets,
-    arcs: FloatArray,
-    table: SpanTable,
-    work: Work,
-    margin: float,
-    found: Found,
-    sieve: Sieve,
+    facets: Facets, arcs: FloatArray, table: SpanTable, margin: float, found: Found, sieve: Sieve
 ) -> None:
-    """Empty the lanes; pairs with two curves are searched at once."""
-    dots, _, ends = work
-    normals, edges = facets.normals, facets.edges
+    """Take the curves out of the lanes; second curves of the same pairs take their place."""
     whole_curves(table, found.record[0] * (1.0 + margin), sieve)
-    for at in range(sieve.filled[0]):
-        i, k = sieve.pairs[at, 0], sieve.pairs[at, 1]
-        for other in range(2, 4):
-            for side in range(2):
-                normal = row(normals, edges[i, 2 + side])
-                dots[side, edges[k, other]] = along(normals, edges[k, other], normal)
-        for branch in range(_branches(dots, edges[k, 2], edges[k, 3], ends)):
-            _search_curve(facets, arcs, table, i, k, ends[branch], margin, found)
-    sieve.filled[0] = 0
-    if sieve.filled[1] > MOST_WAITING - LANES:
+    if sieve.filled[0] > MOST_WAITING - LANES:
         work_off(facets.points, table, margin, found, sieve)
+    broken = sieve.filled[PAIRS]
+    sieve.filled[PAIRS] = 0
+    for at in range(broken):
+        add_pair(facets, arcs, sieve.pairs[at, 0], sieve.pairs[at, 1], True, sieve)
 
 
 @leaf
@@ -234,85 +210,3 @@ def _on_facets(
                 wide = dot(between(points, top, bottom), b)
                 top, bottom = ends_along(points, c)
                 keep(height, wide, dot(between(points, top, bottom), c), a, b, c, found)
-
-
-@leaf
-def _branches(dots: FloatArray, three: int, four: int, ends: FloatArray) -> int:
-    """Ends of the curves on which a of one arc and b of another are orthogonal; how many there are.
-
-    With a = one + s (two - one) and b likewise with t, a . b is bilinear in (s, t): a hyperbola, that the
-    square of (s, t) cuts into at most two pieces.
-
-    Parameters
-    ----------
-    dots
-        Of the facets of the first arc with all facets.
-    three, four
-        Facets of the second arc.
-    ends
-        Filled: piece, end, (s, t).
-    """
-    s00, s01, s10, s11 = dots[0, three], dots[0, four], dots[1, three], dots[1, four]
-    p00, p01, p10, p11 = s00 >= 0.0, s01 >= 0.0, s10 >= 0.0, s11 >= 0.0
-    n = 0
-    both = p00 == p11 and p00 != p01 and p00 != p10
-    around = both and ((s00 * s11 - s01 * s10) / (s00 + s11 - s01 - s10) >= 0.0) == p00
-    for side in range(4):
-        if side == 0:
-            if p00 == p01:
-                continue
-            s, t, piece = 0.0, s00 / (s00 - s01), 0
-        elif side == 1:
-            if p10 == p11:
-                continue
-            s, t, piece = 1.0, s10 / (s10 - s11), 1
-        elif side == 2:
-            if p00 == p10:
-                continue
-            s, t, piece = s00 / (s00 - s10), 0.0, 1 if around else 0
-        else:
-            if p01 == p11:
-                continue
-            s, t, piece = s01 / (s01 - s11), 1.0, 0 if around else 1
-        if both:
-            end = 0 if side < 2 else 1
-        else:
-            piece, end = 0, n
-        ends[piece, end, 0], ends[piece, end, 1] = s, t
-        n += 1
-    return n // 2
-
-
-@leaf
-def _search_curve(
-    facets: Facets,
-    arcs: FloatArray,
-    table: SpanTable,
-    i: int,
-    k: int,
-    ends: FloatArray,
-    margin: float,
-    found: Found,
-) -> None:
-    """Least box on one curve, if it is below the limit."""
-    points, normals, edges = facets
-    one, two, three, four = edges[i, 2], edges[i, 3], edges[k, 2], edges[k, 3]
-    a_from = unit(mixed(row(normals, one), 1.0 - ends[0, 0], row(normals, two), ends[0, 0]))
-    a_to = unit(mixed(row(normals, one), 1.0 - ends[1, 0], row(normals, two), ends[1, 0]))
-    b_from = unit(mixed(row(normals, three), 1.0 - ends[0, 1], row(normals, four), ends[0, 1]))
-    b_to = unit(mixed(row(normals, three), 1.0 - ends[1, 1], row(normals, four), ends[1, 1]))
-    if dot(a_from, a_to) > dot(b_from, b_to):
-        i, k, a_from, b_from, a_to, b_to = k, i, b_from, a_from, b_to, a_to
-    curve = curve_between(row(arcs, i), row(arcs, k), a_from, b_from, a_to, b_to)
-    if curve.q == 0.0 or curve.low >= curve.high:
-        return
-    bottom = denominator(curve)
-    limit = found.record[0] * (1.0 + margin)
-    first = (arcs[i, 3], arcs[i, 4], arcs[i, 5])
-    second = (arcs[k, 3], arcs[k, 4], arcs[k, 5])
-    factors = factors_of(curve, first, second, span_near(table, cross(curve.a, curve.b)), 0.0)
-    if all_positive(factors, curve.low, curve.high) and nowhere_below(
-        numerator(factors), bottom, limit, curve.low, curve.high
-    ):
-        return
-    least_on_curve(points, table, curve, edges[i, 0], edges[k, 0], margin, found)

@@ -25,6 +25,7 @@ from regolith_studio.geometry.box_lanes import (
     OF_A_CURVE,
     ROWS,
     RULED_OUT,
+    SECOND,
     SPANS,
     X,
     cells_of,
@@ -43,8 +44,10 @@ from regolith_studio.geometry.compiled import kernel, leaf
 
 MOST_WAITING = 512
 """Pieces that wait; when it is so many, they are worked off."""
-LOOK_DEPTH, DEEPEST = 1, 3
-"""Halvings of a curve after which vertices are looked at, and after which a piece is searched by itself."""
+HALVINGS, DEEPEST = 2, 4
+"""How often a curve is halved before vertices are looked at, and cut before a piece is searched by itself."""
+PAIRS = 2
+"""Place in the numbers of what is filled."""
 
 
 class Sieve(NamedTuple):
@@ -57,9 +60,10 @@ class Sieve(NamedTuple):
     pairs
         Edges of the curve in each lane, shape (LANES, 2).
     waiting
-        Pieces: the rows of a curve, and how often it was cut; a stack.
+        Two stacks of pieces, to be halved and to be cut where bounds meet: the rows of a curve, and how
+        often it was cut.
     filled
-        How many pairs are in the lanes and how many pieces wait, shape (2,).
+        How many pieces wait on either stack, and how many pairs are in the lanes, shape (3,).
     ends, depth
         Of the pieces in the lanes: where they begin and end, shape (2, LANES), and how often they were cut.
     """
@@ -79,19 +83,20 @@ def empty_sieve() -> Sieve:
     return Sieve(
         np.zeros(ROWS * LANES),
         np.empty((LANES, 2), np.int64),
-        np.empty((most, OF_A_CURVE + 1)),
-        np.zeros(2, np.int64),
+        np.empty((2, most, OF_A_CURVE + 1)),
+        np.zeros(3, np.int64),
         np.empty((2, LANES)),
         np.empty(LANES, np.int64),
     )
 
 
 @leaf
-def add_pair(facets: Facets, arcs: FloatArray, i: int, k: int, sieve: Sieve) -> None:
-    """Put a pair of edges into the next lane."""
+def add_pair(facets: Facets, arcs: FloatArray, i: int, k: int, second: bool, sieve: Sieve) -> None:
+    """Put a pair of edges into the next lane, for its first or second curve."""
     lanes, edges, normals = sieve.lanes, facets.edges, facets.normals
-    at = sieve.filled[0]
+    at = sieve.filled[PAIRS]
     sieve.pairs[at, 0], sieve.pairs[at, 1] = i, k
+    lanes[SECOND * LANES + at] = 1.0 if second else 0.0
     for side in range(2):
         e = i if side == 0 else k
         one, two = edges[e, 2], edges[e, 3]
@@ -101,57 +106,57 @@ def add_pair(facets: Facets, arcs: FloatArray, i: int, k: int, sieve: Sieve) -> 
             lanes[(NORMALS + 6 * side + 3 + c) * LANES + at] = normals[two, c]
             lanes[(EDGES + 3 * side + c) * LANES + at] = arcs[e, c]
             lanes[(ACROSS + 3 * side + c) * LANES + at] = arcs[e, 3 + c]
-    sieve.filled[0] += 1
+    sieve.filled[PAIRS] += 1
 
 
 @leaf
 def whole_curves(table: SpanTable, limit: float, sieve: Sieve) -> None:
-    """Let the curves in the lanes wait that are not ruled out whole; those of broken ones stay in front."""
-    lanes, waiting, count = sieve.lanes, sieve.waiting, sieve.filled
-    curves_between(lanes, count[0])
-    for k in range(count[0]):
+    """Let the curves in the lanes wait that are not ruled out whole; pairs with a second curve stay."""
+    lanes, waiting, count = sieve.lanes, sieve.waiting, sieve.filled[PAIRS]
+    curves_between(lanes, count)
+    for k in range(count):
         lanes[X * LANES + k] = 0.0
-    cells_of(lanes, count[0], table.cells)
-    look_up(lanes, count[0], table, 2)
+    cells_of(lanes, count, table.cells)
+    look_up(lanes, count, table, 2)
     for row in range(6):
-        for k in range(count[0]):
+        for k in range(count):
             lanes[(SPANS + row) * LANES + k] = lanes[(ACROSS + row) * LANES + k]
-    rule_out(lanes, count[0], limit)
+    rule_out(lanes, count, limit)
     broken = 0
-    for k in range(count[0]):
+    for k in range(count):
         if lanes[BROKEN * LANES + k] > 0.0:
             sieve.pairs[broken, 0], sieve.pairs[broken, 1] = sieve.pairs[k, 0], sieve.pairs[k, 1]
             broken += 1
-        elif lanes[RULED_OUT * LANES + k] == 0.0 and lanes[LOW * LANES + k] < lanes[HIGH * LANES + k]:
+        if lanes[RULED_OUT * LANES + k] == 0.0 and lanes[LOW * LANES + k] < lanes[HIGH * LANES + k]:
             for row in range(OF_A_CURVE):
-                waiting[count[1], row] = lanes[row * LANES + k]
-            waiting[count[1], OF_A_CURVE] = 0.0
-            count[1] += 1
-    count[0] = broken
+                waiting[0, sieve.filled[0], row] = lanes[row * LANES + k]
+            waiting[0, sieve.filled[0], OF_A_CURVE] = 0.0
+            sieve.filled[0] += 1
+    sieve.filled[PAIRS] = broken
 
 
 @leaf
 def work_off(points: FloatArray, table: SpanTable, margin: float, found: Found, sieve: Sieve) -> None:
     """Cut waiting pieces until none is left."""
-    while sieve.filled[1] > 0:
-        taken = take_top(sieve)
-        if sieve.depth[0] <= LOOK_DEPTH:
-            halved(points, table, margin, found, taken, sieve)
+    while sieve.filled[0] + sieve.filled[1] > 0:
+        if sieve.filled[0] == 0 or sieve.filled[1] >= LANES:
+            cut_where_bounds_meet(points, table, margin, found, take_top(1, sieve), sieve)
         else:
-            cut_where_bounds_meet(points, table, margin, found, taken, sieve)
+            halved(points, table, margin, found, take_top(0, sieve), sieve)
 
 
 @leaf
-def take_top(sieve: Sieve) -> int:
-    """Put the top of the stack into the lanes."""
-    lanes, waiting, count = sieve.lanes, sieve.waiting, sieve.filled
-    taken = min(LANES, int(count[1]))
-    count[1] -= taken
+def take_top(stack: int, sieve: Sieve) -> int:
+    """Put the top of a stack into the lanes."""
+    lanes, waiting = sieve.lanes, sieve.waiting
+    taken = min(LANES, int(sieve.filled[stack]))
+    sieve.filled[stack] -= taken
+    first = sieve.filled[stack]
     for row in range(OF_A_CURVE):
         for k in range(taken):
-            lanes[row * LANES + k] = waiting[count[1] + k, row]
+            lanes[row * LANES + k] = waiting[stack, first + k, row]
     for k in range(taken):
-        sieve.depth[k] = int(waiting[count[1] + k, OF_A_CURVE]) + 1
+        sieve.depth[k] = int(waiting[stack, first + k, OF_A_CURVE]) + 1
         sieve.ends[0, k], sieve.ends[1, k] = lanes[LOW * LANES + k], lanes[HIGH * LANES + k]
     return taken
 
@@ -206,7 +211,7 @@ def let_wait(
     points: FloatArray, table: SpanTable, margin: float, found: Found, taken: int, sieve: Sieve
 ) -> None:
     """Put the pieces that are not ruled out on the stack; those cut too often are searched at once."""
-    lanes, waiting, count = sieve.lanes, sieve.waiting, sieve.filled
+    lanes, waiting = sieve.lanes, sieve.waiting
     for k in range(taken):
         if lanes[RULED_OUT * LANES + k] == 1.0:
             continue
@@ -215,7 +220,9 @@ def let_wait(
             one, two = int(lanes[FEET * LANES + k]), int(lanes[(FEET + 1) * LANES + k])
             least_on_curve(points, table, curve, one, two, margin, found)
             continue
+        stack = 0 if sieve.depth[k] < HALVINGS else 1
+        at = sieve.filled[stack]
         for row in range(OF_A_CURVE):
-            waiting[count[1], row] = lanes[row * LANES + k]
-        waiting[count[1], OF_A_CURVE] = sieve.depth[k]
-        count[1] += 1
+            waiting[stack, at, row] = lanes[row * LANES + k]
+        waiting[stack, at, OF_A_CURVE] = sieve.depth[k]
+        sieve.filled[stack] += 1
