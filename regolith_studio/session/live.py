@@ -34,6 +34,8 @@ _EMPTY: Mapping[Kind, Mapping[str, Any]] = {
     Kind.COARSENING: {"best": None, "coarsening_progress": None, "coarsened": None, "loss_history": ()},
 }
 """What the results hold of each kind while there is nothing to show."""
+FITS_KEPT = 256
+"""Fits that are at hand when their particle is selected again; 10 kB each."""
 
 
 class Owner(Protocol):
@@ -149,6 +151,8 @@ class LiveResults:
 
         def keep(fit: "HarmonicFit") -> None:
             self._fits[entry.id, expansion] = fit
+            if len(self._fits) > FITS_KEPT:
+                del self._fits[next(iter(self._fits))]
             self._owner.update("fit", fit=fit)
 
         return Job(fit_one, (entry.particle.mesh, FitOrder(expansion=expansion))), keep, _ignore

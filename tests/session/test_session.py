@@ -18,6 +18,7 @@ from regolith_studio.imaging.stl import stl_bytes
 from regolith_studio.jobs.building import DatasetOptions
 from regolith_studio.jobs.runners.inline import InlineRunner
 from regolith_studio.jobs.runners.thread import ThreadRunner
+from regolith_studio.session import live
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.plan import Kind
 from regolith_studio.session.session import Session
@@ -119,6 +120,19 @@ def test_that_going_back_to_a_particle_finds_its_fit_again(opened: Session) -> N
     assert opened.results.fit is not first
     opened.select("grain-0")
     assert opened.results.fit is first
+
+
+def test_that_only_the_last_fits_are_at_hand(opened: Session, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(live, "FITS_KEPT", 2)
+    first = opened.results.fit
+    opened.select("grain-1")
+    second = opened.results.fit
+    opened.select("grain-2")
+    opened.select("grain-1")
+    assert opened.results.fit is second
+    opened.select("grain-0")
+    assert opened.results.fit is not first
+    assert opened.results.fit.coefficients.values == pytest.approx(first.coefficients.values)  # type: ignore[union-attr]
 
 
 def test_that_another_reference_makes_another_fit_and_going_back_finds_the_first(opened: Session) -> None:
