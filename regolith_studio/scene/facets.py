@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pyvista as pv
 from numpy.typing import ArrayLike
-from vtkmodules.vtkRenderingCore import vtkBillboardTextActor3D
+from vtkmodules.vtkRenderingCore import vtkTextActor
 
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
@@ -15,8 +15,8 @@ from regolith_studio.scene.extras import hide_named, show_named
 from regolith_studio.scene.palette import Surroundings
 
 FACET, NUMBER = "facet", "facet_number"
-LIFT = 0.01
-"""Distance of the number from its facet, as a share of the polyhedron's size."""
+LIFT = 0.002
+"""Distance of the outline from its facet, as a share of the facet's size."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,26 +113,25 @@ def show_facet(
     corners = facet.corners + np.asarray(centre, dtype=np.float64)
     size = float(np.ptp(corners, axis=0).max())
     loop = np.array([len(corners) + 1, *range(len(corners)), 0])
-    outline = pv.PolyData(corners + 0.2 * LIFT * size * facet.normal, lines=loop)
+    outline = pv.PolyData(corners + LIFT * size * facet.normal, lines=loop)
     show_named(plotter, FACET, outline, colour, line_width=4.0).prop.lighting = False
-    _show_number(
-        plotter, str(facet.index + 1), corners.mean(axis=0) + LIFT * size * facet.normal, surroundings
-    )
+    _show_number(plotter, str(facet.index + 1), corners.mean(axis=0), surroundings)
 
 
 def _show_number(plotter: Any, text: str, place: FloatArray, surroundings: Surroundings) -> None:
+    """In front of everything: letters that face the eye would sink into a facet that does not."""
     label = plotter.actors.get(NUMBER)
     if label is None:
-        label = vtkBillboardTextActor3D()
+        label = vtkTextActor()
+        label.GetPositionCoordinate().SetCoordinateSystemToWorld()
         prop = label.GetTextProperty()
         prop.SetFontSize(17)
         prop.SetBold(True)
         prop.SetFontFamilyToArial()
         prop.SetJustificationToCentered()
         prop.SetVerticalJustificationToCentered()
-        label.SetForceOpaque(True)
         plotter.add_actor(label, name=NUMBER, reset_camera=False, render=False)
     label.SetInput(text)
-    label.SetPosition(*place)
+    label.GetPositionCoordinate().SetValue(*place)
     label.GetTextProperty().SetColor(*pv.Color(surroundings.outline).float_rgb)
     label.SetVisibility(True)

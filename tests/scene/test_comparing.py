@@ -150,6 +150,21 @@ def test_that_a_facet_tells_its_numbers_and_is_outlined(plotter, cube):
     assert not plotter.actors[facets.NUMBER].GetVisibility()
 
 
+def test_that_the_number_of_a_slanted_facet_is_read_whole(plotter, cube):
+    def ink(direction):
+        """Pixels that the number of the facet towards +x changes."""
+        apply_pose(plotter, framing_pose(cube.vertices, direction))
+        facets.show_facet(plotter, facets.facet_of(cube, 0))
+        with_number = picture(plotter)
+        plotter.actors[facets.NUMBER].SetVisibility(False)
+        return int((np.abs(with_number - picture(plotter)).max(axis=2) > 12).sum())
+
+    surfaces.show_polyhedron(plotter, cube)
+    straight = ink("right")
+    assert straight > 20
+    assert ink("isometric") == pytest.approx(straight, rel=0.2)
+
+
 def test_that_a_polyhedron_is_a_shape_where_its_centre_says(cube):
     shape = Shape(POLYHEDRON, cube, np.array([5.0, 0.0, 0.0]))
     assert np.allclose(shape.mesh.bounds.mean(axis=0), [5.0, 0.0, 0.0])

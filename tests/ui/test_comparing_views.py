@@ -13,6 +13,7 @@ from regolith_studio.scene.comparing import OTHER
 from regolith_studio.scene.sight import Sight
 from regolith_studio.scene.surfaces import SURFACE
 from regolith_studio.ui.app import open_window
+from regolith_studio.ui.widgets.number_text import grouped_number
 
 SECONDS = 120.0
 
@@ -89,7 +90,7 @@ def test_that_the_section_draws_and_measures_what_the_plane_cuts(window):
     assert plane.offset == pytest.approx(middle + 5.0, abs=0.05)
     labels = [curve.label for curve in panel.plot.curves]
     area = plane_cut(mesh, (0, 0, 1), plane.offset).area
-    assert labels[0] == f"CT particle {area:,.4g} µm²"
+    assert labels[0] == f"CT particle {grouped_number(area)} µm²"
     assert [label.split()[0] for label in labels] == ["CT", "Fit", "Polyhedron"]
     for name in ("particle", "fit", "polyhedron"):
         assert actor(window, name, sectioning.CAP) is not None

@@ -7,7 +7,7 @@ import pytest
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.geometry.directions import icosphere
 from regolith_studio.ui.panels.descriptor_table import DescriptorTablePanel
-from regolith_studio.ui.widgets.number_text import short_number
+from regolith_studio.ui.widgets.number_text import grouped_number, short_number
 
 
 @pytest.mark.parametrize(
@@ -26,6 +26,14 @@ from regolith_studio.ui.widgets.number_text import short_number
 def test_that_a_number_keeps_its_digits_and_loses_idle_signs(value, digits, text):
     assert short_number(value, digits) == text
     assert float(text) == pytest.approx(value, rel=0.5 * 10.0 ** (1 - digits))
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(9382.4, "9,382"), (12260.0, "12,260"), (1234567.0, "1,235,000"), (12.3, "12.30"), (3.0e8, "3.000e8")],
+)
+def test_that_numbers_of_one_legend_are_written_alike(value, text):
+    assert grouped_number(value) == text
 
 
 def cut_texts(table):

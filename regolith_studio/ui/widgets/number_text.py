@@ -1,4 +1,4 @@
-"""Numbers as they are read in narrow tables."""
+"""Numbers as they are read in narrow tables and in legends."""
 
 
 def short_number(value: float, digits: int = 4) -> str:
@@ -11,3 +11,11 @@ def short_number(value: float, digits: int = 4) -> str:
         return text.rstrip(".")
     mantissa, _, exponent = text.partition("e")
     return f"{mantissa}e{int(exponent)}"
+
+
+def grouped_number(value: float, digits: int = 4) -> str:
+    """`value` with so many significant digits, its thousands apart: ``12,260``; from 1e8 on ``1.226e8``."""
+    rounded = float(f"{value:.{digits}g}")
+    if 10.0 ** (digits - 1) <= abs(rounded) < 1e8:
+        return f"{rounded:,.0f}"
+    return short_number(value, digits)

@@ -13,6 +13,7 @@ from regolith_studio.ui.views.triptych import Triptych
 from regolith_studio.ui.widgets.choice_box import ChoiceBox
 from regolith_studio.ui.widgets.curve_plot import Curve, CurvePlot
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
+from regolith_studio.ui.widgets.number_text import grouped_number
 
 AXES = {"x": ("y", "z"), "y": ("x", "z"), "z": ("x", "y")}
 """What runs to the right and up in a drawing, by the direction of the cut."""
@@ -120,6 +121,5 @@ def _mirrored(cut: PlaneCut, direction: str) -> bool:
 
 
 def _area_words(area: float, whole: float, name: str) -> str:
-    if name == PARTICLE or not whole:
-        return f"{area:,.4g} µm²"
-    return f"{area:,.4g} µm² ({area / whole - 1:+.1%})"
+    words = f"{grouped_number(area)} µm²"
+    return words if name == PARTICLE or not whole else f"{words} ({area / whole - 1:+.1%})"
