@@ -101,6 +101,10 @@ MaxError = Annotated[
         metavar="PERCENT",
     ),
 ]
+Resume = Annotated[
+    bool,
+    typer.Option("--resume", help="Go on with a study into this folder that was stopped; else begin."),
+]
 Method = Annotated[str, typer.Option("--method", help="Coarsening method.", metavar="NAME")]
 Target = Annotated[
     str, typer.Option("--target", help="What is imitated: fit (paper) or particle.", metavar="T")

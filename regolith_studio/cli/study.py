@@ -1,5 +1,6 @@
 """``study``: tables and figures over a sample."""
 
+from functools import partial
 from typing import Annotated
 
 import typer
@@ -19,6 +20,7 @@ from regolith_studio.cli.options import (
     RadiusRule,
     Reference,
     Repair,
+    Resume,
     Seed,
     Settings,
     StarPoint,
@@ -94,6 +96,7 @@ def lmax(
     repair: Repair = True,
     json: Json = False,
     jobs: Jobs = 1,
+    resume: Resume = False,
     seed: Seed = 0,
 ) -> None:
     """RMSRE of the descriptors against l_max (Fig. 3)."""
@@ -108,10 +111,11 @@ def lmax(
         Choices(level=level, seed=seed)
         expansion = Expansion(star_point, rule, reference)
     loaded = read_inputs(meshes, unit, repair)
-    steps = study_lmax(loaded.particles, jobs, seed, degrees=wanted, level=level, expansion=expansion)
-    study = conclude("lmax_study", steps, output, json)
+    study = partial(study_lmax, loaded.particles, jobs, seed, degrees=wanted, level=level)
+    steps = partial(study, expansion=expansion)
+    found = conclude("lmax_study", steps, output, json, resume)
     if not json:
-        typer.echo(enough_degrees(study, below / 100))
+        typer.echo(enough_degrees(found, below / 100))
     raise typer.Exit(exit_code(meshes, loaded))
 
 
@@ -134,6 +138,7 @@ def coarsening(
     repair: Repair = True,
     json: Json = False,
     jobs: Jobs = 1,
+    resume: Resume = False,
     seed: Seed = 0,
 ) -> None:
     """RMSRE of the descriptors for each set of loss weights (Fig. 8)."""
@@ -148,8 +153,8 @@ def coarsening(
     with as_bad_use():
         rows = chosen_rows(names, wish)
     loaded = read_inputs(meshes, unit, repair)
-    study = study_coarsening(loaded.particles, wish.order, jobs, rows=rows, box_metric=box)
-    conclude("coarsening_study", study, output, json)
+    study = partial(study_coarsening, loaded.particles, wish.order, jobs, rows=rows, box_metric=box)
+    conclude("coarsening_study", study, output, json, resume)
     raise typer.Exit(exit_code(meshes, loaded))
 
 
@@ -167,6 +172,7 @@ def population(
     repair: Repair = True,
     json: Json = False,
     jobs: Jobs = 1,
+    resume: Resume = False,
     seed: Seed = 0,
 ) -> None:
     """Drawn against measured particles: models fitted to one half, judged on the other (Figs. 4-6)."""
@@ -188,7 +194,8 @@ def population(
         raise InputError(
             f"{source.name} holds no measured particles to judge models on; give a fit, or meshes."
         )
-    steps = study_population(
+    steps = partial(
+        study_population,
         source.content,
         _words(models) or None,
         jobs,
@@ -199,7 +206,7 @@ def population(
         keys=tuple(CATALOGUE) if descriptors == "all" else _words(descriptors) or KEYS,
         seed=seed,
     )
-    study = conclude("population_study", steps, output, json)
+    study = conclude("population_study", steps, output, json, resume)
     if not json:
         typer.echo()
         print_table(target_table(study))

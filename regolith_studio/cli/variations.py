@@ -1,6 +1,7 @@
 """``study faces``, ``study tradeoff``, ``study sensitivity``: what a choice about the coarsening costs."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -19,6 +20,7 @@ from regolith_studio.cli.options import (
     RadiusRule,
     Reference,
     Repair,
+    Resume,
     Seed,
     Settings,
     StarPoint,
@@ -72,11 +74,12 @@ def faces(
     repair: Repair = True,
     json: Json = False,
     jobs: Jobs = 1,
+    resume: Resume = False,
     seed: Seed = 0,
 ) -> None:
     """RMSRE of the descriptors against the number of faces."""
     wish = choices_from(20, method, preset, weight, set_, target, l_max, seed, star_point, rule, reference)
-    _vary("faces", faces, wish, meshes, output, box, (unit, repair), json, jobs)
+    _vary("faces", faces, wish, meshes, output, box, (unit, repair), json, jobs, resume)
 
 
 def tradeoff(
@@ -98,11 +101,12 @@ def tradeoff(
     repair: Repair = True,
     json: Json = False,
     jobs: Jobs = 1,
+    resume: Resume = False,
     seed: Seed = 0,
 ) -> None:
     """Overlap against descriptors: what one costs the other."""
     wish = choices_from(faces, method, preset, weight, set_, target, l_max, seed, star_point, rule, reference)
-    _vary("tradeoff", factors, wish, meshes, output, box, (unit, repair), json, jobs)
+    _vary("tradeoff", factors, wish, meshes, output, box, (unit, repair), json, jobs, resume)
 
 
 def sensitivity(
@@ -124,11 +128,12 @@ def sensitivity(
     repair: Repair = True,
     json: Json = False,
     jobs: Jobs = 1,
+    resume: Resume = False,
     seed: Seed = 0,
 ) -> None:
     """What changing one weight of the loss changes in every descriptor."""
     wish = choices_from(faces, method, preset, weight, set_, target, l_max, seed, star_point, rule, reference)
-    _vary("sensitivity", factors, wish, meshes, output, box, (unit, repair), json, jobs)
+    _vary("sensitivity", factors, wish, meshes, output, box, (unit, repair), json, jobs, resume)
 
 
 def _vary(
@@ -141,6 +146,7 @@ def _vary(
     reading: tuple[str, bool],
     json: bool,
     jobs: int,
+    resume: bool,
 ) -> None:
     from regolith_studio.cli.inputs import exit_code, read_inputs
     from regolith_studio.jobs.studying import study_coarsening
@@ -150,8 +156,8 @@ def _vary(
     with as_bad_use():
         rows = varied_rows(key, wish, values)
     loaded = read_inputs(meshes, *reading)
-    study = study_coarsening(loaded.particles, wish.order, jobs, rows=rows, box_metric=box)
-    conclude(f"{key}_study", study, output, json)
+    study = partial(study_coarsening, loaded.particles, wish.order, jobs, rows=rows, box_metric=box)
+    conclude(f"{key}_study", study, output, json, resume)
     raise typer.Exit(exit_code(meshes, loaded))
 
 
@@ -163,17 +169,27 @@ def check_box(box: str) -> None:
         raise typer.BadParameter(f"The box must be one of {', '.join(BOX_METRICS)}, got {box!r}.")
 
 
-def conclude(kind: str, steps: "Steps", folder: Path, json: bool) -> Any:
-    """Follow a study to its end, write its files, print its table (or the list of files)."""
+def conclude(kind: str, study: Callable[..., "Steps"], folder: Path, json: bool, resume: bool = False) -> Any:
+    """Follow a study to its end, write its files, print its table (or the list of files).
+
+    Parameters
+    ----------
+    study
+        Makes the steps; is given the `answers` that go to disk as they come.
+    resume
+        Whether to go on with those that are there.
+    """
     from regolith_studio.cli.terminal import follow, print_json, print_table
+    from regolith_studio.jobs.answers import Answers
     from regolith_studio.session.outputs.staging import staged_folder
     from regolith_studio.session.outputs.studies import STUDIES
 
-    study = follow(steps)
-    with staged_folder(folder) as stage:
-        files = [path.name for path in STUDIES[kind].write(study, stage)]
+    with Answers(folder / "journal" / f"{kind}.jsonl", resume) as answers:
+        found = follow(study(answers=answers))
+        with staged_folder(folder) as stage:
+            files = [path.name for path in STUDIES[kind].write(found, stage)]
     if json:
         print_json({"folder": str(folder), "files": files})
     else:
-        print_table(STUDIES[kind].table(study))
-    return study
+        print_table(STUDIES[kind].table(found))
+    return found

@@ -99,7 +99,7 @@ def _lines(content: bytes, path: Path) -> list[dict[str, Any]]:
     try:
         lines = [json.loads(line) for line in content.splitlines()]
     except ValueError as error:
-        raise FileError(f"{path} is damaged; run the recipe again without --resume.") from error
+        raise FileError(f"{path} is damaged; run again without --resume.") from error
     if not lines or not all(isinstance(line, dict) for line in lines) or lines[0].get("format") != FORMAT:
         raise FileError(f"{path} is no journal of this program.")
     return lines

@@ -5,6 +5,7 @@ from functools import partial
 from typing import Any
 
 from regolith_studio.geometry.particle import Particle
+from regolith_studio.jobs.answers import Answers, Mapper, fingerprint, fingerprint_of_rows
 from regolith_studio.jobs.batch import call, value_of
 from regolith_studio.jobs.coarsening import CoarseningOrder
 from regolith_studio.jobs.crew import Crew, hired
@@ -17,7 +18,11 @@ from regolith_studio.studies.progress import StudyProgress
 
 
 def study_lmax(
-    particles: Sequence[Particle], workers: int | Crew = 1, seed: int = 0, **options: Any
+    particles: Sequence[Particle],
+    workers: int | Crew = 1,
+    seed: int = 0,
+    answers: Answers | None = None,
+    **options: Any,
 ) -> Steps:
     """Fig. 3 for `particles`; partial results and the result are ``LmaxStudy``.
 
@@ -25,16 +30,25 @@ def study_lmax(
     ----------
     workers
         Processes at a time; 0 for one a core.
+    answers
+        Keeps what is known of each particle, so that the study can be taken up again.
     options
         Further ones of :func:`~regolith_studio.studies.lmax.lmax_study`: degrees, level, keys ...
     """
     yield Started("RMSRE against l_max", len(particles))
+    if answers is not None:
+        answers.about("lmax", (seed, sorted(options.items())), fingerprint(particles))
     with hired(workers) as crew:
-        return (yield from told(lmax_study(particles, mapper=crew.map, seed=seed, **options)))
+        mapper = _kept(crew.map, answers)
+        return (yield from told(lmax_study(particles, mapper=mapper, seed=seed, **options)))
 
 
 def study_population(
-    sample: Sample, models: Sequence[str] | None = None, workers: int | Crew = 1, **options: Any
+    sample: Sample,
+    models: Sequence[str] | None = None,
+    workers: int | Crew = 1,
+    answers: Answers | None = None,
+    **options: Any,
 ) -> Steps:
     """Figs. 4 to 6 for `sample`; partial results and the result are ``PopulationStudy``.
 
@@ -44,12 +58,17 @@ def study_population(
         Keys of ``MODELS``; all by default.
     workers
         Processes at a time; 0 for one a core.
+    answers
+        Keeps what is known of particles and draws, so that the study can be taken up again.
     options
         Further ones of :func:`~regolith_studio.studies.population.population_study`.
     """
     yield Started("Judging models", 0)
+    if answers is not None:
+        inputs = fingerprint_of_rows(sample.coefficients, (*sample.names, sample.unit))
+        answers.about("population", (models, sorted(options.items())), inputs)
     with hired(workers) as crew:
-        mapper = partial(_mapped, crew)
+        mapper = _kept(partial(_mapped, crew), answers)
         return (yield from told(population_study(sample, models, mapper=mapper, **options)))
 
 
@@ -60,7 +79,11 @@ def _mapped(crew: Crew, function: Callable[[Any], Any], items: Iterable[Any]) ->
 
 
 def study_coarsening(
-    particles: Sequence[Particle], order: CoarseningOrder, workers: int | Crew = 1, **options: Any
+    particles: Sequence[Particle],
+    order: CoarseningOrder,
+    workers: int | Crew = 1,
+    answers: Answers | None = None,
+    **options: Any,
 ) -> Steps:
     """Fig. 8 for `particles`; partial results and the result are ``CoarseningStudy``.
 
@@ -70,10 +93,14 @@ def study_coarsening(
         Method, face count, settings, seed and target; its weights do not matter, the rows bring theirs.
     workers
         Processes at a time; 0 for one a core.
+    answers
+        Keeps what is known of each particle, so that the study can be taken up again.
     options
         Further ones of :func:`~regolith_studio.studies.coarsening.coarsening_study`: rows, box_metric.
     """
     yield Started("RMSRE against loss weights", len(particles))
+    if answers is not None:
+        answers.about("coarsening", (order, sorted(options.items())), fingerprint(particles))
     with hired(workers) as crew:
         study = coarsening_study(
             particles,
@@ -82,10 +109,14 @@ def study_coarsening(
             seed=order.seed,
             settings=dict(order.settings),
             target=TargetChoice(order.target, order.l_max, order.level, order.expansion),
-            mapper=crew.map,
+            mapper=_kept(crew.map, answers),
             **options,
         )
         return (yield from told(study))
+
+
+def _kept(mapper: Mapper, answers: Answers | None) -> Mapper:
+    return mapper if answers is None else answers.through(mapper)
 
 
 def told(steps: Generator[StudyProgress, None, Any]) -> Generator[Step, None, Any]:

@@ -9,8 +9,9 @@ import contextlib
 import dataclasses
 import hashlib
 import shutil
-from collections.abc import Generator, Iterator
+from collections.abc import Callable, Generator, Iterator
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,7 @@ from regolith_studio.dataset.build import software_versions
 from regolith_studio.dataset.streaming import check_count, write_stored
 from regolith_studio.errors import FileError, RegolithError
 from regolith_studio.geometry.particle import Particle
+from regolith_studio.jobs.answers import Answers
 from regolith_studio.jobs.building import story
 from regolith_studio.jobs.chunked import JOURNAL, LOST, Batch, work_through
 from regolith_studio.jobs.crew import Crew, hired
@@ -67,6 +69,8 @@ class Performed:
         What its page tells.
     problems
         One sentence for each file or particle that failed.
+    resume
+        Whether studies go on with the answers that are there.
     """
 
     folder: Path
@@ -77,6 +81,7 @@ class Performed:
     summary: Summary = field(default_factory=Summary)
     studies: list[str] = field(default_factory=list)
     problems: list[str] = field(default_factory=list)
+    resume: bool = False
 
     @property
     def files(self) -> list[str]:
@@ -134,7 +139,7 @@ def perform(
         prepared: Prepared = yield from prepare(
             recipe, base, place / PREPARED_FOLDER, crew, over=over and resume
         )
-        done = Performed(folder, recipe, choices, Items.of(recipe, base, prepared))
+        done = Performed(folder, recipe, choices, Items.of(recipe, base, prepared), resume=resume)
         _check(done)
         with _opened(done, resume, chunk) as batch:
             if (ended := _ending(batch)) is not None:
@@ -320,11 +325,10 @@ def _represented(
 def _studied(done: Performed, particles: list[Particle], crew: Crew) -> Part:
     wish, choices = done.recipe.outputs, done.choices
     if wish.lmax_study:
-        yield from _study(
-            done, "lmax_study", study_lmax(particles, crew, choices.seed, expansion=choices.expansion)
-        )
+        lmax = partial(study_lmax, particles, crew, choices.seed, expansion=choices.expansion)
+        yield from _study(done, "lmax_study", lmax)
     if wish.coarsening_study:
-        yield from _study(done, "coarsening_study", study_coarsening(particles, choices.order, crew))
+        yield from _study(done, "coarsening_study", partial(study_coarsening, particles, choices.order, crew))
 
 
 def _read(done: Performed) -> Generator[Step, None, list[Particle]]:
@@ -338,12 +342,13 @@ def _read(done: Performed) -> Generator[Step, None, list[Particle]]:
     return found
 
 
-def _study(done: Performed, name: str, steps: Steps) -> Part:
-    try:
-        study = yield from steps
-    except RegolithError as error:
-        done.problems.append(str(error))
-        return
-    done.studies.append(name)
-    with staged_folder(done.folder / "studies") as stage:
-        STUDIES[name].write(study, stage)
+def _study(done: Performed, name: str, study: Callable[..., Steps]) -> Part:
+    with Answers(done.folder / JOURNAL_FOLDER / f"{name}.jsonl", done.resume) as answers:
+        try:
+            found = yield from study(answers=answers)
+        except RegolithError as error:
+            done.problems.append(str(error))
+            return
+        done.studies.append(name)
+        with staged_folder(done.folder / "studies") as stage:
+            STUDIES[name].write(found, stage)

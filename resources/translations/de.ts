@@ -3935,6 +3935,11 @@
    <translation>Regolith Studio wurde zuletzt nicht ordentlich geschlossen. Den Stand zurückholen?</translation>
   </message>
   <message>
+   <location filename="ui/projects.py" />
+   <source>It was kept at {moment}.</source>
+   <translation>Er wurde {moment} festgehalten.</translation>
+  </message>
+  <message>
    <location filename="ui/pages/model/judgement.py" />
    <source>Rejected</source>
    <translation>Verworfen</translation>

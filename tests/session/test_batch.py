@@ -20,9 +20,10 @@ from regolith_studio.errors import FileError, InputError
 from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.imaging.stl import stl_bytes
-from regolith_studio.jobs.events import Progress
+from regolith_studio.jobs.events import Progress, Started
 from regolith_studio.session.performing import Performed, perform
 from regolith_studio.session.recipe import Recipe, recipe_of
+from regolith_studio.studies import lmax
 
 BASE: dict[str, Any] = {"method": "quadric", "level": 2, "l_max": 4, "n_faces": 12}
 ROOT = Path(__file__).resolve().parents[2]
@@ -116,6 +117,30 @@ def test_that_a_run_given_up_after_any_particle_goes_on_to_the_same_bytes(
     for _ in again:
         pass
     assert digests(tmp_path / "out") == alone[1]
+
+
+def test_that_a_study_given_up_within_a_run_goes_on_to_the_same_bytes(
+    grains: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    outputs = {"meshes": False, "dataset": False, "lmax_study": True}
+    wish = recipe(grains, outputs=outputs, inputs=["grain-0.stl", "grain-1.stl"])
+    steps = perform(wish, grains, tmp_path / "out")
+    studied = False
+    for step in steps:
+        studied = studied or step == Started("RMSRE against l_max", 2)
+        if studied and isinstance(step, Progress) and step.done == 1:
+            break
+    steps.close()
+    work, given = lmax.errors_or_reason, []
+
+    def counted(mesh: Mesh, **options: Any) -> Any:
+        given.append(mesh)
+        return work(mesh, **options)
+
+    monkeypatch.setattr(lmax, "errors_or_reason", counted)
+    done(wish, grains, tmp_path / "out", resume=True)
+    assert len(given) == 1
+    assert digests(tmp_path / "out") == digests(done(wish, grains, tmp_path / "whole").folder)
 
 
 def killed(wish: Path, folder: Path, lines: int) -> None:

@@ -1,16 +1,17 @@
 """Three lessons as tabs, in large letters; jobs compute them, the page plays them."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from typing import Any
 
 from PySide6.QtGui import QGuiApplication
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QTabWidget, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QTabWidget, QVBoxLayout
 
 from regolith_studio.jobs.events import Failed, Job
 from regolith_studio.jobs.lecturing import anneal_slowly, grow_fit
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.ui.page import PageContext, PageWidget
+from regolith_studio.ui.page_building import polish
 from regolith_studio.ui.pages.lecture.annealing import AnnealingView
 from regolith_studio.ui.pages.lecture.degrees import DegreesView
 from regolith_studio.ui.pages.lecture.field import FieldView
@@ -35,8 +36,15 @@ class LecturePage(PageWidget):
         self._letters = float(context.recall("letters", LETTERS))
         self._made_for: dict[str, tuple[Any, ...]] = {}
         self._seed = 0
-        self.annealing, self.degrees = AnnealingView(context.views), DegreesView(context.views)
+
+    def assemble(self) -> Iterator[None]:
+        context = self._context
+        self.annealing = AnnealingView(context.views)
+        yield
+        self.degrees = DegreesView(context.views)
+        yield
         self.field = FieldView(context.views)
+        yield
         self.particle = ChoiceBox("lecture_particle", tr("Particle"), {})
         self.another = QPushButton(tr("Another seed"))
         self.another.setObjectName("lecture_another")
@@ -45,10 +53,12 @@ class LecturePage(PageWidget):
         self.tabs = QTabWidget()
         self.tabs.setObjectName("lecture_lessons")
         self._place()
-        self._show_letters()
+        yield
+        yield from self._show_letters()
         self.tabs.currentChanged.connect(self._turn)
         self.another.clicked.connect(self.draw_another)
         self.particle.currentIndexChanged.connect(self._select)
+        yield
         context.wiring.refresh("particles choices", self._show_particles)
         context.wiring.refresh("particles choices fit surface", self._fill, slow=True)
 
@@ -109,7 +119,8 @@ class LecturePage(PageWidget):
         """Larger or smaller letters; remembered."""
         self._letters = min(max(self._letters * factor, SMALLEST), LARGEST)
         self._context.remember("letters", self._letters)
-        self._show_letters()
+        for _ in self._show_letters():
+            pass
 
     def toggle_full_screen(self) -> None:
         """The window on the whole screen, or as it was."""
@@ -217,12 +228,11 @@ class LecturePage(PageWidget):
         elif self.lesson == "degrees":
             action(self.degrees.transport)
 
-    def _show_letters(self) -> None:
+    def _show_letters(self) -> Iterator[None]:
         """By one style sheet for the whole page: fonts of widgets are overruled by that of the program."""
         size = QGuiApplication.font().pointSizeF() * self._letters
         self.setStyleSheet(f"* {{ font-size: {size:.1f}pt; }}")
-        for part in self.findChildren(QWidget):
-            part.ensurePolished()
+        yield from polish(self)
         self.set_theme(current_theme())
 
     def _place(self) -> None:
