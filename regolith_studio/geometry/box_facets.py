@@ -132,6 +132,28 @@ def worth_asking(facets: Facets, arcs: FloatArray, table: SpanTable, limit: floa
     return worth
 
 
+@leaf
+def nothing_on_facet(table: SpanTable, axis: Vector, height: float, limit: float) -> bool:
+    """Whether no box below the limit has a side normal to an axis, along which the solid is `height` wide.
+
+    As in :func:`worth_asking`, for one axis only.
+    """
+    first = unit(cross(axis, (1.0, 0.0, 0.0) if abs(axis[0]) < 0.6 else (0.0, 1.0, 0.0)))
+    second, half = cross(axis, first), np.pi / 4.0 / QUARTER_TURNS
+    cosine, sine = np.cos(half), np.sin(half)
+    step_cosine, step_sine = np.cos(2.0 * half), np.sin(2.0 * half)
+    for _ in range(QUARTER_TURNS):
+        wide = _after_turn(span_near(table, first), first, cosine, sine)
+        high = _after_turn(span_near(table, second), second, cosine, sine)
+        if min(wide, high) <= 0.0 or height * wide * high < limit:
+            return False
+        first, second = (
+            mixed(first, step_cosine, second, step_sine),
+            mixed(first, -step_sine, second, step_cosine),
+        )
+    return True
+
+
 @kernel
 def with_all_edges(facets: Facets, worth: BoolArray) -> BoolArray:
     """Facets of which every edge is worth asking, shape (n,): a box on one is flush with all its edges."""

@@ -213,14 +213,14 @@ def rule_out(lanes: FloatArray, count: int, limit: float) -> None:
 def look_along(lanes: FloatArray, count: int, points: FloatArray) -> None:
     """Spans between the vertices that are farthest along the three axes at X."""
     for k in range(count):
-        a, b, c = directions_on(curve_in(lanes, k), lanes[X * LANES + k])
+        a, b, _ = directions_on(curve_in(lanes, k), lanes[X * LANES + k])
         a, b = unit(a), unit(b)
         put(lanes, AXES, k, a)
         put(lanes, AXES + 3, k, b)
         put(lanes, AXES + 6, k, cross(a, b))
     n = points.shape[1]
     for axis in range(3):
-        first = (AXES + 3 * axis) * LANES
+        start = (AXES + 3 * axis) * LANES
         for k in range(count):
             lanes[ENDS * LANES + k] = np.inf
             lanes[(ENDS + 1) * LANES + k] = -np.inf
@@ -229,7 +229,7 @@ def look_along(lanes: FloatArray, count: int, points: FloatArray) -> None:
             x, y, z, number = points[0, i], points[1, i], points[2, i], float(i)
             u, v, w, other = points[0, j], points[1, j], points[2, j], float(j)
             for k in range(count):
-                one, two, last = lanes[first + k], lanes[first + LANES + k], lanes[first + 2 * LANES + k]
+                one, two, last = lanes[start + k], lanes[start + LANES + k], lanes[start + 2 * LANES + k]
                 low, high = lanes[ENDS * LANES + k], lanes[(ENDS + 1) * LANES + k]
                 here, there = x * one + y * two + z * last, u * one + v * two + w * last
                 at = number if here < low else lanes[(ENDS + 2) * LANES + k]

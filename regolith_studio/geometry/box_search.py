@@ -19,6 +19,7 @@ from regolith_studio.geometry.box_facets import (
     arcs_of,
     facets_of,
     least_third,
+    nothing_on_facet,
     with_all_edges,
     worth_asking,
 )
@@ -42,7 +43,7 @@ from regolith_studio.geometry.box_widths import (
 )
 from regolith_studio.geometry.compiled import kernel, leaf
 from regolith_studio.geometry.hull_graph import hull_graph
-from regolith_studio.geometry.vectors import along, cross, dot, length, mixed, row
+from regolith_studio.geometry.vectors import Vector, cross, dot, length, mixed, row
 
 SIDEWAYS = 1e-9
 """Scalar products of unit normals below this are 0: the facets are at right angles."""
@@ -64,10 +65,13 @@ class Work(NamedTuple):
         Scalar products of two normals with those of all n facets, shape (2, n).
     side
         How many of them are not negative, shape (n,).
+    normals
+        Shape (3, n).
     """
 
     dots: FloatArray
     side: IntArray
+    normals: FloatArray
 
 
 @kernel
@@ -103,7 +107,7 @@ def least_box(facets: Facets, known: float) -> Found:
     found, margin = nothing_below(known), TIE
     points, normals, edges = facets
     table, arcs, n = span_table(points), arcs_of(facets), len(normals)
-    work = Work(np.empty((2, n)), np.empty(n, np.int8))
+    work = Work(np.empty((2, n)), np.empty(n, np.int8), np.ascontiguousarray(normals.T))
     asked = np.full(n, True)
     if n > MANY_FACETS:
         _on_facets(facets, arcs, table, work, asked, n // FIRST_FACETS, margin, found)
@@ -135,14 +139,14 @@ def _on_curves(
 ) -> None:
     """Boxes flush with any two edges."""
     points, normals, edges = facets
-    dots, side = work
+    dots, side, _ = work
     least_width = np.inf
     for e in range(len(edges)):
         least_width = min(least_width, arcs[e, 6])
     for i in range(len(edges)):
-        one, two = row(normals, edges[i, 2]), row(normals, edges[i, 3])
+        _along_all(work.normals, row(normals, edges[i, 2]), dots[0])
+        _along_all(work.normals, row(normals, edges[i, 3]), dots[1])
         for g in range(len(normals)):
-            dots[0, g], dots[1, g] = along(normals, g, one), along(normals, g, two)
             side[g] = (dots[0, g] >= 0.0) + (dots[1, g] >= 0.0)
         for k in range(i, len(edges)):
             if side[edges[k, 2]] == side[edges[k, 3]] != 1 or (k == i and dots[0, edges[i, 3]] >= 0.0):
@@ -174,6 +178,14 @@ def _sift(
 
 
 @leaf
+def _along_all(normals: FloatArray, direction: Vector, dots: FloatArray) -> None:
+    """Scalar products of all normals (3, n) with a direction."""
+    x, y, z = direction
+    for g in range(normals.shape[1]):
+        dots[g] = normals[0, g] * x + normals[1, g] * y + normals[2, g] * z
+
+
+@leaf
 def _on_facets(
     facets: Facets,
     arcs: FloatArray,
@@ -192,8 +204,10 @@ def _on_facets(
         a = row(normals, f)
         top, bottom = ends_along(points, a)
         height = dot(between(points, top, bottom), a)
-        for g in range(len(normals)):
-            work.dots[0, g] = along(normals, g, a)
+        limit = found.record[0] * (1.0 + margin)
+        if len(normals) > MANY_FACETS and nothing_on_facet(table, a, height, limit):
+            continue
+        _along_all(work.normals, a, work.dots[0])
         for e in range(len(edges)):
             one, two = work.dots[0, edges[e, 2]], work.dots[0, edges[e, 3]]
             if one * two > 0.0 and min(abs(one), abs(two)) > SIDEWAYS:

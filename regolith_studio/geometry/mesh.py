@@ -6,13 +6,15 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import ConvexHull, QhullError
 
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats, locked_integers
+from regolith_studio.geometry.compiled import kernel
 from regolith_studio.geometry.derived import Derived
 from regolith_studio.geometry.moments import volume_moments
+from regolith_studio.geometry.vectors import cross, dot, mixed, row
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,7 +76,9 @@ class Mesh:
     @cached_property
     def bounds(self) -> FloatArray:
         """Lowest and highest corner of the axis-aligned box, shape (2, 3)."""
-        return np.stack([self.vertices.min(axis=0), self.vertices.max(axis=0)])
+        if not len(self.vertices):
+            raise ValueError("a mesh without vertices has no bounds")
+        return bounds_of(self.vertices)
 
     @cached_property
     def _moments(self) -> tuple[float, FloatArray, FloatArray]:
@@ -122,12 +126,8 @@ class Mesh:
             hull = ConvexHull(unit)
         except (QhullError, ValueError) as error:
             raise GeometryError("The mesh is flat: its vertices lie in one plane.") from error
-        corner = unit[hull.simplices]
-        normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
-        inward = np.einsum("ij,ij->i", normal, hull.equations[:, :3]) < 0
-        faces = np.where(inward[:, None], hull.simplices[:, ::-1], hull.simplices)
-        used, compact = np.unique(faces, return_inverse=True)
-        return Mesh(self.vertices[used], compact.reshape(-1, 3))
+        used, faces = _outward(unit, hull.simplices, hull.equations)
+        return Mesh(self.vertices[used], faces)
 
     @cached_property
     def content_hash(self) -> str:
@@ -156,3 +156,38 @@ class Mesh:
         if not self.volume > 0.0:
             raise GeometryError(f"The mesh encloses no volume (its signed volume is {self.volume:.3g}).")
         return self.moved(shift=-self.centroid, scale=self.volume ** (-1 / 3))
+
+
+@kernel
+def bounds_of(points: FloatArray) -> FloatArray:
+    """Least and greatest coordinates of at least one point, shape (2, 3)."""
+    bounds = np.empty((2, 3))
+    for k in range(3):
+        bounds[0, k] = bounds[1, k] = points[0, k]
+    for i in range(len(points)):
+        for k in range(3):
+            bounds[0, k] = min(bounds[0, k], points[i, k])
+            bounds[1, k] = max(bounds[1, k], points[i, k])
+    return bounds
+
+
+@kernel
+def _outward(
+    points: FloatArray, simplices: NDArray[np.int32], equations: FloatArray
+) -> tuple[IntArray, IntArray]:
+    """The points that a hull uses, in their order, and its triangles by these, turned outwards."""
+    number = np.full(len(points), -1)
+    for f in range(len(simplices)):
+        for k in range(3):
+            number[simplices[f, k]] = 0
+    used = np.flatnonzero(number == 0)
+    number[used] = np.arange(len(used))
+    faces = np.empty((len(simplices), 3), np.int64)
+    for f in range(len(simplices)):
+        a = row(points, simplices[f, 0])
+        b, c = row(points, simplices[f, 1]), row(points, simplices[f, 2])
+        normal = cross(mixed(b, 1.0, a, -1.0), mixed(c, 1.0, a, -1.0))
+        inward = dot(normal, row(equations, f)) < 0.0
+        for k in range(3):
+            faces[f, k] = number[simplices[f, 2 - k if inward else k]]
+    return used, faces

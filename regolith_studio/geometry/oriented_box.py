@@ -12,9 +12,11 @@ from scipy.spatial import cKDTree
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
 from regolith_studio.geometry.box_search import minimum_box
+from regolith_studio.geometry.compiled import kernel
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.directions import fibonacci_directions
-from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.mesh import Mesh, bounds_of
+from regolith_studio.geometry.vectors import length, mixed, row
 
 SHAKE = 1e-10
 WELD = 1e-8
@@ -105,17 +107,16 @@ def minimum_volume_box(solid: Mesh | ConvexPolyhedron) -> OrientedBox:
     axes = minimum_box(*_welded(points, hull.faces))
     if not axes.any():
         axes = _axes_of_shaken(points)
-    order = np.argsort(-np.ptp(points @ axes.T, axis=0), kind="stable")
-    axes = _right_handed(axes[order])
-    lows, highs = (points @ axes.T).min(axis=0), (points @ axes.T).max(axis=0)
+    low_ends, high_ends = bounds_of(points @ axes.T)
+    axes = _right_handed(axes[np.argsort(low_ends - high_ends, kind="stable")])
+    lows, highs = bounds_of(points @ axes.T)
     extents = np.maximum.accumulate((highs - lows)[::-1])[::-1]
     return OrientedBox(middle + size * ((lows + highs) / 2) @ axes, axes, extents * size)
 
 
 def _welded(points: FloatArray, faces: IntArray) -> tuple[FloatArray, IntArray]:
     """A hull without edges shorter than `WELD`, which are too short to have a direction."""
-    edges = points[faces] - points[np.roll(faces, -1, axis=1)]
-    if np.einsum("ijk,ijk->ij", edges, edges).min() >= WELD**2:
+    if _shortest(points, faces) >= WELD:
         return points, faces
     near = cKDTree(points).query_pairs(WELD, output_type="ndarray")
     graph = coo_array((np.ones(len(near)), near.T), shape=(len(points), len(points)))
@@ -125,6 +126,18 @@ def _welded(points: FloatArray, faces: IntArray) -> tuple[FloatArray, IntArray]:
     except GeometryError:
         return points, faces
     return np.array(hull.vertices), hull.faces
+
+
+@kernel
+def _shortest(points: FloatArray, faces: IntArray) -> float:
+    """Length of the shortest edge."""
+    least = np.inf
+    for f in range(len(faces)):
+        for k in range(3):
+            least = min(
+                least, length(mixed(row(points, faces[f, k]), 1.0, row(points, faces[f, k - 2]), -1.0))
+            )
+    return least
 
 
 def _axes_of_shaken(points: FloatArray) -> FloatArray:

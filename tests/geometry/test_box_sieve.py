@@ -7,7 +7,7 @@ import pytest
 
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.box_curve import frame_on
-from regolith_studio.geometry.box_facets import Facets, arcs_of, facets_of
+from regolith_studio.geometry.box_facets import Facets, arcs_of, facets_of, nothing_on_facet
 from regolith_studio.geometry.box_lanes import (
     BROKEN,
     CUT,
@@ -175,3 +175,20 @@ def test_that_what_waits_holds_the_least_box_and_working_it_off_finds_it(seed: i
     assert sieve.filled[:2].tolist() == [0, 0]
     assert found.record[0] == pytest.approx(least, rel=1e-8)
     assert np.prod(np.ptp(found.axes @ solid.points, axis=1)) == pytest.approx(least, rel=1e-8)
+
+
+def test_that_a_facet_on_which_nothing_is_said_to_stand_bears_no_smaller_box() -> None:
+    solid = facets(1)
+    table, turns = span_table(solid.points), np.linspace(0.0, np.pi / 2, 401)
+    said = 0
+    for axis in solid.normals:
+        first = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
+        first /= np.linalg.norm(first)
+        second, height = np.cross(axis, first), float(np.ptp(axis @ solid.points))
+        b = np.outer(np.cos(turns), first) + np.outer(np.sin(turns), second)
+        c = np.cross(axis, b)
+        least = height * (np.ptp(b @ solid.points, axis=1) * np.ptp(c @ solid.points, axis=1)).min()
+        for share in (0.8, 0.9, 0.95):
+            said += nothing_on_facet(table, tuple(axis), height, share * least)
+        assert not nothing_on_facet(table, tuple(axis), height, 1.0001 * least)
+    assert said > 10
