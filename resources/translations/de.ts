@@ -326,6 +326,16 @@
    <translation>1 Koeffizient</translation>
   </message>
   <message>
+   <location filename="ui/translation/health_sentences.py" />
+   <source>1 face has no area.</source>
+   <translation>1 Fläche hat keinen Inhalt.</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/health_sentences.py" />
+   <source>1 face is there twice.</source>
+   <translation>1 Fläche ist doppelt vorhanden.</translation>
+  </message>
+  <message>
    <location filename="ui/pages/dataset/page.py" />
    <source>1 format is written.</source>
    <translation>1 Format ist geschrieben.</translation>
@@ -343,6 +353,11 @@
   <message>
    <source>1 m in the file is 1 mm of the particles, coarse graining applied; y up</source>
    <translation>1 m in der Datei ist 1 mm der Partikel, mit Vergröberungsfaktor; y zeigt nach oben</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/health_sentences.py" />
+   <source>1 pair of faces crosses each other.</source>
+   <translation>1 Paar von Flächen kreuzt sich.</translation>
   </message>
   <message>
    <location filename="ui/pages/sample/scatter.py" />
@@ -380,6 +395,11 @@
    <location filename="ui/pages/dataset/controls.py" />
    <source>2  Sizes</source>
    <translation>2  Größen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/health.py" />
+   <source>2 for a closed body without tunnels</source>
+   <translation>2 bei einem geschlossenen Körper ohne Tunnel</translation>
   </message>
   <message>
    <location filename="ui/pages/dataset/controls.py" />
@@ -450,6 +470,7 @@
    <translation>Eine Karte entsteht aus einer Probe mit Modell: passen Sie zuerst eines an.</translation>
   </message>
   <message>
+   <location filename="ui/translation/health_sentences.py" />
    <source>A closed mesh without faults.</source>
    <translation>Ein geschlossenes, fehlerfreies Netz.</translation>
   </message>
@@ -673,6 +694,11 @@
    <translation>Jeder Befehl nach wenigen Buchstaben</translation>
   </message>
   <message>
+   <location filename="ui/pages/sample/health.py" />
+   <source>Area of the triangles that close holes</source>
+   <translation>Fläche der Dreiecke, die Löcher schließen</translation>
+  </message>
+  <message>
    <location filename="ui/pages/sample/__init__.py" />
    <source>As a CSV file</source>
    <translation>Als CSV-Datei</translation>
@@ -764,6 +790,7 @@
    <translation>Vor dem Fall</translation>
   </message>
   <message>
+   <location filename="ui/translation/health_sentences.py" />
    <source>Being measured …</source>
    <translation>Wird vermessen …</translation>
   </message>
@@ -779,6 +806,11 @@
   <message>
    <source>Blocks of the cylinder</source>
    <translation>Blöcke des Zylinders</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/health.py" />
+   <source>Bodies</source>
+   <translation>Körper</translation>
   </message>
   <message>
    <source>Bootstrap seed</source>
@@ -1035,6 +1067,11 @@
    <translation>Diese Meldung schließen</translation>
   </message>
   <message>
+   <location filename="ui/pages/sample/health.py" />
+   <source>Closed</source>
+   <translation>Geschlossen</translation>
+  </message>
+  <message>
    <location filename="ui/pages/scan/controls.py" />
    <source>Closes cracks and thin gaps, in voxels.</source>
    <translation>Schließt Risse und schmale Lücken, in Voxeln.</translation>
@@ -1090,6 +1127,11 @@
    <location filename="ui/pages/repose/study.py" />
    <source>Cohesion</source>
    <translation>Kohäsion</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/health.py" />
+   <source>Colours the faults in the picture, as they were before the mesh was mended</source>
+   <translation>Färbt die Mängel im Bild, wie sie vor der Reparatur waren</translation>
   </message>
   <message>
    <location filename="ui/dialogs/command_palette.py" />
@@ -1266,6 +1308,11 @@
    <translation>Querschnitt</translation>
   </message>
   <message>
+   <location filename="ui/pages/sample/health.py" />
+   <source>Crossing pairs</source>
+   <translation>Kreuzende Paare</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/shortcuts.py" />
    <source>Ctrl + drag</source>
    <translation>Strg + Ziehen</translation>
@@ -1278,6 +1325,11 @@
    <location filename="ui/pages/explore/__init__.py" />
    <source>Cut all views</source>
    <translation>Alle Ansichten schneiden</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/health_sentences.py" />
+   <source>Cut out {count} faces that made the surface one-sided.</source>
+   <translation>{count} Flächen, die die Oberfläche einseitig machten, wurden herausgeschnitten.</translation>
   </message>
   <message>
    <source>Cylinder diameter</source>
@@ -1592,6 +1644,11 @@
    <translation>Kante eines Voxels in Mikrometern</translation>
   </message>
   <message>
+   <location filename="ui/pages/sample/health.py" />
+   <source>Edges of one triangle: the rims of holes</source>
+   <translation>Kanten nur eines Dreiecks: die Ränder von Löchern</translation>
+  </message>
+  <message>
    <source>Elongation</source>
    <translation>Elongation</translation>
   </message>
@@ -1681,9 +1738,19 @@
    <translation>Fehler gegen l_max, Facetten und Gewichte, und wie die Polyeder aussehen</translation>
   </message>
   <message>
+   <location filename="ui/pages/sample/health.py" />
+   <source>Euler number</source>
+   <translation>Euler-Zahl</translation>
+  </message>
+  <message>
    <location filename="ui/pages/repose/setup.py" />
    <source>Evaluation (section 3.3)</source>
    <translation>Auswertung (Abschnitt 3.3)</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/health.py" />
+   <source>Every edge belongs to exactly two triangles</source>
+   <translation>Jede Kante gehört zu genau zwei Dreiecken</translation>
   </message>
   <message>
    <source>Every open particle. Click a row to put it on screen; the arrow keys walk through the list. The icon tells the health of the mesh. Drop your own files anywhere in the window.</source>
@@ -1780,6 +1847,11 @@
    <translation>Facetten</translation>
   </message>
   <message>
+   <location filename="ui/pages/sample/health.py" />
+   <source>Faces without area</source>
+   <translation>Flächen ohne Inhalt</translation>
+  </message>
+  <message>
    <location filename="ui/pages/repose/runs.py" />
    <source>Facets a particle</source>
    <translation>Facetten je Partikel</translation>
@@ -1861,6 +1933,21 @@
    <location filename="ui/pages/repose/setup.py" />
    <source>Fill, lift, measure</source>
    <translation>Füllen, heben, messen</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/health_sentences.py" />
+   <source>Filled 1 hole with {share} of the surface.</source>
+   <translation>1 Loch wurde mit {share} der Oberfläche gefüllt.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/health.py" />
+   <source>Filled [µm²]</source>
+   <translation>Gefüllt [µm²]</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/health_sentences.py" />
+   <source>Filled {count} holes with {share} of the surface.</source>
+   <translation>{count} Löcher wurden mit {share} der Oberfläche gefüllt.</translation>
   </message>
   <message>
    <source>Filling speed</source>
@@ -2250,6 +2337,12 @@
    <translation>Zustand</translation>
   </message>
   <message>
+   <location filename="ui/pages/sample/health.py" />
+   <location filename="ui/pages/sample/page.py" />
+   <source>Health of the mesh</source>
+   <translation>Zustand des Netzes</translation>
+  </message>
+  <message>
    <location filename="ui/actions.py" />
    <source>Here or on a cluster</source>
    <translation>Hier oder auf einem Cluster</translation>
@@ -2277,6 +2370,21 @@
   <message>
    <source>Hertz, Mindlin-Deresiewicz, JKR: the pair style is linear</source>
    <translation>Hertz, Mindlin-Deresiewicz, JKR: das Paarpotential ist linear</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/health.py" />
+   <source>Hidden from the star point, so that no radius function can represent it</source>
+   <translation>Vom Sternpunkt aus verdeckt, sodass keine Radiusfunktion es darstellen kann</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/health.py" />
+   <source>Hidden surface</source>
+   <translation>Verdeckte Fläche</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/health.py" />
+   <source>Hidden volume</source>
+   <translation>Verdecktes Volumen</translation>
   </message>
   <message>
    <source>Highest number tried.</source>
@@ -2394,9 +2502,59 @@
    <translation>Isometrisch</translation>
   </message>
   <message>
+   <location filename="ui/translation/health_sentences.py" />
+   <source>It consists of {count} separate bodies.</source>
+   <translation>Es besteht aus {count} getrennten Körpern.</translation>
+  </message>
+  <message>
    <location filename="ui/pages/scan/volume_dialog.py" />
    <source>It does not say how large a voxel is.</source>
    <translation>Sie sagt nicht, wie groß ein Voxel ist.</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/health_sentences.py" />
+   <source>It encloses no volume.</source>
+   <translation>Es umschließt kein Volumen.</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/health_sentences.py" />
+   <source>It has 1 tunnel through it (Euler number {euler}).</source>
+   <translation>Es hat 1 Tunnel (Euler-Zahl {euler}).</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/health_sentences.py" />
+   <source>It has {count} tunnels through it (Euler number {euler}).</source>
+   <translation>Es hat {count} Tunnel (Euler-Zahl {euler}).</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/health_sentences.py" />
+   <source>It is inside out: its faces look inwards.</source>
+   <translation>Es ist umgestülpt: seine Flächen zeigen nach innen.</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/health_sentences.py" />
+   <source>It is not a simple surface: 1 edge belongs to three faces or more.</source>
+   <translation>Es ist keine einfache Oberfläche: 1 Kante gehört zu drei oder mehr Flächen.</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/health_sentences.py" />
+   <source>It is not a simple surface: {count} edges belong to three faces or more.</source>
+   <translation>Es ist keine einfache Oberfläche: {count} Kanten gehören zu drei oder mehr Flächen.</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/health_sentences.py" />
+   <source>It is not closed: 1 edge belongs to one face only.</source>
+   <translation>Es ist nicht geschlossen: 1 Kante gehört zu nur einer Fläche.</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/health_sentences.py" />
+   <source>It is not closed: {count} edges belong to one face only.</source>
+   <translation>Es ist nicht geschlossen: {count} Kanten gehören zu nur einer Fläche.</translation>
+  </message>
+  <message>
+   <location filename="ui/projects.py" />
+   <source>It was kept at {moment}.</source>
+   <translation>Er wurde {moment} festgehalten.</translation>
   </message>
   <message>
    <source>Iterations</source>
@@ -2412,9 +2570,24 @@
    <translation>Seine Einstellungen sind übernommen; zum Öffnen ist es zu groß: nehmen Sie „Als Stapel ausführen“.</translation>
   </message>
   <message>
+   <location filename="ui/translation/health_sentences.py" />
+   <source>Its faces do not all look the same way: some are turned round.</source>
+   <translation>Seine Flächen zeigen nicht alle zur selben Seite: einige sind verdreht.</translation>
+  </message>
+  <message>
    <location filename="ui/pages/scan/volume_dialog.py" />
    <source>Its name says how many voxels are in it, and its size agrees.</source>
    <translation>Ihr Name sagt, wie viele Voxel sie hat, und ihre Größe stimmt damit überein.</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/health_sentences.py" />
+   <source>Its surface touches itself in 1 corner.</source>
+   <translation>Seine Oberfläche berührt sich selbst in 1 Ecke.</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/health_sentences.py" />
+   <source>Its surface touches itself in {count} corners.</source>
+   <translation>Seine Oberfläche berührt sich selbst in {count} Ecken.</translation>
   </message>
   <message>
    <location filename="ui/panels/loss.py" />
@@ -2429,6 +2602,11 @@
   <message>
    <source>Johnson, Kendall and Roberts between spheres</source>
    <translation>Johnson, Kendall und Roberts zwischen Kugeln</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/health_sentences.py" />
+   <source>Joined {count} vertices with another at the same place.</source>
+   <translation>{count} Ecken wurden mit einer anderen an derselben Stelle vereinigt.</translation>
   </message>
   <message>
    <location filename="ui/pages/model/judgement.py" />
@@ -2484,6 +2662,11 @@
    <location filename="ui/dialogs/closing.py" />
    <source>Keep working</source>
    <translation>Weiterarbeiten</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/health_sentences.py" />
+   <source>Kept the largest of {count} bodies, with {share} of their volume.</source>
+   <translation>Der größte von {count} Körpern wurde behalten, mit {share} ihres Volumens.</translation>
   </message>
   <message>
    <location filename="ui/dialogs/shortcuts.py" />
@@ -2609,6 +2792,11 @@
    <translation>Linke Taste ziehen</translation>
   </message>
   <message>
+   <location filename="ui/pages/sample/health.py" />
+   <source>Left out</source>
+   <translation>Weggelassen</translation>
+  </message>
+  <message>
    <location filename="ui/pages/dataset/page.py" />
    <source>Left out: {names}.</source>
    <translation>Ausgelassen: {names}.</translation>
@@ -2713,6 +2901,12 @@
    <location filename="ui/pages/dataset/library.py" />
    <source>Looking for datasets</source>
    <translation>Datensätze werden gesucht</translation>
+  </message>
+  <message>
+   <location filename="jobs/examining.py" />
+   <location filename="ui/pages/sample/page.py" />
+   <source>Looking for faults</source>
+   <translation>Mängel werden gesucht</translation>
   </message>
   <message>
    <source>Looking for the cluster</source>
@@ -2909,6 +3103,11 @@
    <translation>Median von 27 Voxeln</translation>
   </message>
   <message>
+   <location filename="ui/pages/sample/health.py" />
+   <source>Mesh</source>
+   <translation>Netz</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/unit.py" />
    <source>Mesh files carry no unit. The answer is kept for their folder.</source>
    <translation>Netzdateien tragen keine Einheit. Die Antwort wird für ihren Ordner gemerkt.</translation>
@@ -3057,6 +3256,16 @@
    <translation>Nanometer (nm)</translation>
   </message>
   <message>
+   <location filename="ui/pages/sample/health.py" />
+   <source>Negative where the mesh is inside out</source>
+   <translation>Negativ, wo das Netz umgestülpt ist</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/health.py" />
+   <source>Neighbouring triangles look the same way</source>
+   <translation>Benachbarte Dreiecke zeigen zur selben Seite</translation>
+  </message>
+  <message>
    <source>Neighbours</source>
    <translation>Nachbarn</translation>
   </message>
@@ -3147,6 +3356,11 @@
    <translation>Es fand sich kein Polyeder mit {faces} Facetten, das alle Deskriptoren trifft: {name} weicht um {error} % ab; mehr Facetten oder ein Gewicht von 0 gäben Raum.</translation>
   </message>
   <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>No polyhedron with {faces} faces was found that meets all descriptors: {name} is off by {error} %; the particle is convex and has {facets} facets itself, which meet them.</source>
+   <translation>Es fand sich kein Polyeder mit {faces} Facetten, das alle Deskriptoren trifft: {name} weicht um {error} % ab; das Partikel ist konvex und hat selbst {facets} Facetten, die sie treffen.</translation>
+  </message>
+  <message>
    <location filename="ui/pages/scan/steps.py" />
    <source>No volume is open.</source>
    <translation>Kein Volumen ist geöffnet.</translation>
@@ -3184,6 +3398,11 @@
    <location filename="ui/panels/task_list.py" />
    <source>Nothing is running.</source>
    <translation>Nichts ist in Arbeit.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/health.py" />
+   <source>Nothing to show: no faults, and all of the surface is seen from the star point.</source>
+   <translation>Nichts zu zeigen: keine Mängel, und die ganze Oberfläche ist vom Sternpunkt aus zu sehen.</translation>
   </message>
   <message>
    <location filename="ui/pages/model/judgement.py" />
@@ -3399,6 +3618,11 @@
    <translation>Öffnen Sie ein Volumen mit Grauwerten, um sein Histogramm zu sehen.</translation>
   </message>
   <message>
+   <location filename="ui/pages/sample/health.py" />
+   <source>Open edges</source>
+   <translation>Offene Kanten</translation>
+  </message>
+  <message>
    <location filename="ui/pages/dataset/library.py" />
    <location filename="ui/pages/dataset/targets.py" />
    <source>Open folder</source>
@@ -3558,6 +3782,11 @@
    <translation>Paarwerte</translation>
   </message>
   <message>
+   <location filename="ui/pages/sample/health.py" />
+   <source>Pairs of triangles that cross each other</source>
+   <translation>Paare von Dreiecken, die sich kreuzen</translation>
+  </message>
+  <message>
    <source>Parametric, with facets: size, form, roughness and hull ratio go together as in the sample.</source>
    <translation>Parametrisch, mit Facetten: Größe, Form, Rauheit und Hüllenverhältnis hängen zusammen wie in der Probe.</translation>
   </message>
@@ -3624,6 +3853,11 @@
    <location filename="ui/pages/model/judgement.py" />
    <source>Parts</source>
    <translation>Komponenten</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/health.py" />
+   <source>Parts that hang together; a particle has one</source>
+   <translation>Zusammenhängende Teile; ein Partikel hat einen</translation>
   </message>
   <message>
    <location filename="ui/pages/lecture/transport.py" />
@@ -3935,11 +4169,6 @@
    <translation>Regolith Studio wurde zuletzt nicht ordentlich geschlossen. Den Stand zurückholen?</translation>
   </message>
   <message>
-   <location filename="ui/projects.py" />
-   <source>It was kept at {moment}.</source>
-   <translation>Er wurde {moment} festgehalten.</translation>
-  </message>
-  <message>
    <location filename="ui/pages/model/judgement.py" />
    <source>Rejected</source>
    <translation>Verworfen</translation>
@@ -3957,6 +4186,26 @@
   <message>
    <source>Relative errors of volume, sphericity, diameters, aspect ratio and hull (Eq. 8): blue for the fit, orange for the polyhedron. The second tab has the numbers with their units.</source>
    <translation>Relative Fehler von Volumen, Sphärizität, Durchmessern, Seitenverhältnis und Hülle (Gl. 8): blau für den Fit, orange für das Polyeder. Der zweite Reiter hat die Zahlen mit ihren Einheiten.</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/health_sentences.py" />
+   <source>Removed 1 double face.</source>
+   <translation>1 doppelte Fläche wurde entfernt.</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/health_sentences.py" />
+   <source>Removed 1 face without area.</source>
+   <translation>1 Fläche ohne Inhalt wurde entfernt.</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/health_sentences.py" />
+   <source>Removed {count} double faces.</source>
+   <translation>{count} doppelte Flächen wurden entfernt.</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/health_sentences.py" />
+   <source>Removed {count} faces without area.</source>
+   <translation>{count} Flächen ohne Inhalt wurden entfernt.</translation>
   </message>
   <message>
    <location filename="ui/pages/scan/controls.py" />
@@ -4526,6 +4775,11 @@
    <translation>Anteil bis hierher [%]</translation>
   </message>
   <message>
+   <location filename="ui/pages/sample/health.py" />
+   <source>Share of the volume in bodies that were left out</source>
+   <translation>Anteil des Volumens in weggelassenen Körpern</translation>
+  </message>
+  <message>
    <location filename="ui/pages/model/judgement.py" />
    <source>Share that a classifier tells right: 0.5 cannot be told apart</source>
    <translation>Anteil, den ein Klassifikator richtig zuordnet: bei 0.5 nicht zu unterscheiden</translation>
@@ -4564,6 +4818,11 @@
    <location filename="ui/pages/explore/__init__.py" />
    <source>Show triangles</source>
    <translation>Dreiecke zeigen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/health.py" />
+   <source>Show where</source>
+   <translation>Zeigen, wo</translation>
   </message>
   <message>
    <location filename="ui/pages/dataset/controls.py" />
@@ -4759,6 +5018,11 @@
    <location filename="ui/pages/repose/study.py" />
    <source>Static friction</source>
    <translation>Haftreibung</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/page.py" />
+   <source>Statistics</source>
+   <translation>Statistik</translation>
   </message>
   <message>
    <location filename="ui/pages/sample/statistics.py" />
@@ -5428,6 +5692,11 @@
    <translation>Schwellwert</translation>
   </message>
   <message>
+   <location filename="ui/pages/sample/health.py" />
+   <source>Through the body, of a closed mesh</source>
+   <translation>Durch den Körper, bei einem geschlossenen Netz</translation>
+  </message>
+  <message>
    <location filename="ui/pages/dataset/targets.py" />
    <source>Tick a format to see what it carries and what it loses.</source>
    <translation>Kreuzen Sie ein Format an, um zu sehen, was es überträgt und was es verliert.</translation>
@@ -5456,6 +5725,16 @@
    <translation>Toleranz</translation>
   </message>
   <message>
+   <location filename="ui/translation/health_sentences.py" />
+   <source>Took the surface apart along 1 edge where more than two faces met.</source>
+   <translation>Die Oberfläche wurde entlang 1 Kante getrennt, an der mehr als zwei Flächen zusammenkamen.</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/health_sentences.py" />
+   <source>Took the surface apart along {count} edges where more than two faces met.</source>
+   <translation>Die Oberfläche wurde entlang {count} Kanten getrennt, an denen mehr als zwei Flächen zusammenkamen.</translation>
+  </message>
+  <message>
    <location filename="ui/actions.py" />
    <source>Tools</source>
    <translation>Werkzeuge</translation>
@@ -5475,6 +5754,16 @@
    <translation>Dreiecke</translation>
   </message>
   <message>
+   <location filename="ui/pages/sample/health.py" />
+   <source>Triangles that are a line or a point</source>
+   <translation>Dreiecke, die nur eine Linie oder ein Punkt sind</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/health.py" />
+   <source>Tunnels</source>
+   <translation>Tunnel</translation>
+  </message>
+  <message>
    <source>Turn [rad]</source>
    <translation>Drehung [rad]</translation>
   </message>
@@ -5492,6 +5781,21 @@
    <location filename="ui/dialogs/shortcuts.py" />
    <source>Turn the particle</source>
    <translation>Das Partikel drehen</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/health_sentences.py" />
+   <source>Turned 1 face that looked the wrong way.</source>
+   <translation>1 Fläche, die zur falschen Seite zeigte, wurde gedreht.</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/health_sentences.py" />
+   <source>Turned all faces: the mesh was inside out.</source>
+   <translation>Alle Flächen wurden gedreht: das Netz war umgestülpt.</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/health_sentences.py" />
+   <source>Turned {count} faces that looked the wrong way.</source>
+   <translation>{count} Flächen, die zur falschen Seite zeigten, wurden gedreht.</translation>
   </message>
   <message>
    <location filename="ui/pages/explore/__init__.py" />
@@ -5574,6 +5878,11 @@
   <message>
    <source>V / CH</source>
    <translation>V / CH</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/health.py" />
+   <source>V [µm³]</source>
+   <translation>V [µm³]</translation>
   </message>
   <message>
    <source>V of the hull</source>
@@ -5909,6 +6218,11 @@
    <translation>Partikel werden bearbeitet</translation>
   </message>
   <message>
+   <location filename="ui/pages/sample/health.py" />
+   <source>Wound alike</source>
+   <translation>Einheitlich orientiert</translation>
+  </message>
+  <message>
    <location filename="ui/pages/scan/__init__.py" />
    <source>Write settings for the next scan</source>
    <translation>Einstellungen für den nächsten Scan schreiben</translation>
@@ -6070,6 +6384,11 @@
    <translation>wie angepasst [%]</translation>
   </message>
   <message>
+   <location filename="ui/pages/sample/health.py" />
+   <source>as it came</source>
+   <translation>wie gelesen</translation>
+  </message>
+  <message>
    <location filename="ui/pages/scan/histogram_plot.py" />
    <source>as scanned</source>
    <translation>wie gescannt</translation>
@@ -6150,6 +6469,11 @@
    <translation>klingenförmig</translation>
   </message>
   <message>
+   <location filename="ui/pages/sample/health.py" />
+   <source>bodies left out</source>
+   <translation>weggelassene Körper</translation>
+  </message>
+  <message>
    <source>both programs need rounded edges; facets stay in their planes, corners are lost.</source>
    <translation>beide Programme brauchen gerundete Kanten; Facetten bleiben in ihren Ebenen, Ecken gehen verloren.</translation>
   </message>
@@ -6192,6 +6516,11 @@
   <message>
    <source>class weights, sizes</source>
    <translation>Klassengewichte, Größen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/health.py" />
+   <source>closed holes</source>
+   <translation>geschlossene Löcher</translation>
   </message>
   <message>
    <location filename="ui/pages/sample/table.py" />
@@ -6311,6 +6640,11 @@
    <translation>jedes zählt einmal</translation>
   </message>
   <message>
+   <location filename="ui/pages/sample/health.py" />
+   <source>edges of more than two faces</source>
+   <translation>Kanten von mehr als zwei Flächen</translation>
+  </message>
+  <message>
    <source>edges, corners and flat faces; friction of rest apart from friction of motion</source>
    <translation>Kanten, Ecken und ebene Flächen; Haftreibung getrennt von Gleitreibung</translation>
   </message>
@@ -6353,6 +6687,26 @@
    <location filename="ui/pages/studies/rows_bar.py" />
    <source>exact minimum volume</source>
    <translation>kleinstes Volumen (exakt)</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/health.py" />
+   <source>faces that cross</source>
+   <translation>Flächen, die sich kreuzen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/health.py" />
+   <source>faces there twice</source>
+   <translation>doppelte Flächen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/health.py" />
+   <source>faces turned round</source>
+   <translation>verdrehte Flächen</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/health.py" />
+   <source>faces without area</source>
+   <translation>Flächen ohne Inhalt</translation>
   </message>
   <message>
    <location filename="ui/views/facet_pointer.py" />
@@ -6455,6 +6809,11 @@
    <translation>angehalten</translation>
   </message>
   <message>
+   <location filename="ui/pages/sample/health.py" />
+   <source>hidden from the star point</source>
+   <translation>vom Sternpunkt aus verdeckt</translation>
+  </message>
+  <message>
    <location filename="ui/pages/repose/section_plot.py" />
    <source>in the regression</source>
    <translation>in der Regression</translation>
@@ -6501,6 +6860,11 @@
   <message>
    <source>least distance of two parallel tangent planes</source>
    <translation>kleinster Abstand zweier paralleler Tangentialebenen</translation>
+  </message>
+  <message>
+   <location filename="ui/widgets/bar_plot.py" />
+   <source>least possible</source>
+   <translation>kleinstmöglich</translation>
   </message>
   <message>
    <location filename="ui/pages/repose/section_plot.py" />
@@ -6685,6 +7049,11 @@
    <translation>Hinweis</translation>
   </message>
   <message>
+   <location filename="ui/pages/sample/health.py" />
+   <source>now</source>
+   <translation>jetzt</translation>
+  </message>
+  <message>
    <location filename="ui/pages/dataset/plots.py" />
    <location filename="ui/translation/sentences.py" />
    <source>number</source>
@@ -6798,6 +7167,11 @@
   <message>
    <source>rigid clumps of inscribed spheres (8 by default) with the polyhedra's mass and inertia: rounder</source>
    <translation>starre Gruppen einbeschriebener Kugeln (sonst 8) mit Masse und Trägheit der Polyeder: runder</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/sample/health.py" />
+   <source>rims of holes</source>
+   <translation>Ränder von Löchern</translation>
   </message>
   <message>
    <location filename="ui/pages/lecture/words.py" />
@@ -7259,6 +7633,16 @@
    <translation>{count} Facetten</translation>
   </message>
   <message>
+   <location filename="ui/translation/health_sentences.py" />
+   <source>{count} faces are there twice.</source>
+   <translation>{count} Flächen sind doppelt vorhanden.</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/health_sentences.py" />
+   <source>{count} faces have no area.</source>
+   <translation>{count} Flächen haben keinen Inhalt.</translation>
+  </message>
+  <message>
    <location filename="ui/pages/dataset/shown.py" />
    <location filename="ui/views/triptych.py" />
    <source>{count} facets</source>
@@ -7315,6 +7699,11 @@
    <translation>{count} davon haben weniger als {least} Voxel und entfallen.</translation>
   </message>
   <message>
+   <location filename="ui/translation/health_sentences.py" />
+   <source>{count} pairs of faces cross each other.</source>
+   <translation>{count} Paare von Flächen kreuzen sich.</translation>
+  </message>
+  <message>
    <location filename="ui/pages/sample/scatter.py" />
    <location filename="ui/pages/studies/variation_panel.py" />
    <location filename="ui/panels/lmax_study.py" />
@@ -7367,9 +7756,19 @@
    <translation>{count} Formen in {folder}.</translation>
   </message>
   <message>
+   <location filename="ui/translation/health_sentences.py" />
+   <source>{count} vertices lie exactly on another: seams cut the surface.</source>
+   <translation>{count} Ecken liegen genau auf einer anderen: Nähte zerschneiden die Oberfläche.</translation>
+  </message>
+  <message>
    <location filename="ui/views/triptych.py" />
    <source>{count} vertices, {triangles} triangles</source>
    <translation>{count} Ecken, {triangles} Dreiecke</translation>
+  </message>
+  <message>
+   <location filename="ui/refusals.py" />
+   <source>{count} were left out. The first: {sentence}</source>
+   <translation>{count} wurden ausgelassen. Die erste: {sentence}</translation>
   </message>
   <message>
    <location filename="ui/dialogs/batch.py" />
@@ -7491,6 +7890,11 @@
    <location filename="ui/translation/sentences.py" />
    <source>{name} × {factor}</source>
    <translation>{name} × {factor}</translation>
+  </message>
+  <message>
+   <location filename="ui/widgets/bar_plot.py" />
+   <source>{name}, not below</source>
+   <translation>{name}, nicht unter</translation>
   </message>
   <message>
    <location filename="ui/widgets/number_slider.py" />

@@ -1,5 +1,7 @@
 """Particles rounder or rougher than any polyhedron with so many facets: the rest is kept, and said."""
 
+import itertools
+
 import numpy as np
 import pytest
 
@@ -93,3 +95,12 @@ def test_that_conditions_are_met_in_turn_and_their_polyhedron_is_as_it_says() ->
     assert problem.asked[0]
     assert problem.wanted[0] == rest.wanted[0]
     assert not problem.asked[1]
+
+
+def test_that_a_cube_cannot_have_twenty_facets_and_the_reason_says_that_it_has_six() -> None:
+    corners = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))
+    cube = Mesh(corners, np.empty((0, 3), dtype=np.int64)).hull
+    found = coarsen(cube, 20, settings={"retries": 0})
+    assert found.reason is not None
+    assert found.reason.endswith("the particle is convex and has 6 facets itself, which meet them.")
+    assert coarsen(cube, 6).reason is None

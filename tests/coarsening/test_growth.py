@@ -116,3 +116,22 @@ def test_that_missing_facets_are_said() -> None:
     assert found.reason is not None
     if max(found.errors[key] for key in CONDITIONS) <= 1e-6:
         assert f"{found.n_faces} facets instead of 20" in found.reason
+
+
+@pytest.mark.parametrize(
+    ("axes", "n_faces"),
+    [
+        ((10.0, 10.0, 1.0), 30),
+        ((20.0, 20.0, 1.0), 30),
+        ((20.0, 1.0, 1.0), 30),
+        ((30.0, 1.0, 1.0), 20),  # all groups of its triangles run from end to end
+    ],
+)
+def test_that_plates_and_needles_keep_all_their_facets(
+    axes: tuple[float, float, float], n_faces: int
+) -> None:
+    ball = icosphere(4)
+    found = coarsen(Mesh(ball.vertices * axes, ball.faces), n_faces)
+    assert found.n_faces == n_faces
+    assert found.reason is None
+    assert max(error for key, error in found.errors.items() if key != "convex_hull_volume") <= 1e-6

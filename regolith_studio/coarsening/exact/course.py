@@ -8,6 +8,7 @@ import numpy as np
 from regolith_studio.coarsening.core.box_follow import Watched
 from regolith_studio.coarsening.core.cuts import SMALLEST_FACET, with_all_facets
 from regolith_studio.coarsening.core.evaluate import AREA, FACETS, LONGEST, SHARED, SHORTEST, VOLUME
+from regolith_studio.coarsening.core.intersection import FINE, intersect
 from regolith_studio.coarsening.core.planes import tangents_of
 from regolith_studio.coarsening.exact.descent import (
     OVERLAP,
@@ -23,8 +24,12 @@ from regolith_studio.coarsening.exact.descent import (
 from regolith_studio.coarsening.exact.polish import Polished, measured, polished, verified
 from regolith_studio.coarsening.exact.problem import Problem
 from regolith_studio.coarsening.exact.starts import grouped_planes
+from regolith_studio.coarsening.polyhedra import polyhedron_of
 from regolith_studio.coarsening.target import Target
+from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.directions import fibonacci_directions
+from regolith_studio.geometry.half_spaces import HalfSpaces
 
 NOWHERE = Watched(np.empty((0, 3, 3)), np.empty((0, 13), dtype=np.int64), np.empty((0, 9, 3), dtype=np.int64))
 CUT_DEPTHS = (0.3, 0.3, 0.1, 0.03, 0.01)
@@ -78,7 +83,11 @@ class Attempt:
 
 
 def start_planes(target: Target, n_faces: int, rng: np.random.Generator) -> tuple[FloatArray, FloatArray]:
-    """Half-spaces through groups of the hull's triangles, in general position, each with a facet."""
+    """Half-spaces through groups of the hull's triangles, in general position, each with a facet.
+
+    Groups of a smooth needle can all run from end to end, so that nothing bounds the ends; then half-spaces
+    that touch it all around are taken.
+    """
     hull = target.mesh.hull
     areas = hull.face_areas
     sound = areas > 0.0
@@ -90,8 +99,31 @@ def start_planes(target: Target, n_faces: int, rng: np.random.Generator) -> tupl
         10,
     )
     offsets = np.maximum(offsets, 0.05) * (1.0 + TIE_BREAK * rng.random(n_faces))
+    if not _bounds_a_solid(normals, offsets):
+        normals, offsets = touching_planes(hull.vertices, n_faces, rng)
     cuts, more_normals, more_offsets = _with_cuts(target, normals, offsets, CUT_DEPTHS[0])
     return (more_normals, more_offsets) if cuts >= 0 else (normals, offsets)
+
+
+def touching_planes(
+    points: FloatArray, n_faces: int, rng: np.random.Generator
+) -> tuple[FloatArray, FloatArray]:
+    """Half-spaces that touch points about the origin, with the normals of an ellipsoid of their extents."""
+    rotation = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    normals = fibonacci_directions(n_faces) @ rotation / np.ptp(points, axis=0)
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    offsets = (points @ normals.T).max(axis=0) * (1.0 + TIE_BREAK * rng.random(n_faces))
+    return normals, offsets
+
+
+def _bounds_a_solid(normals: FloatArray, offsets: FloatArray) -> bool:
+    if intersect(normals, offsets)[0] == FINE:
+        return True
+    try:  # not in general position?
+        polyhedron_of(HalfSpaces(normals, offsets))
+    except GeometryError:
+        return False
+    return True
 
 
 def course(

@@ -19,6 +19,10 @@ EXACT = 1e-6
 """Relative errors up to this count as none."""
 
 
+FLAT, COPLANAR = 1e-6, 1e-5
+"""Concavity and triangles that count as none; difference of the planes of one facet. At unit volume."""
+
+
 ADVICE = "more faces or a weight of 0 would free it."
 ROUGH_ADVICE = "a convex shape with the other descriptors has less surface, so a weight of 0 would free it."
 """More faces do not help where a particle has more surface than they can."""
@@ -105,11 +109,31 @@ def reason_for(
     if "sphericity" in missed and (bound := sphericity_reason(wanted, n_faces)) is not None:
         return bound
     rough = worst == "sphericity" and found[worst] > wanted
+    own = own_facets(target, n_faces)
+    advice = ROUGH_ADVICE if rough else ADVICE
+    if own is not None:
+        advice = f"the particle is convex and has {own} facets itself, which meet them."
     return (
         f"No polyhedron with {n_faces} faces was found that meets all descriptors:"
-        f" {_reported(worst, request).replace('_', ' ')} is off by {100 * missed[worst]:.2g} %;"
-        f" {ROUGH_ADVICE if rough else ADVICE}"
+        f" {_reported(worst, request).replace('_', ' ')} is off by {100 * missed[worst]:.2g} %; {advice}"
     )
+
+
+def own_facets(target: Target, below: int) -> int | None:
+    """Facets of a particle that is a convex polyhedron with fewer than `below` of them; else ``None``."""
+    descriptors, hull = target.descriptors, target.mesh.hull
+    if descriptors["volume"] < (1.0 - FLAT) * descriptors["convex_hull_volume"]:
+        return None
+    areas = hull.face_areas
+    sound = areas > FLAT
+    normals = hull.face_area_vectors[sound] / areas[sound, None]
+    offsets = np.einsum("ij,ij->i", normals, hull.triangles[sound, 0])
+    planes = np.column_stack([normals, offsets])
+    count = 0
+    while len(planes) and count < below:
+        planes = planes[np.abs(planes - planes[0]).max(axis=1) > COPLANAR]
+        count += 1
+    return count if count < below else None
 
 
 def facets_reason(n_real: int, n_faces: int) -> str:

@@ -95,7 +95,7 @@ class Search:
             self._tried = tried
             self._planes = start_planes(self._target, self._n_faces, self._rng)
             if tried == 1:
-                value = self._judge.value(*self._planes, SAMPLE_ANGLE)
+                value = self._judge.value(*self._planes)
                 yield MethodStep(0, self._total, value, HalfSpaces(*self._planes))
             yield from self._record.told(tried, self._solved())
             if self._round_asked and not self._record.met and tried <= ROUND_STARTS:

@@ -72,11 +72,14 @@ class BarPlot(Plot):
         self.redraw()
 
     def numbers(self) -> Numbers:
+        bounded = [each for each in self._series if each.bounds]
         rows: list[tuple[str | float, ...]] = [
-            (category, *(each.values[place] for each in self._series))
+            (category, *(each.values[place] for each in self._series), *(b.bounds[place] for b in bounded))
             for place, category in enumerate(self._categories)
         ]
-        return (tr("category"), *(f"{each.label} [{self._unit}]" for each in self._series)), rows
+        names = [each.label for each in self._series]
+        names += [tr("{name}, not below", name=each.label) for each in bounded]
+        return (tr("category"), *(f"{name} [{self._unit}]" for name in names)), rows
 
     def redraw(self) -> None:
         for item in self._items:
@@ -107,7 +110,10 @@ class BarPlot(Plot):
             padding=0.0,
             disableAutoRange=True,
         )
-        self.set_legend([(each.colour, each.label) for each in self._series])
+        legend = [(each.colour, each.label) for each in self._series]
+        if any(bound > 0.0 for each in self._series for bound in each.bounds):
+            legend.append((self.theme.text, tr("least possible")))
+        self.set_legend(legend)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
