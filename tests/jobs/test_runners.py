@@ -4,6 +4,7 @@ import contextlib
 import queue
 import threading
 import time
+import weakref
 from collections.abc import Callable, Iterator
 
 import pytest
@@ -171,3 +172,24 @@ def test_that_a_partial_result_stands_for_all_before_it(owner: Owner, threads: T
         time.sleep(0.001)
     owner.run_until(ended(heard))
     assert heard == [Partial((1, 2)), Finished((1, 2))]
+
+
+class _Heap:
+    """Something large that a job is given."""
+
+
+def _look_at(_heap: _Heap) -> Steps:
+    yield Started("Looking")
+    return 1
+
+
+def test_that_a_thread_that_waits_holds_nothing_of_its_last_job() -> None:
+    owner, endings = Owner(), []
+    runner = ThreadRunner(owner.calls.put)
+    heap = _Heap()
+    known = weakref.ref(heap)
+    runner.submit(Job(_look_at, (heap,)), endings.append, "lane")
+    del heap
+    owner.run_until(lambda: Finished(1) in endings)
+    owner.run_until(lambda: known() is None)
+    runner.close()

@@ -106,8 +106,16 @@ class _Lane:
             overtaken.finish(Stopped())
 
     def _work(self) -> None:
-        while handle := self._take():
-            handle.run()
+        while self._run_next():
+            pass
+
+    def _run_next(self) -> bool:
+        """Wait for a job and run it; what it was made of is let go before the next is waited for."""
+        handle = self._take()
+        if handle is None:
+            return False
+        handle.run()
+        return True
 
     def _take(self) -> _ThreadHandle | None:
         with self._condition:
