@@ -73,8 +73,9 @@ def _warm_up_later(session: Session, runner: ThreadRunner) -> None:
 
 
 def _give_back_at_rest(window: MainWindow) -> None:
-    """Hand memory back when nothing has been computed for a while."""
+    """Hand memory back when nothing has been computed for a while, also that of closed particles."""
     timer = QTimer(window, singleShot=True, interval=REST)
+    timer.timeout.connect(window.pages.let_go)
     timer.timeout.connect(give_back)
     window.wiring.hear("tasks", lambda *_: timer.stop() if window.session.tasks else timer.start())
 

@@ -1,6 +1,6 @@
 """What a page of the window is, and what it is given; see :mod:`regolith_studio.ui.pages`."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Generator, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from importlib import import_module
@@ -22,6 +22,13 @@ from regolith_studio.ui.wiring import Wiring
 
 class PageWidget(QWidget):
     """What a page shows; every method may be left as it is."""
+
+    def assemble(self) -> Iterator[None]:
+        """Make the parts of the page, right after construction; the window answers at each ``yield``.
+
+        What is between two of them should take 20 ms at most. Nothing else is called before the end.
+        """
+        return iter(())
 
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme; called once after building and at every change."""
@@ -144,7 +151,7 @@ class Page:
         Place in the sidebar, from small to large.
     tip
         One sentence on what can be done there.
-    build
+    make
         Makes the widget at the first visit; imports its modules inside, so that the window starts fast.
     opens
         Kinds of files that :meth:`PageWidget.open_path` of this page opens.
@@ -159,14 +166,31 @@ class Page:
     icon: str
     order: int
     tip: str
-    build: Callable[[PageContext], PageWidget]
+    make: Callable[[PageContext], PageWidget]
     actions: tuple[ActionSpec, ...] = ()
     opens: tuple[FileKind, ...] = ()
     prepare: Callable[[], object] | None = None
 
+    def steps(self, context: PageContext) -> Generator[None, None, PageWidget]:
+        """Build the page, step by step; returns it."""
+        widget = self.make(context)
+        yield
+        yield from widget.assemble()
+        return widget
+
+    def build(self, context: PageContext) -> PageWidget:
+        """Build the page at once."""
+        steps = self.steps(context)
+        while True:
+            try:
+                next(steps)
+            except StopIteration as end:
+                widget: PageWidget = end.value
+                return widget
+
     def load(self) -> None:
         """Import the module that the page is in, if it is the usual one, and :attr:`prepare`."""
         with suppress(ModuleNotFoundError):
-            import_module(f"{self.build.__module__}.page")
+            import_module(f"{self.make.__module__}.page")
         if self.prepare is not None:
             self.prepare()

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from functools import partial
 
-from PySide6.QtCore import QSize, Qt, Signal
+from PySide6.QtCore import QSize, Qt, QTimer, Signal
 from PySide6.QtGui import QEnterEvent, QFocusEvent, QKeySequence
 from PySide6.QtWidgets import (
     QAbstractItemView,
@@ -19,6 +19,7 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.ui.icons import icon
 from regolith_studio.ui.page import Page, PageContext, PageWidget
+from regolith_studio.ui.page_building import PageBuilder, Steps, polish
 from regolith_studio.ui.shortcuts import with_keys
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
@@ -48,7 +49,11 @@ class PageStack(QWidget):
         self.widgets: dict[str, PageWidget] = {}
         self._contexts: dict[str, PageContext] = {}
         self._context_of = context_of
-        self._current = ""
+        self._current = self._awaited = ""
+        self._builder = PageBuilder(self._steps, self._take, self)
+        self._unthemed: list[str] = []
+        self._theming = QTimer(self, interval=0)
+        self._theming.timeout.connect(self._theme_next)
         self._stack = QStackedWidget()
         self._bar = QFrame()
         self._bar.setObjectName("sidebar")
@@ -63,10 +68,12 @@ class PageStack(QWidget):
         return self._current
 
     def go(self, key: str) -> PageWidget:
-        """Show a page, building it if need be."""
-        widget = self.widgets.get(key) or self._build(key)
+        """Show a page, building it at once if need be."""
+        widget = self.widgets.get(key) or self._builder.finish(key)
+        self._awaited = ""
         if key != self._current:
             self._leave()
+            self._theme(key)
             self._current = key
             self._stack.setCurrentWidget(widget)
             self.buttons[key].setChecked(True)
@@ -75,10 +82,28 @@ class PageStack(QWidget):
             self.changed.emit(key)
         return widget
 
+    def visit(self, key: str) -> None:
+        """Show a page as soon as it is built, step by step while the window goes on answering."""
+        if key in self.widgets:
+            self.go(key)
+        else:
+            self._awaited = key
+            self._builder.want(key)
+
+    def prepare(self, key: str) -> None:
+        """Build a page that may be wanted soon, step by step."""
+        if key not in self.widgets:
+            self._builder.want(key)
+
+    @property
+    def awaited(self) -> str:
+        """Key of the page that will be shown when it is built, or nothing."""
+        return self._awaited
+
     def neighbour(self, step: int) -> None:
         """The next page, or the one before."""
         keys = list(self.pages)
-        self.go(keys[(keys.index(self._current) + step) % len(keys)])
+        self.visit(keys[(keys.index(self._awaited or self._current) + step) % len(keys)])
 
     def run(self, key: str, command: str, *arguments: object) -> None:
         """Run a command of a page, which is shown first."""
@@ -89,27 +114,63 @@ class PageStack(QWidget):
         return [sentence for each in self.widgets.values() if (sentence := each.busy())]
 
     def set_theme(self, theme: Theme) -> None:
-        """Take the colours of a theme."""
+        """Take the colours of the present theme: the page that is seen at once, the others one by one."""
         for key, page in self.pages.items():
             self.buttons[key].setIcon(icon(page.icon, theme.text, theme.muted))
-        for widget in self.widgets.values():
-            widget.set_theme(theme)
+        self._unthemed = [key for key in self.widgets if key != self._current]
+        self._theming.start()
+        if self._current:
+            self.widgets[self._current].set_theme(theme)
+
+    def let_go(self) -> None:
+        """Let hidden pages forget particles that have been closed."""
+        for key in self.widgets.keys() - {self._current}:
+            self._contexts[key].wiring.let_go()
 
     def release(self) -> None:
         """The window closes."""
+        self.finish()
         for key, widget in self.widgets.items():
             self._contexts[key].wiring.cut()
             widget.release()
 
-    def _build(self, key: str) -> PageWidget:
+    def finish(self) -> None:
+        """Let no page be half built, and wait for none."""
+        self._awaited = ""
+        self._builder.finish_all()
+        self._unthemed.clear()
+        self._theming.stop()
+
+    def _steps(self, key: str) -> Steps:
         context = self._contexts[key] = self._context_of(key)
-        widget = self.widgets[key] = self.pages[key].build(context)
-        widget.set_theme(current_theme())
+        widget = yield from self.pages[key].steps(context)
+        context.wiring.pause()
+        yield
         for view in widget.findChildren(QAbstractItemView):
             view.setTabKeyNavigation(False)  # Tab leaves a table; arrows move in it
         self._stack.addWidget(widget)
-        self.built.emit(key)
+        yield
+        yield from polish(widget)
+        widget.set_theme(current_theme())
+        yield
         return widget
+
+    def _theme_next(self) -> None:
+        if self._unthemed:
+            self._theme(self._unthemed[0])
+        else:
+            self._theming.stop()
+
+    def _theme(self, key: str) -> None:
+        if key in self._unthemed:
+            self._unthemed.remove(key)
+            self.widgets[key].set_theme(current_theme())
+
+    def _take(self, key: str, widget: PageWidget) -> None:
+        self.widgets[key] = widget
+        self.built.emit(key)
+        if key == self._awaited:
+            self.go(key)
 
     def _leave(self) -> None:
         if self._current:
@@ -147,7 +208,7 @@ class PageStack(QWidget):
         return button
 
     def _clicked(self, key: str) -> None:
-        self.go(key)
+        self.visit(key)
 
 
 class _PageButton(QToolButton):

@@ -1,11 +1,12 @@
 """Loads in the background what pages need: one when the mouse comes near its button, all when one is visited.
 
-Not at the start: many a visit ends on the page where it began, and what the others need is memory.
+The one that the mouse comes near is also built, step by step between the events of the window. Not at the
+start: many a visit ends on the page where it began, and what the others need is memory.
 """
 
 from PySide6.QtCore import QObject
 
-from regolith_studio.jobs.events import Job, Progress, Started, Steps
+from regolith_studio.jobs.events import Event, Job, Progress, Started, Steps
 from regolith_studio.jobs.runners.protocol import Runner
 from regolith_studio.ui.page import Page
 from regolith_studio.ui.page_stack import PageStack
@@ -28,8 +29,9 @@ class Preparing(QObject):
         super().__init__(stack)
         self._stack, self._runner = stack, runner
         self._ready: set[str] = set()
+        self._next = ""
         self._wanted: list[str] = []
-        stack.approached.connect(self.want)
+        stack.approached.connect(self._want_soon)
         stack.changed.connect(self._want_all)
 
     def want(self, *keys: str) -> None:
@@ -38,7 +40,21 @@ class Preparing(QObject):
         if (wanted := list(dict.fromkeys(left))) != self._wanted:
             self._wanted = wanted
             pages = tuple(self._stack.pages[key] for key in wanted)
-            self._runner.submit(Job(prepared, (pages, self._ready)), lambda _event: None, LANE)
+            self._runner.submit(Job(prepared, (pages, self._ready)), self._hear, LANE)
+
+    def _want_soon(self, key: str) -> None:
+        self._next = key
+        self.want(key)
+        self._build_next()
+
+    def _hear(self, event: Event) -> None:
+        if isinstance(event, Progress):
+            self._build_next()
+
+    def _build_next(self) -> None:
+        if self._next in self._ready:
+            self._stack.prepare(self._next)
+            self._next = ""
 
     def _want_all(self, _key: str) -> None:
         self.want(*self._stack.pages)

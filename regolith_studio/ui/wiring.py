@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any, Protocol
 
 from PySide6.QtCore import QObject, QTimer
@@ -45,6 +46,7 @@ class Wiring(QObject):
         super().__init__(parent)
         self._session, self._problem = session, problem
         self._cuts: list[Callable[[], None]] = []
+        self._holders: list[Callable[[], None]] = []
         self._fast, self._slow = _Beat(FAST, self, at_once=True), _Beat(SLOW, self, at_once=False)
 
     def edit(self, panel: ChoicePanel) -> None:
@@ -66,9 +68,16 @@ class Wiring(QObject):
         self._cuts.append(self._session.topics.choices.connect(show))
         show()
 
-    def refresh(self, topics: str, action: Callable[[], None], *, slow: bool = False) -> None:
-        """Call `action` soon after any of the topics (words in one text) has said something, and now."""
+    def refresh(
+        self, topics: str, action: Callable[[], None], *, slow: bool = False, holds: bool = False
+    ) -> None:
+        """Call `action` soon after any of the topics (words in one text) has said something, and now.
+
+        What `holds` particles is also refreshed by :meth:`let_go` while nothing else is.
+        """
         beat = self._slow if slow else self._fast
+        if holds:
+            self._holders.append(partial(beat.run_now, action))
         for topic in topics.split():
             signal = getattr(self._session.topics, topic)
             self._cuts.append(signal.connect(lambda *_: beat.add(action)))
@@ -93,6 +102,11 @@ class Wiring(QObject):
         self._fast.resume()
         self._slow.resume()
 
+    def let_go(self) -> None:
+        """Refresh, although it is not seen, what would else keep particles that have been closed."""
+        for holder in self._holders:
+            holder()
+
     def cut(self) -> None:
         """Disconnect everything."""
         self._fast.stop()
@@ -100,6 +114,7 @@ class Wiring(QObject):
         for cut in self._cuts:
             cut()
         self._cuts.clear()
+        self._holders.clear()
 
 
 class _Beat(QObject):
@@ -125,6 +140,12 @@ class _Beat(QObject):
             begin = self._last.get(action, 0.0) if self._at_once else time.monotonic()
             self._due[action] = begin + self._seconds
             self._wait()
+
+    def run_now(self, action: Callable[[], None]) -> None:
+        """Call an action if it is due, even while nothing is called."""
+        if self._due.pop(action, None) is not None:
+            action()
+            self._last[action] = time.monotonic()
 
     def pause(self) -> None:
         """Call nothing for a while."""

@@ -1,7 +1,9 @@
 """The sidebar and its pages: found by themselves, built when visited, quiet while hidden."""
 
+from dataclasses import replace
+
 import pytest
-from PySide6.QtCore import Qt
+from PySide6.QtCore import Qt, QTimer
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QLabel, QVBoxLayout, QWidget
 
@@ -10,11 +12,13 @@ from regolith_studio.jobs.loading import load_sample
 from regolith_studio.jobs.runners.inline import InlineRunner
 from regolith_studio.resources import resource
 from regolith_studio.session.session import Session
+from regolith_studio.ui import page_building
 from regolith_studio.ui.action_spec import PAGE_MENU, ActionSpec
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.page import Page, PageContext, PageWidget
 from regolith_studio.ui.page_stack import PageStack
 from regolith_studio.ui.pages import pages
+from regolith_studio.ui.theme import DARK, LIGHT
 from regolith_studio.ui.widgets.toast import Toast
 from regolith_studio.ui.wiring import Wiring
 
@@ -40,6 +44,9 @@ class _Counter(PageWidget):
 
     def entered(self):
         self.entries += 1
+
+    def set_theme(self, theme):
+        self.theme = theme
 
     def busy(self):
         return "Something is written." if self.heard else ""
@@ -88,12 +95,12 @@ def test_that_every_page_has_an_icon_a_tip_and_a_key_of_its_own():
         assert len(set(names)) == len(names)
 
 
-def test_that_a_page_is_built_at_its_first_visit_and_kept(stack):
+def test_that_a_page_is_built_at_its_first_visit_and_kept(stack, wait):
     assert not stack.widgets
     first = stack.go("one")
     assert list(stack.widgets) == ["one"]
     QTest.mouseClick(stack.buttons["two"], Qt.MouseButton.LeftButton)
-    assert stack.current == "two"
+    wait(lambda: stack.current == "two")
     assert stack.go("one") is first
     assert first.entries == 2
 
@@ -112,6 +119,36 @@ def test_that_a_hidden_page_is_refreshed_when_it_is_seen_again(stack, wait):
     assert one.refreshed == 2
 
 
+class _Holder(PageWidget):
+    """A page that keeps what lies on the shelf."""
+
+    def __init__(self, context):
+        super().__init__()
+        self.context, self.held = context, None
+        context.wiring.refresh("shelf", self._hold, holds=True)
+
+    def _hold(self):
+        self.held = self.context.session.shelf.get("sample")
+
+
+@pytest.mark.parametrize("slow", [False, True])
+def test_that_a_hidden_page_lets_go_what_is_not_open_any_more(stack, slow):
+    stack.pages["one"] = replace(stack.pages["one"], make=_Holder)
+    one = stack.go("one")
+    one.context.wiring.refresh("shelf", one._hold, slow=slow, holds=True)
+    stack.session.shelf.put("sample", "old")
+    stack.go("two")
+    stack.go("one")
+    stack.go("two")
+    stack.session.shelf.put("sample", "new")
+    assert one.held != "new"
+    stack.let_go()
+    assert one.held == "new"
+    one.held = "untouched"
+    stack.let_go()
+    assert one.held == "untouched"
+
+
 def test_that_a_command_of_a_hidden_page_shows_it_first(stack):
     stack.go("two")
     stack.run("one", "count")
@@ -120,12 +157,89 @@ def test_that_a_command_of_a_hidden_page_shows_it_first(stack):
     assert stack.busy() == ["Something is written."]
 
 
-def test_that_the_neighbours_of_a_page_go_round(stack):
+def test_that_the_neighbours_of_a_page_go_round(stack, wait):
     stack.go("one")
     stack.neighbour(1)
-    assert stack.current == "two"
+    wait(lambda: stack.current == "two")
     stack.neighbour(1)
     assert stack.current == "one"
+
+
+class _InPieces(_Counter):
+    """A page of five pieces."""
+
+    def assemble(self):
+        self.pieces = []
+        for number in range(5):
+            self.pieces.append(QLabel(str(number), self))
+            yield
+
+
+@pytest.fixture
+def pieces(stack):
+    stack.pages["two"] = replace(stack.pages["two"], make=_InPieces)
+    stack.go("one")
+    return stack
+
+
+def test_that_the_window_answers_between_the_pieces_of_a_page(pieces, wait, monkeypatch):
+    monkeypatch.setattr(page_building, "SLICE", 0.0)
+    pieces.visit("two")
+    assert pieces.current == "one"
+    heard, timer = [], QTimer(interval=0)
+    timer.timeout.connect(lambda: heard.append(pieces.current))
+    timer.start()
+    wait(lambda: pieces.current == "two")
+    timer.stop()
+    assert heard.count("one") >= 4
+    assert len(pieces.widgets["two"].pieces) == 5
+    assert pieces.widgets["two"].entries == 1
+
+
+def test_that_another_page_is_shown_while_one_is_built(pieces, wait):
+    pieces.visit("two")
+    pieces.go("one")
+    wait(lambda: "two" in pieces.widgets)
+    assert pieces.current == "one"
+    assert pieces.widgets["two"].entries == 0
+
+
+def test_that_a_program_gets_a_whole_page_at_once(pieces):
+    pieces.visit("two")
+    assert len(pieces.go("two").pieces) == 5
+    assert pieces.current == "two"
+
+
+def test_that_a_page_that_is_prepared_is_refreshed_when_it_is_seen(pieces, wait):
+    pieces.prepare("two")
+    wait(lambda: "two" in pieces.widgets)
+    two = pieces.widgets["two"]
+    pieces.session.shelf.put("anything", 1)
+    assert (pieces.current, two.entries, two.refreshed) == ("one", 0, 1)
+    pieces.visit("two")
+    assert (pieces.current, two.entries) == ("two", 1)
+    wait(lambda: two.refreshed == 2)
+
+
+def test_that_hidden_pages_take_a_theme_later_or_when_they_are_seen(stack, wait, monkeypatch):
+    one, two = stack.go("one"), stack.go("two")
+    for theme in (DARK, LIGHT):
+        monkeypatch.setattr("regolith_studio.ui.page_stack.current_theme", lambda theme=theme: theme)
+        stack.set_theme(theme)
+        assert two.theme is theme
+        assert one.theme is not theme
+        if theme is DARK:
+            stack.go("one")
+            assert one.theme is theme
+            stack.go("two")
+    wait(lambda: one.theme is LIGHT)
+
+
+def test_that_no_page_is_left_half_built(pieces):
+    pieces.visit("two")
+    pieces.finish()
+    assert len(pieces.widgets["two"].pieces) == 5
+    assert pieces.current == "one"
 
 
 def test_that_what_a_page_remembers_is_kept_apart_from_the_others(stack, preferences):

@@ -42,6 +42,13 @@ def test_that_nothing_is_prepared_until_somebody_comes_near(stack, prepared):
     assert prepared == ["c"]
 
 
+def test_that_the_page_that_somebody_comes_near_is_built_but_not_shown(stack, wait):
+    stack.approached.emit("c")
+    wait(lambda: "c" in stack.widgets)
+    assert set(stack.widgets) == {"a", "c"}
+    assert stack.current == "a"
+
+
 def test_that_a_visit_prepares_the_others_once_and_none_that_is_built(stack, prepared):
     stack.go("b")
     assert prepared == ["c", "d"]

@@ -18,7 +18,7 @@ be edited. ``__init__.py`` stays cheap and announces the page; the widget lives 
 
 
     PAGE = Page(
-        key="grains", title="Grains", icon="sample", order=25, tip="Count the grains.", build=build,
+        key="grains", title="Grains", icon="sample", order=25, tip="Count the grains.", make=build,
         actions=(ActionSpec(PAGE_MENU, "count", "&Count", "play", "Ctrl+Return", bar="words"),),
     )
 

@@ -1,7 +1,7 @@
 """Tables as the window uses them: rows to choose from, the first column taking what room is left."""
 
 from PySide6.QtCore import QEvent, Qt
-from PySide6.QtGui import QResizeEvent
+from PySide6.QtGui import QResizeEvent, QShowEvent
 from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QTableView
 
 _LEAST = 70
@@ -9,6 +9,9 @@ _LEAST = 70
 
 class ListTable(QTableView):
     """One row can be chosen; no grid, no row numbers, compact rows."""
+
+    _unfitted = False
+    """Letters have changed while nobody saw the table."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -43,4 +46,12 @@ class ListTable(QTableView):
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
         if event.type() in (QEvent.Type.FontChange, QEvent.Type.StyleChange):
+            self._unfitted = not self.isVisible()
+            if self.isVisible():
+                self.fit_columns()
+
+    def showEvent(self, event: QShowEvent) -> None:
+        super().showEvent(event)
+        if self._unfitted:
+            self._unfitted = False
             self.fit_columns()

@@ -1,6 +1,6 @@
 """Controls on the left in the order of the work; curves above, representatives and exports below."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -50,16 +50,19 @@ class DatasetPage(PageWidget):
         self._folder: Path | None = None
         self._exports: list[Exported] = []
         self._opened: Standing | None = None
+
+    def assemble(self) -> Iterator[None]:
         self.representatives, self.sizes = RepresentativesPanel(), SizesPanel()
-        self.folder, self.targets = FolderPanel(), TargetsPanel()
+        self.folder, self.targets, self.library = FolderPanel(), TargetsPanel(), LibraryPanel(self._context)
         self.quality, self.distribution = QualityPlot(), SizesPlot()
         self.gallery, self.losses, self.exports = RepresentativesGallery(), LossesLabel(), ExportsList()
-        self.library = LibraryPanel(context)
+        yield
         self._place()
         self._connect()
-        context.wiring.refresh("particles", self._show_particles)
-        context.wiring.refresh("choices", self._show_choices, slow=True)
-        context.wiring.refresh("shelf", self._take_opened)
+        yield
+        self._context.wiring.refresh("particles", self._show_particles, holds=True)
+        self._context.wiring.refresh("choices", self._show_choices, slow=True)
+        self._context.wiring.refresh("shelf", self._take_opened)
         self._show_losses()
 
     # --- the page of the window ----------------------------------------------------------------

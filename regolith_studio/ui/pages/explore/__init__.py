@@ -20,7 +20,7 @@ PAGE = Page(
     icon="page_explore",
     order=10,
     tip="One particle, its spherical-harmonics fit and its polyhedron side by side",
-    build=build,
+    make=build,
     actions=(
         ActionSpec(
             "&View", "link", "&Link cameras", "link", "Ctrl+L", "Turn all views together", True, "icon"

@@ -79,7 +79,7 @@ class ExplorePage(PageWidget):
         session, wiring = context.session, context.wiring
         for panel in (self.particles, self.fit, self.coarsening, self.loss):
             wiring.edit(panel)
-        wiring.refresh("particles", lambda: self.particles.set_entries(session.particles))
+        wiring.refresh("particles", lambda: self.particles.set_entries(session.particles), holds=True)
         wiring.refresh("particles choices", lambda: self.triptych.show_particle(session.selected))
         wiring.refresh("fit", self._show_star_point)
         wiring.refresh("fit choices", self._show_findings, slow=True)

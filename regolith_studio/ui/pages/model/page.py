@@ -1,6 +1,6 @@
 """Controls on the left; spectrum and drawn particle above, gallery and judgement below."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -57,13 +57,26 @@ class ModelPage(PageWidget):
         self._model: FittedModel | None = None
         self._drawn: DrawnShapes | None = None
         self._live_seed = 0
-        self.source, self.drawing = SourceControls(), DrawControls()
-        self.live, self.gallery = LiveShape(context.views), Gallery(context.views)
-        self.distributions, self.judgement = DistributionsPanel(), JudgementPanel()
+
+    def assemble(self) -> Iterator[None]:
+        views, wiring = self._context.views, self._context.wiring
+        self.source = SourceControls()
+        yield
+        self.drawing = DrawControls()
+        yield
+        self.live = LiveShape(views)
+        yield
+        self.gallery = Gallery(views)
+        yield
+        self.distributions = DistributionsPanel()
+        yield
+        self.judgement = JudgementPanel()
+        yield
         self._place()
         self._connect()
-        context.wiring.refresh("particles", self._show_sources)
-        context.wiring.refresh("tasks", self._show_tasks, slow=True)
+        yield
+        wiring.refresh("particles", self._show_sources)
+        wiring.refresh("tasks", self._show_tasks, slow=True)
 
     # --- the page of the window ----------------------------------------------------------------
 

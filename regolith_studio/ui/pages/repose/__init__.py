@@ -17,7 +17,7 @@ PAGE = Page(
     icon="page_repose",
     order=70,
     tip="Fill a cylinder with the particles of a dataset, lift it, measure the pile",
-    build=build,
+    make=build,
     actions=(
         ActionSpec(PAGE_MENU, "open_dataset", "Open a &dataset …", tip="Choose the dataset to simulate"),
         ActionSpec(PAGE_MENU, BREAK, ""),

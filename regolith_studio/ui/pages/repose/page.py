@@ -1,6 +1,6 @@
 """Set-up on the left; particles above; sections, runs and engines below."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -53,20 +53,33 @@ class ReposePage(PageWidget):
         self._pile: Pile | None = None
         self._measured: ReposeMeasurement | None = None
         self._running = False
+
+    def assemble(self) -> Iterator[None]:
         self.setup = SetupPanel()
-        self.player = Player(context.views)
+        yield
+        self.player = Player(self._context.views)
+        yield
         self.x_z, self.y_z = SectionPlot("x"), SectionPlot("y")
         self.verdict = remark(tr("No pile yet."))
         self.verdict.setObjectName("repose_verdict")
-        self.runs, self.study, self.engines = RunsPanel(), StudyPanel(), EnginePanel()
-        self.studies = StudyDesk(context, self.study, self.setup, self._show_study_run)
+        yield
+        self.runs = RunsPanel()
+        yield
+        self.study = StudyPanel()
+        yield
+        self.engines = EnginePanel()
+        yield
+        self.studies = StudyDesk(self._context, self.study, self.setup, self._show_study_run)
         self._later = QTimer(self)
         self._later.setSingleShot(True)
         self._later.setInterval(PREVIEW_DELAY)
         self._later.timeout.connect(self._preview)
+        yield
         self._place()
+        yield
         self._connect()
-        context.wiring.refresh("shelf", self._take_dataset)
+        yield
+        self._context.wiring.refresh("shelf", self._take_dataset)
         self.setup.tell([tr("Open a dataset, or make one from the open particles.")])
         self._list_runs()
 

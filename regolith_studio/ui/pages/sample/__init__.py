@@ -17,7 +17,7 @@ PAGE = Page(
     icon="page_sample",
     order=20,
     tip="All particles: table, scatter plot, health and statistics of groups",
-    build=build,
+    make=build,
     actions=(
         ActionSpec(PAGE_MENU, "export_table", "E&xport table …", "export", tip="As a CSV file", bar="words"),
         ActionSpec(PAGE_MENU, "copy_table", "&Copy table", "", "", "Copy the rows for a spreadsheet"),

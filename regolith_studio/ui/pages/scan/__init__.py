@@ -18,7 +18,7 @@ PAGE = Page(
     icon="page_scan",
     order=30,
     tip="Find the grains in a CT volume and make particles of them",
-    build=build,
+    make=build,
     opens=(FileKind.VOLUME,),
     actions=(
         ActionSpec(PAGE_MENU, "open_volume", "Open &volume …", "open", "Ctrl+Alt+O", "Open a CT volume"),

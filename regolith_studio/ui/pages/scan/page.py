@@ -1,7 +1,7 @@
 """Three slices with the grains over them, the histogram, and what leads from one to the other."""
 
 import contextlib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -63,7 +63,12 @@ class ScanPage(PageWidget):
         self._whole: FoundGrains | None = None
         self.preview: Segmentation | None = None
         self._found_with: SegmentationSettings | None = None
-        self.overview, self.controls, self.steps = Overview(), SegmentationControls(), StepsPanel()
+
+    def assemble(self) -> Iterator[None]:
+        self.overview = Overview()
+        yield
+        self.controls, self.steps = SegmentationControls(), StepsPanel()
+        yield
         self._timer = QTimer(self, interval=PREVIEW_DELAY, singleShot=True)
         self._arrange()
         self._connect()

@@ -17,7 +17,7 @@ PAGE = Page(
     icon="page_studies",
     order=45,
     tip="Errors against l_max, faces and weights, and what the polyhedra look like",
-    build=build,
+    make=build,
     actions=(
         ActionSpec(
             PAGE_MENU,

@@ -1,6 +1,6 @@
 """Fig. 3 and Fig. 8 with its relatives above, Fig. 7 below, each with its own start, progress and stop."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -42,19 +42,31 @@ class StudiesPage(PageWidget):
         super().__init__()
         self.setObjectName("studies")
         self._context, self._session = context, context.session
-        self.lmax_study, self.coarsening_study = LmaxStudyPanel(), CoarseningStudyPanel()
+
+    def assemble(self) -> Iterator[None]:
+        wiring = self._context.wiring
+        self.lmax_study = LmaxStudyPanel()
+        yield
+        self.coarsening_study = CoarseningStudyPanel()
+        yield
         self.gallery, self.bar = SolidGallery(), RowsBar()
-        self.variations = {key: VariationPanel(key) for key in VARIATIONS}
+        self.variations: dict[str, VariationPanel] = {}
+        for key in VARIATIONS:
+            yield
+            self.variations[key] = VariationPanel(key)
+        yield
         self.tabs = self._tabs()
         self._place()
-        self.desk = VariationDesk(context, self.variations, self.bar)
+        yield
+        self.desk = VariationDesk(self._context, self.variations, self.bar)
         self._wire(Kind.LMAX_STUDY, self.lmax_study)
         self._wire(Kind.COARSENING_STUDY, self.coarsening_study)
         self.gallery.frame.startRequested.connect(self.draw_gallery)
         self.gallery.frame.cancelRequested.connect(self._session.cancel)
-        context.wiring.refresh("tasks", self._show_gallery_task, slow=True)
-        context.wiring.refresh("particles", self._name_gallery_button)
-        context.wiring.refresh("choices", self._show_l_max, slow=True)
+        yield
+        wiring.refresh("tasks", self._show_gallery_task, slow=True)
+        wiring.refresh("particles", self._name_gallery_button)
+        wiring.refresh("choices", self._show_l_max, slow=True)
 
     def set_theme(self, theme: Theme) -> None:
         for part in (self.lmax_study, self.coarsening_study, self.gallery):
