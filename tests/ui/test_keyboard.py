@@ -1,7 +1,7 @@
 """The window without a mouse: Tab reaches every control of every page, and each has a name."""
 
 import pytest
-from PySide6.QtCore import Qt
+from PySide6.QtCore import Qt, QTimer
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import (
     QAbstractButton,
@@ -10,13 +10,19 @@ from PySide6.QtWidgets import (
     QAbstractSpinBox,
     QApplication,
     QComboBox,
+    QDialog,
     QHeaderView,
     QLineEdit,
     QPlainTextEdit,
     QScrollBar,
 )
 
+from regolith_studio.jobs.runners.inline import InlineRunner
+from regolith_studio.session.choices import Choices
+from regolith_studio.session.session import Session
 from regolith_studio.ui.app import open_window
+from regolith_studio.ui.dialogs.unit import UnitDialog
+from regolith_studio.ui.main_window import MainWindow
 from regolith_studio.ui.pages import pages
 
 KINDS = (
@@ -75,3 +81,60 @@ def test_that_every_control_of_every_page_is_named_and_reached_by_tab(window, se
                 assert each in reached, (
                     f"{page.key}: {type(each).__name__} {each.objectName()} is not reached"
                 )
+
+
+DIALOGS = (
+    *("run_batch", "export", "preferences", "palette", "shortcuts", "about"),
+    "explore.save_picture",
+)
+"""Commands that ask by a dialog of their own."""
+
+
+def check_dialog(dialog, name, wait):
+    """Everything in it has a name, Tab comes everywhere, and Escape leaves it."""
+    dialog.activateWindow()
+    assert QTest.qWaitForWindowActive(dialog, 5000)
+    assert dialog.windowTitle(), f"{name} has no title"
+    found = controls(dialog)
+    for each in found:
+        text = each.text() if isinstance(each, QAbstractButton) else ""
+        assert each.accessibleName() or text, f"{name}: {type(each).__name__} {each.objectName()}"
+    reached = walked(dialog)
+    for each in found:
+        if each.isEnabled() and each.focusPolicy() & Qt.FocusPolicy.TabFocus:
+            assert each in reached, f"{name}: {type(each).__name__} {each.objectName()} is not reached"
+    QTest.keyClick(QApplication.focusWidget() or dialog, Qt.Key.Key_Escape)
+    wait(lambda: not dialog.isVisible(), 5.0)
+
+
+def answer(window, act):
+    """Act on the next dialog, also where the command waits for it; what came of it is in the list."""
+    done, timer = [], QTimer(window, interval=20)
+
+    def look():
+        opened = [each for each in QApplication.topLevelWidgets() if each.isVisible() and each is not window]
+        if dialog := next((each for each in opened if isinstance(each, QDialog)), None):
+            timer.stop()
+            try:
+                act(dialog)
+                done.append(None)
+            except AssertionError as error:
+                done.append(str(error))
+                dialog.reject()
+
+    timer.timeout.connect(look)
+    timer.start()
+    return done
+
+
+def test_that_every_dialog_can_be_used_without_a_mouse(shown, preferences, wait, settled, tmp_path):
+    session = Session(InlineRunner(), Choices(method="quadric"))  # which needs no kernels to be compiled
+    window = shown(MainWindow(session, preferences, "image"))
+    session.open_sample()
+    settled(window)
+    for name in DIALOGS:
+        checked = answer(window, lambda dialog, name=name: check_dialog(dialog, name, wait))
+        window.menus.by_name[name].trigger()
+        wait(lambda checked=checked: checked, 20.0)
+        assert checked == [None], (name, checked)
+    check_dialog(shown(UnitDialog([tmp_path / "grain.stl"], "um", window)), "unit", wait)
