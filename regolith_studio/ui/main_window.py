@@ -27,6 +27,7 @@ from regolith_studio.ui.page_stack import PageStack
 from regolith_studio.ui.pages import pages
 from regolith_studio.ui.panels.tasks import TasksPanel
 from regolith_studio.ui.projects import Projects
+from regolith_studio.ui.refusals import tell_refusals
 from regolith_studio.ui.shortcuts import Shortcuts
 from regolith_studio.ui.theme import THEMES, apply_theme, current_theme
 from regolith_studio.ui.tour import start_tour
@@ -135,7 +136,7 @@ class MainWindow(QMainWindow):
         wiring.hear("choices", self._show_choices)
         self._show_choices()
         wiring.hear("failed", lambda failure: self.toast.problem(failure.sentence, failure.details))
-        wiring.hear("problems", lambda problems: self.toast.note(problems[0], "\n".join(problems)))
+        wiring.hear("problems", lambda problems: tell_refusals(self.toast, problems))
         wiring.hear("exported", self.commands.tell_exported)
         self.tasks.cancelRequested.connect(self.commands.stop)
         QGuiApplication.styleHints().colorSchemeChanged.connect(self._apply_theme)

@@ -2818,7 +2818,7 @@
   <message>
    <location filename="ui/pages/scan/controls.py" />
    <source>Level</source>
-   <translation>Stufe</translation>
+   <translation>Schwelle</translation>
   </message>
   <message>
    <location filename="ui/pages/dataset/library.py" />
@@ -3600,6 +3600,21 @@
    <location filename="ui/pages/lecture/page.py" />
    <source>Open a particle first.</source>
    <translation>Öffnen Sie zuerst ein Partikel.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/page.py" />
+   <source>The series of a fit has no random numbers.</source>
+   <translation>Die Reihe einer Anpassung hat keine Zufallszahlen.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/page.py" />
+   <source>A random field has no steps: drag its bars, or draw anew.</source>
+   <translation>Ein Zufallsfeld hat keine Schritte: Balken ziehen oder neu ziehen lassen.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/page.py" />
+   <source>The lesson is still being computed.</source>
+   <translation>Die Lektion wird noch berechnet.</translation>
   </message>
   <message>
    <location filename="ui/pages/scan/page.py" />

@@ -50,7 +50,7 @@ def test_that_small_and_crossing_bodies_are_found():
 
 
 def test_that_a_mended_mesh_shows_its_rim_and_what_now_fills_it():
-    """Of a ball that lacks one triangle three others lie at the rim; one fills it, just where it was missing."""
+    """Of a ball that lacks one triangle three others lie at the rim; one fills it, where it was missing."""
     done = repair(Mesh(BALL.vertices, BALL.faces[1:]))
     shown = fault_triangles(Particle("ball", done.mesh, repair=done))
     assert set(shown) == {"open", "filled"}

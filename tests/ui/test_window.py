@@ -194,6 +194,26 @@ def test_that_a_broken_file_costs_one_sentence_and_nothing_else(window, wait, tm
     assert len(window.page.particles.entries()) == 12
 
 
+def test_that_bad_files_among_good_ones_are_told_and_the_good_ones_open(window, wait, tmp_path):
+    stl(tmp_path / "egg.stl")
+    (tmp_path / "broken.stl").write_bytes(b"\x00" * 90)
+    (tmp_path / "empty.ply").touch()
+    window.commands.open_paths([tmp_path], "um")
+    wait(lambda: [entry.id for entry in window.session.particles] == ["egg"], SECONDS)
+    said = window.toast.sentence.text()
+    assert window.toast.isVisible()
+    assert said.startswith("2 were left out. The first: broken.stl ")
+    assert "Traceback" not in said
+
+
+def test_that_one_bad_file_among_good_ones_is_its_sentence(window, wait, tmp_path):
+    stl(tmp_path / "egg.stl")
+    (tmp_path / "empty.ply").touch()
+    window.commands.open_paths([tmp_path], "um")
+    wait(window.toast.isVisible, SECONDS)
+    assert window.toast.sentence.text() == "empty.ply is empty: it has no bytes at all."
+
+
 def test_that_an_error_of_the_program_is_told_and_survived(window, capsys):
     hook = telling_hook(window.toast.problem)
     for error in (ValueError("shape"), InputError("The seed must not be negative.")):

@@ -19,6 +19,7 @@ from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import health_sentences, health_word
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.health_icons import health_pixmaps
 from regolith_studio.ui.widgets.labels import heading, remark
 from regolith_studio.ui.widgets.number_text import short_number
@@ -103,7 +104,7 @@ class _Model(QAbstractTableModel):
             case Qt.ItemDataRole.DecorationRole if index.column() == 0:
                 return self.icons.get(health_word(entry))
             case Qt.ItemDataRole.ToolTipRole:
-                return "\n".join(map(tr, health_sentences(entry).split("\n")))
+                return "\n".join(map(retold, health_sentences(entry).split("\n")))
             case Qt.ItemDataRole.TextAlignmentRole if index.column() >= WORDS:
                 return RIGHT
         return column.key(entry) if role == SORT_ROLE else None

@@ -4,6 +4,7 @@ import re
 from functools import cache
 
 from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation.health_sentences import HEALTH_SENTENCES
 
 SENTENCES = (
     mark(
@@ -80,6 +81,7 @@ SENTENCES = (
         "{count} measured particles at l_max = {degree}, {left} left out; fitted to one half, judged on the"
         " other; {splits} {split}, {draws} draws {repeats} times from each fit, seed {seed}."
     ),
+    *HEALTH_SENTENCES,
 )
 """Fits, coarsenings, scans and files say these; what is in braces stands there filled in."""
 

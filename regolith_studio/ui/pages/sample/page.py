@@ -7,12 +7,18 @@ from typing import Any
 from PySide6.QtWidgets import QApplication, QFileDialog, QHBoxLayout, QLineEdit, QVBoxLayout, QWidget
 
 from regolith_studio.errors import RegolithError
-from regolith_studio.scene import surfaces
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.jobs.events import Job
+from regolith_studio.jobs.examining import find_faults
+from regolith_studio.scene import faults, surfaces
 from regolith_studio.session.outputs.staging import write_bytes
-from regolith_studio.session.sample_table import filter_of, health_sentences, sample_table
+from regolith_studio.session.results import ParticleEntry
+from regolith_studio.session.sample_table import filter_of, sample_table
 from regolith_studio.studies.tables import csv_text
-from regolith_studio.ui.layout import side_by_side, stacked
+from regolith_studio.ui.layout import side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
+from regolith_studio.ui.pages.sample.health import HealthPanel, retold_health
 from regolith_studio.ui.pages.sample.scatter import ScatterPanel
 from regolith_studio.ui.pages.sample.statistics import StatisticsPanel
 from regolith_studio.ui.pages.sample.table import FORM_WORDS, HEALTH_WORDS, SampleTable
@@ -40,9 +46,12 @@ class SamplePage(PageWidget):
         self.verdict = remark(role="warning")
         self.verdict.hide()
         self.table, self.statistics, self.scatter = SampleTable(), StatisticsPanel(), ScatterPanel()
+        self.health = HealthPanel()
         self.frame = ViewFrame(make_view(context.views, current_theme().surroundings), "sample_view")
         self._camera = CameraLink([self.frame.view])
-        self._shown: object = None
+        self._shown: Mesh | None = None
+        self._reported: ParticleEntry | None = None
+        self._faults: dict[str, FloatArray] = {}
         self._place()
         self._connect()
         context.wiring.refresh("particles", self._show_particles, slow=True)
@@ -109,7 +118,10 @@ class SamplePage(PageWidget):
         column.setContentsMargins(10, 10, 2, 8)
         for widget in (self.title, self.filter, self.verdict):
             column.addWidget(widget)
-        parts = stacked([self.table, self.statistics], [600, 190], stretch=0)
+        self.reports = tabs(
+            "sample_tabs", [(self.health, tr("Health of the mesh")), (self.statistics, tr("Statistics"))]
+        )
+        parts = stacked([self.table, self.reports], [490, 300], stretch=0)
         parts.setObjectName("sample_rows")
         column.addWidget(parts, 1)
         right = stacked([self.frame, self.scatter], [420, 420], stretch=1)
@@ -127,6 +139,7 @@ class SamplePage(PageWidget):
         self.table.currentChosen.connect(self._select)
         self.table.doubleClicked.connect(lambda _index: self._context.go("explore"))
         self.scatter.pointChosen.connect(self._choose_point)
+        self.health.showChanged.connect(lambda _on: self._draw_faults())
 
     def _filter(self, text: str) -> None:
         try:
@@ -169,13 +182,32 @@ class SamplePage(PageWidget):
             self.table.choose([entry.id], entry.id)
             self._show_pictures()
         mesh = entry.particle.mesh
-        self.frame.set_texts(
-            tr("CT particle, {name}", name=entry.id), " ".join(map(tr, health_sentences(entry).split("\n")))
-        )
+        self.frame.set_texts(tr("CT particle, {name}", name=entry.id), " ".join(retold_health(entry)))
         if mesh is not self._shown:
             self._shown = mesh
-            self.frame.view.draw(lambda plotter: surfaces.show_particle(plotter, mesh))
+            self._faults = {}
+            self.frame.view.draw(self._draw_particle)
             self._camera.frame(mesh.vertices)
+        if entry is not self._reported:
+            self._reported = entry
+            self.health.show_entry(entry)
+            if entry.health is None:
+                return
+            job = Job(find_faults, (entry.particle, entry.sight))
+            self._context.start(tr("Looking for faults"), job, self._take_faults, lane="faults")
+
+    def _take_faults(self, found: dict[str, FloatArray]) -> None:
+        self._faults = found
+        self.health.show_legend({kind: len(triangles) for kind, triangles in found.items()})
+        self._draw_faults()
+
+    def _draw_faults(self) -> None:
+        self.frame.view.draw(self._draw_particle)
+
+    def _draw_particle(self, plotter: Any) -> None:
+        if self._shown is not None:
+            surfaces.show_particle(plotter, self._shown)
+        faults.show_faults(plotter, self._faults if self.health.where.isChecked() else {})
 
     def _select(self, name: str) -> None:
         if any(entry.id == name for entry in self._session.particles):

@@ -21,6 +21,7 @@ from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import Filter, form_of, has_weights, health_sentences, health_word
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.health_icons import health_pixmaps
 from regolith_studio.ui.widgets.labels import plain_symbol
 from regolith_studio.ui.widgets.number_text import short_number
@@ -161,7 +162,7 @@ class SampleModel(QAbstractTableModel):
 
 
 def _tip(entry: ParticleEntry) -> str:
-    return "\n".join(map(tr, health_sentences(entry).split("\n")))
+    return "\n".join(map(retold, health_sentences(entry).split("\n")))
 
 
 class _Filtered(QSortFilterProxyModel):

@@ -1,0 +1,195 @@
+"""The report on one particle's mesh: what it was like, what was done, what is left, and where."""
+
+import html
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtWidgets import (
+    QAbstractItemView,
+    QCheckBox,
+    QHBoxLayout,
+    QHeaderView,
+    QLabel,
+    QScrollArea,
+    QTableWidget,
+    QTableWidgetItem,
+    QVBoxLayout,
+    QWidget,
+)
+
+from regolith_studio.geometry.health import MeshHealth
+from regolith_studio.scene.faults import COLOURS
+from regolith_studio.session.results import ParticleEntry
+from regolith_studio.session.sample_table import health_sentences
+from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation.sentences import retold
+from regolith_studio.ui.widgets.labels import WholeLabel
+from regolith_studio.ui.widgets.number_text import short_number
+
+FINDINGS = (
+    ("bodies", mark("Bodies"), mark("Parts that hang together; a particle has one")),
+    ("watertight", mark("Closed"), mark("Every edge belongs to exactly two triangles")),
+    ("consistent_winding", mark("Wound alike"), mark("Neighbouring triangles look the same way")),
+    ("volume", mark("V [µm³]"), mark("Negative where the mesh is inside out")),
+    ("euler_number", mark("Euler number"), mark("2 for a closed body without tunnels")),
+    ("handles", mark("Tunnels"), mark("Through the body, of a closed mesh")),
+    ("open_edges", mark("Open edges"), mark("Edges of one triangle: the rims of holes")),
+    ("self_intersections", mark("Crossing pairs"), mark("Pairs of triangles that cross each other")),
+    ("degenerate_faces", mark("Faces without area"), mark("Triangles that are a line or a point")),
+)
+"""Fields of :class:`MeshHealth`, what they are called, and what they mean."""
+KINDS = {
+    "filled": mark("closed holes"),
+    "open": mark("rims of holes"),
+    "crossing": mark("faces that cross"),
+    "turned": mark("faces turned round"),
+    "small bodies": mark("bodies left out"),
+    "crowded": mark("edges of more than two faces"),
+    "double": mark("faces there twice"),
+    "degenerate": mark("faces without area"),
+    "hidden": mark("hidden from the star point"),
+}
+"""What the picture shows, in the order of :data:`COLOURS`."""
+DASH = "–"
+
+
+@dataclass(frozen=True)
+class _Row:
+    name: str
+    tip: str
+    before: str
+    now: str
+
+
+class HealthPanel(QWidget):
+    """Two columns of findings, the sentences, and what is coloured in the picture."""
+
+    showChanged = Signal(bool)  # noqa: N815
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("health_report")
+        self.table = self._make_table()
+        self.words = WholeLabel()
+        self.words.setObjectName("health_words")
+        self.words.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+        self.where = QCheckBox(tr("Show where"))
+        self.where.setObjectName("health_where")
+        self.where.setToolTip(
+            tr("Colours the faults in the picture, as they were before the mesh was mended")
+        )
+        self.where.setChecked(True)
+        self.legend = QLabel()
+        self.legend.setObjectName("health_legend")
+        self.legend.setTextFormat(Qt.TextFormat.RichText)
+        self.legend.setWordWrap(True)
+        self._place()
+        self.where.toggled.connect(self.showChanged)
+
+    def show_entry(self, entry: ParticleEntry | None) -> None:
+        """Report on this particle; the legend follows when its faults have been found."""
+        self.legend.clear()
+        rows = () if entry is None or entry.health is None else _rows(entry, entry.health)
+        self.table.setRowCount(len(rows))
+        for at, row in enumerate(rows):
+            for column, text in enumerate((row.name, row.before, row.now)):
+                item = QTableWidgetItem(text)
+                item.setToolTip(row.tip)
+                if column:
+                    item.setTextAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+                self.table.setItem(at, column, item)
+        self.words.setText("" if entry is None else _words(entry))
+
+    def show_legend(self, counts: Mapping[str, int]) -> None:
+        """Name the colours of what was found, with the number of triangles."""
+        found = [(kind, counts[kind]) for kind in COLOURS if counts.get(kind)]
+        self.legend.setText(
+            "&nbsp; ".join(
+                f'<span style="color:{COLOURS[kind]}">&#9632;</span>&nbsp;'
+                + html.escape(f"{tr(KINDS[kind])} ({count:,})").replace(" ", "&nbsp;")
+                for kind, count in found
+            )
+            or tr("Nothing to show: no faults, and all of the surface is seen from the star point.")
+        )
+
+    def _make_table(self) -> QTableWidget:
+        table = QTableWidget(0, 3)
+        table.setAccessibleName(tr("Health of the mesh"))
+        table.setHorizontalHeaderLabels([tr("Mesh"), tr("as it came"), tr("now")])
+        table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
+        table.setSelectionMode(QAbstractItemView.SelectionMode.NoSelection)
+        table.setShowGrid(False)
+        table.verticalHeader().hide()
+        table.verticalHeader().setDefaultSectionSize(table.fontMetrics().height() + 5)
+        header = table.horizontalHeader()
+        header.setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
+        header.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
+        return table
+
+    def _place(self) -> None:
+        right = QWidget()
+        column = QVBoxLayout(right)
+        column.setContentsMargins(8, 4, 4, 4)
+        for widget in (self.where, self.legend, self.words):
+            column.addWidget(widget)
+        column.addStretch(1)
+        scrolled = QScrollArea()
+        scrolled.setWidgetResizable(True)
+        scrolled.setFrameShape(QScrollArea.Shape.NoFrame)
+        scrolled.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        scrolled.setWidget(right)
+        layout = QHBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(self.table, 1)
+        layout.addWidget(scrolled, 1)
+
+
+def retold_health(entry: ParticleEntry) -> list[str]:
+    """All that is known about the mesh, in the language of the window."""
+    return [retold(sentence) for sentence in health_sentences(entry).split("\n")]
+
+
+def _rows(entry: ParticleEntry, now: MeshHealth) -> tuple[_Row, ...]:
+    done = entry.particle.repair
+    before = now if done is None else done.health_before
+    rows = [
+        _Row(tr(name), tr(tip), _text(getattr(before, key)), _text(getattr(now, key)))
+        for key, name, tip in FINDINGS
+    ]
+    if done is not None and done.holes:
+        filled = f"{short_number(done.filled_area)} ({_percent(done.filled_share)})"
+        rows.append(_Row(tr("Filled [µm²]"), tr("Area of the triangles that close holes"), "", filled))
+    if done is not None and done.dropped_bodies:
+        share = _percent(1.0 - done.kept_volume_share)
+        rows.append(_Row(tr("Left out"), tr("Share of the volume in bodies that were left out"), "", share))
+    seen = entry.sight
+    hidden = ("", "") if seen is None else (seen.hidden_surface_share, seen.unrepresentable_volume_share)
+    about = tr("Hidden from the star point, so that no radius function can represent it")
+    names = (tr("Hidden surface"), tr("Hidden volume"))
+    rows += [
+        _Row(name, about, "", _percent(share) if isinstance(share, float) else DASH)
+        for name, share in zip(names, hidden, strict=True)
+    ]
+    return tuple(rows)
+
+
+def _text(value: object) -> str:
+    match value:
+        case bool():
+            return tr("yes") if value else tr("no")
+        case int():
+            return f"{value:,}"
+        case float():
+            return short_number(value)
+    return DASH
+
+
+def _percent(share: float) -> str:
+    if share == 0.0:
+        return "0 %"
+    return "< 0.01 %" if 0.0 < share < 1e-4 else f"{100 * share:.2g} %"
+
+
+def _words(entry: ParticleEntry) -> str:
+    return "\n".join(f"• {sentence}" for sentence in retold_health(entry))

@@ -1,0 +1,20 @@
+"""What the window says of files that were left out when others could be read."""
+
+from collections.abc import Sequence
+
+from regolith_studio.jobs.loading import Problem
+from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation.sentences import retold
+from regolith_studio.ui.widgets.toast import Toast
+
+
+def tell_refusals(toast: Toast, problems: Sequence[Problem]) -> None:
+    """One sentence on the screen: the only one, or the first and how many more there are; all on demand."""
+    first = retold(problems[0].sentence)
+    if len(problems) == 1:
+        toast.problem(first, problems[0].with_path)
+        return
+    toast.problem(
+        tr("{count} were left out. The first: {sentence}", count=len(problems), sentence=first),
+        "\n".join(problem.with_path for problem in problems),
+    )

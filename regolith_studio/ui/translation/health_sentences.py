@@ -1,0 +1,42 @@
+"""What the inspection and the repair of a mesh say."""
+
+from regolith_studio.ui.translation import mark
+
+HEALTH_SENTENCES = (
+    mark("Being measured …"),
+    mark("A closed mesh without faults."),
+    mark("It consists of {count} separate bodies."),
+    mark("It is not closed: 1 edge belongs to one face only."),
+    mark("It is not closed: {count} edges belong to one face only."),
+    mark("It is not a simple surface: 1 edge belongs to three faces or more."),
+    mark("It is not a simple surface: {count} edges belong to three faces or more."),
+    mark("Its faces do not all look the same way: some are turned round."),
+    mark("It is inside out: its faces look inwards."),
+    mark("It encloses no volume."),
+    mark("Its surface touches itself in 1 corner."),
+    mark("Its surface touches itself in {count} corners."),
+    mark("It has 1 tunnel through it (Euler number {euler})."),
+    mark("It has {count} tunnels through it (Euler number {euler})."),
+    mark("1 face has no area."),
+    mark("{count} faces have no area."),
+    mark("1 face is there twice."),
+    mark("{count} faces are there twice."),
+    mark("1 pair of faces crosses each other."),
+    mark("{count} pairs of faces cross each other."),
+    mark("{count} vertices lie exactly on another: seams cut the surface."),
+    mark("Kept the largest of {count} bodies, with {share} of their volume."),
+    mark("Filled 1 hole with {share} of the surface."),
+    mark("Filled {count} holes with {share} of the surface."),
+    mark("Turned 1 face that looked the wrong way."),
+    mark("Turned {count} faces that looked the wrong way."),
+    mark("Turned all faces: the mesh was inside out."),
+    mark("Removed 1 face without area."),
+    mark("Removed {count} faces without area."),
+    mark("Removed 1 double face."),
+    mark("Removed {count} double faces."),
+    mark("Joined {count} vertices with another at the same place."),
+    mark("Took the surface apart along 1 edge where more than two faces met."),
+    mark("Took the surface apart along {count} edges where more than two faces met."),
+    mark("Cut out {count} faces that made the surface one-sided."),
+)
+"""Recognised as those of :data:`~regolith_studio.ui.translation.sentences.SENTENCES`."""
