@@ -9,6 +9,8 @@ from scipy.stats import linregress
 
 from benchmarks.window_driving import resident, settle, spin, until
 
+DRAWN, LOOKED_AT = 60, 6
+"""Particles of a sample that is opened, and those of them that are looked at."""
 MOVES_IN_A_DRAG = 10
 """Slider moves between two rests; the dragged slider is one step of undo."""
 
@@ -106,3 +108,36 @@ def coarsened_and_drawn(window: Any, count: int) -> Growth:
         until(shown)
 
     return followed("coarsen and draw", act, lambda: settle(window), count, (20.0, 20_000))
+
+
+def samples_opened(window: Any, count: int) -> Growth:
+    """Drawn particles are opened, some are looked at, and the shipped sample is opened again."""
+    from regolith_studio.ui.app import REST
+
+    page, session = window.go("model"), window.session
+    session.choose(method="quadric", level=2)
+    page.fit_model()
+    until(lambda: page._fitted is not None)
+    page.drawing.setValue(page.drawing.value() | {"n": DRAWN})
+    page.draw()
+    until(lambda: page._drawn is not None)
+    shipped = len(session.particles)
+
+    def act(number: int) -> None:
+        page.adopt()
+        until(lambda: len(session.particles) == DRAWN)
+        for key in ("sample", "explore"):
+            window.go(key)
+            for place in range(number % LOOKED_AT, DRAWN, DRAWN // LOOKED_AT):
+                session.select(session.particles[place].id)
+                settle(window)
+        session.open_sample()
+        until(lambda: len(session.particles) == shipped)
+        settle(window)
+
+    def rest() -> None:
+        settle(window)
+        spin(REST / 1_000 + 0.5)  # then hidden pages have let go what is closed
+        settle(window)
+
+    return followed("samples opened", act, rest, count, (5.0, 1), samples=count)
