@@ -2,9 +2,10 @@
 
 import os
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 
-from PySide6.QtCore import QLockFile, QObject, QTimer, Signal
+from PySide6.QtCore import QDateTime, QLocale, QLockFile, QObject, QTimer, Signal
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
 from regolith_studio.errors import RegolithError
@@ -43,6 +44,7 @@ class Projects(QObject):
         self.path: Path | None = None
         self._saved: Project | None = None
         self._lock = _lock_of(autosave_path())
+        self._recovered: dict[Path, QLockFile] = {}
         self._timer = QTimer(self, interval=1000 * AUTOSAVE_SECONDS, singleShot=True)
         self._timer.timeout.connect(self._autosave)
         self._cuts: list[Callable[[], None]] = [
@@ -85,25 +87,43 @@ class Projects(QObject):
             self.changed.emit()
 
     def offer_recovery(self) -> None:
-        """Ask whether to bring back what a window that crashed has left."""
-        left = stale_autosaves()
-        if not left:
-            return
+        """Ask whether to bring back what a window that crashed has left, the newest first.
+
+        Nothing is removed unasked: what is brought back stays until this window has a copy of its own, and
+        what has not been asked about is offered by the next window.
+        """
+        for path in stale_autosaves():
+            lock = _lock_of(path)
+            if lock.tryLock(0) and path.exists():  # no other window asks about it, or has just been answered
+                self._ask_about(path, lock)
+                return
+
+    def _ask_about(self, path: Path, lock: QLockFile) -> None:
         text = tr("Regolith Studio was not closed properly the last time. Bring its state back?")
         box = QMessageBox(QMessageBox.Icon.Question, tr("Recover"), text, parent=self._window)
         box.setObjectName("recovery")
-        box.setStandardButtons(QMessageBox.StandardButton.Yes | QMessageBox.StandardButton.No)
+        box.setInformativeText(_told(path))
+        yes, no = QMessageBox.StandardButton.Yes, QMessageBox.StandardButton.No
+        box.setStandardButtons(yes | no)
+        box.setDefaultButton(yes)
 
         def decided(answer: int) -> None:
-            if answer == QMessageBox.StandardButton.Yes.value:
-                self._bring_back(left[0])
-            for path in left:
-                _remove(path)
-                _lock_of(path).removeStaleLockFile()
             box.deleteLater()
+            self._recovered[path] = lock
+            if answer == yes.value and self._bring_back(path):
+                self._note_change()
+                return
+            self._forget_recovered()
+            self.offer_recovery()
 
         box.finished.connect(decided)
         box.open()
+
+    def _forget_recovered(self) -> None:
+        for path, lock in self._recovered.items():
+            _remove(path)
+            lock.unlock()
+        self._recovered = {}
 
     def close(self) -> None:
         """The window closes as it should: nothing needs to be brought back."""
@@ -112,6 +132,7 @@ class Projects(QObject):
             cut()
         _remove(autosave_path())
         self._lock.unlock()
+        self._forget_recovered()
 
     def _state(self) -> Project:
         pages = {key: state for key, widget in self._pages.widgets.items() if (state := widget.state())}
@@ -166,11 +187,21 @@ class Projects(QObject):
         self.changed.emit()
 
     def _autosave(self) -> None:
+        path = autosave_path()
+        with suppress(OSError):  # which the saving tells
+            path.parent.mkdir(parents=True, exist_ok=True)
+        self._lock.tryLock(0)  # first: a file without a lock is one that a crash has left
         try:
-            self._state().save(autosave_path(), self._portrait().model)
-            self._lock.tryLock(0)
+            self._state().save(path, self._portrait().model)
         except RegolithError as error:
             self._toast.problem(str(error))
+            return
+        if not self._recovered:
+            return
+        if self._session.tasks:
+            self._timer.start()
+        else:  # what was brought back has been read, and is in this copy
+            self._forget_recovered()
 
 
 def autosave_path() -> Path:
@@ -183,6 +214,12 @@ def stale_autosaves() -> list[Path]:
     found = preferences_path().parent.glob(f"autosave-*{SUFFIX}")
     left = [path for path in found if path != autosave_path() and _is_abandoned(path)]
     return sorted(left, key=lambda path: path.stat().st_mtime, reverse=True)
+
+
+def _told(path: Path) -> str:
+    """When the state was kept."""
+    moment = QDateTime.fromSecsSinceEpoch(int(path.stat().st_mtime))
+    return tr("It was kept at {moment}.", moment=QLocale().toString(moment, QLocale.FormatType.ShortFormat))
 
 
 def _remove(autosave: Path) -> None:

@@ -5657,6 +5657,11 @@
    <translation>Es gibt noch keinen vermessenen Schüttkegel zu exportieren.</translation>
   </message>
   <message>
+   <location filename="ui/pages/repose/player.py" />
+   <source>There is no run to play: make one, or choose one of the list.</source>
+   <translation>Es gibt keinen Lauf zum Abspielen: einen machen oder einen der Liste wählen.</translation>
+  </message>
+  <message>
    <location filename="ui/pages/model/page.py" />
    <source>There is no model to draw from: fit one first.</source>
    <translation>Es gibt kein Modell, aus dem zu ziehen wäre: passen Sie zuerst eines an.</translation>

@@ -9,9 +9,14 @@ import time
 import pytest
 from PySide6.QtWidgets import QMessageBox
 
-from regolith_studio.session.project import read_project
+from regolith_studio.jobs.runners.inline import InlineRunner
+from regolith_studio.session import project
+from regolith_studio.session.choices import Choices
+from regolith_studio.session.project import Project, read_project
+from regolith_studio.session.session import Session
 from regolith_studio.ui.app import open_window
-from regolith_studio.ui.projects import stale_autosaves
+from regolith_studio.ui.main_window import MainWindow
+from regolith_studio.ui.projects import autosave_path, stale_autosaves
 
 WORK = """
 from regolith_studio.ui import projects
@@ -24,6 +29,8 @@ window.show()
 window.session.topics.particles.connect(lambda: window.session.choose(n_faces=17, seed=4))
 app.exec()
 """
+QUICK = "quadric"
+"""A method without kernels that would have to be compiled."""
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there is no such signal")
@@ -42,13 +49,69 @@ def test_that_what_a_killed_window_knew_is_offered_and_brought_back(shown, prefe
         killed.wait(10)
     (left,) = stale_autosaves()
     window = shown(open_window(views="image", preferences=preferences))
+    window.projects._timer.setInterval(0)
     wait(lambda: window.session.particles)
     window.projects.offer_recovery()
     box = window.findChild(QMessageBox, "recovery")
     box.button(QMessageBox.StandardButton.Yes).click()
     assert (window.session.choices.n_faces, window.session.choices.seed) == (17, 4)
-    wait(lambda: not left.exists())
+    wait(lambda: not left.exists(), 170.0)
     assert stale_autosaves() == []
+
+
+@pytest.fixture
+def left(preferences):  # noqa: ARG001
+    """What two windows have left that crashed one after the other: with 11 facets, then with 33."""
+    made = []
+    for number, n_faces in enumerate((11, 33)):
+        path = autosave_path().with_name(f"autosave-{999999990 + number}.regolith")
+        path.parent.mkdir(parents=True, exist_ok=True)
+        Project.of(Session(InlineRunner(), Choices(n_faces=n_faces, method=QUICK))).save(path)
+        os.utime(path, (1_000_000 + number, 1_000_000 + number))
+        made.append(path)
+    return made
+
+
+def recovered(window, answer):
+    """Offers what is left, and answers."""
+    window.projects.offer_recovery()
+    window.findChild(QMessageBox, "recovery").button(answer).click()
+
+
+def test_that_what_is_brought_back_is_kept_until_there_is_a_newer_copy(shown, preferences, left, wait):
+    older, newer = left
+    window = shown(MainWindow(Session(InlineRunner(), Choices(method=QUICK)), preferences, "image"))
+    recovered(window, QMessageBox.StandardButton.Yes)
+    assert window.session.choices.n_faces == 33
+    assert newer.exists(), "this window may crash before it has kept anything"
+    assert stale_autosaves() == [older], "another window must not take it away"
+    window.projects._timer.start(0)
+    wait(lambda: not newer.exists())
+    assert read_project(autosave_path()).recipe.n_faces == 33
+    assert stale_autosaves() == [older], "nobody was asked about it"
+
+
+def test_that_the_next_crash_is_offered_where_the_first_is_declined(shown, preferences, left):
+    window = shown(MainWindow(Session(InlineRunner(), Choices(method=QUICK)), preferences, "image"))
+    recovered(window, QMessageBox.StandardButton.No)
+    assert [path.exists() for path in left] == [True, False]
+    asked = [box for box in window.findChildren(QMessageBox, "recovery") if box.isVisible()]
+    assert len(asked) == 1
+    asked[0].button(QMessageBox.StandardButton.Yes).click()
+    assert window.session.choices.n_faces == 11
+
+
+def test_that_a_copy_is_never_seen_without_its_lock(shown, preferences, monkeypatch):
+    window = shown(MainWindow(Session(InlineRunner(), Choices(method=QUICK)), preferences, "image"))
+    seen, write = [], project.write_bytes
+
+    def watched(path, content):
+        write(path, content)
+        seen.append(path.with_name(f"{path.name}.lock").exists())
+
+    monkeypatch.setattr(project, "write_bytes", watched)
+    window.projects._autosave()
+    assert seen == [True]
 
 
 def _holds(folder, n_faces):

@@ -128,7 +128,8 @@ def test_that_a_crash_leaves_a_state_that_can_be_brought_back(window, wait):
     box = window.findChild(QMessageBox, "recovery")
     box.button(QMessageBox.StandardButton.Yes).click()
     assert window.session.choices.n_faces == 13
-    wait(lambda: not left.exists())
+    window.projects._timer.setInterval(0)
+    wait(lambda: not left.exists(), SECONDS)
     wait(lambda: not window.session.tasks, SECONDS)
 
 
