@@ -72,7 +72,8 @@ def settle(window: Any) -> None:
     from regolith_studio.ui.wiring import Wiring
 
     def rests() -> bool:
-        return not window.session.tasks and all(each.idle for each in window.findChildren(Wiring))
+        built = not window.pages.awaited
+        return built and not window.session.tasks and all(each.idle for each in window.findChildren(Wiring))
 
     until(rests)
     spin()

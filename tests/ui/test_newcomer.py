@@ -51,6 +51,7 @@ class Newcomer:
         """An interaction is over: draw, and keep a picture of it."""
         self.count += 1
         QTest.qWait(30)
+        self.wait(lambda: not self.window.pages.awaited)
         if folder := os.environ.get("REGOLITH_STUDIO_SHOTS"):
             QTest.qWait(400)
             Path(folder).mkdir(parents=True, exist_ok=True)
