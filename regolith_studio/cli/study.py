@@ -158,6 +158,40 @@ def coarsening(
     raise typer.Exit(exit_code(meshes, loaded))
 
 
+@app.command("solids")
+def solids(
+    meshes: Meshes,
+    output: Folder,
+    faces: Faces = 20,
+    method: Method = "",
+    loss: Losses = None,
+    weight: Weights = None,
+    set_: Settings = None,
+    target: Target = "fit",
+    l_max: LMax = 10,
+    star_point: StarPoint = "",
+    rule: RadiusRule = "volume",
+    reference: Reference = "sphere",
+    unit: Unit = "um",
+    repair: Repair = True,
+    json: Json = False,
+    seed: Seed = 0,
+) -> None:
+    """The polyhedra that each set of loss weights makes of each particle (Fig. 7)."""
+    from regolith_studio.cli.inputs import exit_code, read_inputs
+    from regolith_studio.session.solids import study_solids
+    from regolith_studio.session.variations import CHOSEN, chosen_rows
+    from regolith_studio.studies.loss_rows import PAPER_ROWS
+
+    wish = choices_from(faces, method, "", weight, set_, target, l_max, seed, star_point, rule, reference)
+    names = tuple(loss or (PAPER_ROWS if not weight else (*PAPER_ROWS, CHOSEN)))
+    with as_bad_use():
+        rows = chosen_rows(names, wish)
+    loaded = read_inputs(meshes, unit, repair)
+    conclude("solids_study", partial(study_solids, loaded.particles, wish.order, rows), output, json)
+    raise typer.Exit(exit_code(meshes, loaded))
+
+
 @app.command("population")
 def population(
     sources: SampleSources,

@@ -7,10 +7,12 @@ from dataclasses import dataclass
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.fit import HarmonicFit
+from regolith_studio.jobs.answers import Answers
 from regolith_studio.jobs.coarsening import CoarsenedParticle, CoarseningOrder, coarsen_particle
 from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
 from regolith_studio.session.choices import L_MAX_LIMIT
 from regolith_studio.studies.loss_rows import StudyRow, paper_rows
+from regolith_studio.studies.solid_study import SolidStudy
 
 
 @dataclass(frozen=True)
@@ -61,6 +63,25 @@ def draw_solids(
             yield Partial(list(done))
             yield Progress(len(done), total, particle.name)
     return done
+
+
+def study_solids(
+    particles: Sequence[Particle],
+    order: CoarseningOrder,
+    rows: Sequence[StudyRow] | None = None,
+    answers: Answers | None = None,
+) -> Steps:
+    """As :func:`draw_solids`; the result is the study that can be written. No `answers` are kept of it."""
+    del answers
+    chosen = paper_rows() if rows is None else tuple(rows)
+    solids = yield from draw_solids(particles, order, chosen)
+    return solid_study(solids, [row.label for row in chosen], [particle.name for particle in particles])
+
+
+def solid_study(solids: Sequence[Solid], labels: Sequence[str], names: Sequence[str]) -> SolidStudy:
+    """What has been drawn, as a study that can be written."""
+    cells = {(each.row, each.column): each.outcome.coarsened or each.outcome.problem for each in solids}
+    return SolidStudy(tuple(labels), tuple(names), cells)
 
 
 def _by_row(order: CoarseningOrder, row: StudyRow) -> CoarseningOrder:

@@ -23,6 +23,7 @@ COMMANDS = (
     "study faces MESH",
     "study tradeoff MESH",
     "study sensitivity MESH",
+    "study solids MESH",
     "dataset build MESH",
     "dataset export MESH --to rocky",
     "dataset sample MESH -n 2",

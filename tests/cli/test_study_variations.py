@@ -46,6 +46,17 @@ def test_that_one_weight_at_a_time_is_changed(command, grains: Path, tmp_path: P
     assert list(dict.fromkeys(changes)) == ["Overlap × 0", "Overlap × 2", "Volume × 0", "Volume × 2"]
 
 
+def test_that_the_polyhedra_of_each_loss_are_drawn(command, grains: Path, tmp_path: Path) -> None:
+    losses = ("--loss", "quadric", "--loss", "only_volume")
+    said = command("study", "solids", grains, "-o", tmp_path / "s", "--faces", 12, *losses, *ONE)
+    assert said.code == 0, said.err
+    assert set(said.json["files"]) == {f"solids.{end}" for end in ("csv", "json", "png", "svg")}
+    rows = rows_of(tmp_path / "s" / "solids.csv")
+    assert [row["name"] for row in rows] == ["grain-a", "grain-b", "grain-c"] * 2
+    assert all(float(row["volume [%]"]) < 1e-4 for row in rows[3:])
+    assert not (tmp_path / "s" / "journal").exists()
+
+
 def test_that_any_losses_can_be_the_rows_of_figure_8(command, grains: Path, tmp_path: Path) -> None:
     losses = ("--loss", "only_volume", "--loss", "chosen", "--weight", "sphericity=1")
     said = command(

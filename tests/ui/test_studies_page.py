@@ -1,5 +1,6 @@
 """The page of the studies: figures 3, 7 and 8, live, and as files."""
 
+import csv
 import json
 
 import pytest
@@ -103,6 +104,21 @@ def test_that_errors_against_faces_are_drawn_told_and_saved(window, wait, settle
     page.save()
     settled(window)
     assert {path.name for path in tmp_path.iterdir()} >= {"faces.csv", "faces.json", "faces.png", "faces.svg"}
+
+
+def test_that_the_gallery_is_saved_as_a_picture_and_as_numbers(window, wait, settled, monkeypatch, tmp_path):
+    page = window.go("studies")
+    page.gallery.frame.start.click()
+    wait(lambda: len(page.gallery.value()) == 2 * len(row_labels()) and not window.session.tasks, SECONDS)
+    monkeypatch.setattr(ASKED, lambda *_: str(tmp_path))
+    page.save()
+    settled(window)
+    assert {f"solids.{end}" for end in ("csv", "json", "png", "svg")} <= {p.name for p in tmp_path.iterdir()}
+    with (tmp_path / "solids.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert sorted(row["row"] for row in rows[::2]) == sorted(row_labels())
+    shown = next(each for each in page.gallery.value() if (each.row, each.column) == (0, 1))
+    assert float(rows[1]["volume [%]"]) == pytest.approx(100 * shown.outcome.coarsened.errors["volume"])
 
 
 def test_that_a_variation_can_be_stopped_and_another_is_refused_with_a_reason(window, settled):

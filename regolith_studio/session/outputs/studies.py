@@ -10,6 +10,7 @@ from typing import Any
 from regolith_studio.studies.coarsening import rmsre_table as coarsening_table
 from regolith_studio.studies.lmax import rmsre_table as lmax_table
 from regolith_studio.studies.population_tables import ranking_table
+from regolith_studio.studies.solid_study import solid_table
 from regolith_studio.studies.tables import Table
 from regolith_studio.studies.variations import VARIATIONS
 
@@ -61,6 +62,12 @@ STUDIES: Mapping[str, StudyKind] = {
         "population_number.png",
         partial(_write, "population_figures.write_population_study"),
         ranking_table,
+    ),
+    "solids_study": StudyKind(
+        "Polyhedra of some particles by loss (Fig. 7)",
+        "solids.png",
+        partial(_write, "solid_figures.write_solids"),
+        solid_table,
     ),
     **{
         f"{key}_study": StudyKind(

@@ -13,7 +13,7 @@ from regolith_studio.jobs.events import Job, Progress, Started, Steps
 from regolith_studio.session.outputs.studies import STUDIES
 from regolith_studio.session.plan import STUDIES as KINDS
 from regolith_studio.session.plan import Kind
-from regolith_studio.session.solids import draw_solids
+from regolith_studio.session.solids import draw_solids, solid_study
 from regolith_studio.session.variations import chosen_rows
 from regolith_studio.studies.variations import VARIATIONS
 from regolith_studio.ui.layout import side_by_side, stacked, tabs
@@ -42,6 +42,7 @@ class StudiesPage(PageWidget):
         super().__init__()
         self.setObjectName("studies")
         self._context, self._session = context, context.session
+        self._drawn: tuple[list[str], list[str]] = [], []
 
     def assemble(self) -> Iterator[None]:
         wiring = self._context.wiring
@@ -126,6 +127,7 @@ class StudiesPage(PageWidget):
         first = ids.index(self._session.choices.selected) if self._session.choices.selected in ids else 0
         shown = [*entries[first:], *entries[:first]][:COLUMNS]
         rows = chosen_rows(self.bar.names(), self._session.choices)
+        self._drawn = [row.label for row in rows], [entry.particle.name for entry in shown]
         self.gallery.begin([entry.id for entry in shown], [retold(row.label) for row in rows])
         job = Job(draw_solids, (tuple(entry.particle for entry in shown), self._session.choices.order, rows))
         show = self.gallery.show_solids
@@ -135,6 +137,8 @@ class StudiesPage(PageWidget):
         """Ask for a folder and write tables and figures of the studies that are there."""
         found = {kind.value: getattr(self._session.results, kind.value) for kind in KINDS}
         found |= {f"{key}_study": study for key, study in self.desk.found.items() if study.names}
+        if solids := self.gallery.value():
+            found["solids_study"] = solid_study(solids, *self._drawn)
         done = tuple((kind, study) for kind, study in found.items() if study is not None)
         if not done:
             self._context.toast.problem(tr("Compute a study first."))
