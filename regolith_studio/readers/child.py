@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any, cast
 
 from regolith_studio.errors import RegolithError, reason_of
+from regolith_studio.readers.formats import mesh_formats
 from regolith_studio.readers.mesh_file import parse_mesh
 from regolith_studio.readers.protocol import Message, receive, send
 from regolith_studio.readers.sentences import sentence_about
@@ -100,6 +101,7 @@ def main() -> None:
     _limit_memory(limit)
     warnings.simplefilter("ignore")
     send(sink, Message({"status": "ready", "pid": os.getpid()}))
+    mesh_formats()  # while the parent is busy with what to ask
     with contextlib.suppress(EOFError, OSError, KeyboardInterrupt):
         while True:
             request = receive(source).header

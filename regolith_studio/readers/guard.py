@@ -50,6 +50,7 @@ class Guard:
         self._seconds = seconds
         self._lock = threading.RLock()
         self._process: subprocess.Popen[bytes] | None = None
+        self._ready = False
         self._ends_with_process = False
 
     def warm_up(self) -> None:
@@ -132,7 +133,8 @@ class Guard:
             self.close()
             answer = self._exchanged(self._running(), message, seconds)
         if _ends_child(answer):
-            self.close()
+            with contextlib.suppress(OSError):  # whoever asks next will hear of it
+                self._begin()
         return answer
 
     def _exchanged(
@@ -165,14 +167,23 @@ class Guard:
             watch.join()
 
     def _running(self) -> subprocess.Popen[bytes]:
-        if self._process is not None and self._process.poll() is None:
-            return self._process
+        process = self._process
+        if process is None or process.poll() is not None:
+            process = self._begin()
+        if not self._ready:
+            if self._exchanged(process, None, START_SECONDS).header["status"] != "ready":
+                self.close()
+                raise EnvironmentProblem(
+                    f"The program's reading process does not start with {sys.executable}."
+                )
+            self._ready = True
+        return process
+
+    def _begin(self) -> subprocess.Popen[bytes]:
+        """Let a child start, without waiting: the successor of one that a file has ended is ready in time."""
         self.close()
-        process = _started(self._memory)
-        if self._exchanged(process, None, START_SECONDS).header["status"] != "ready":
-            _end(process)
-            raise EnvironmentProblem(f"The program's reading process does not start with {sys.executable}.")
-        self._process = process
+        process = self._process = _started(self._memory)
+        self._ready = False
         if not self._ends_with_process:
             process_end.Finalize(None, self.close, exitpriority=100)
             self._ends_with_process = True

@@ -269,3 +269,21 @@ def test_that_what_is_no_message_does_not_pass_for_one(data):
     pipe.data += data
     with pytest.raises((EOFError, ValueError, KeyError)):
         receive(pipe)
+
+
+def test_that_the_successor_of_a_child_that_a_file_has_ended_starts_at_once(guard, stl):
+    guard.request("mesh", stl)
+    first = child_of(guard)
+    with pytest.raises(FileError, match="was given up"):
+        guard.ask("spin", stl, seconds=5.0, work=0.2)
+    second = child_of(guard)
+    assert second != first
+    assert psutil.pid_exists(second)
+    guard.request("mesh", stl)
+    assert child_of(guard) == second
+
+
+def test_that_a_guard_that_is_closed_has_no_successor(guard, stl):
+    guard.request("mesh", stl)
+    guard.close()
+    assert guard._process is None
