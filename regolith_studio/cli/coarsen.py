@@ -122,6 +122,7 @@ def choices_from(
     """
     from regolith_studio.coarsening.coarsen import DEFAULT_PRESET
     from regolith_studio.coarsening.weights import LossWeights
+    from regolith_studio.errors import InputError
     from regolith_studio.session.choices import Choices
 
     changes: dict[str, object] = {
@@ -147,4 +148,7 @@ def choices_from(
             changes["weights"] = LossWeights.from_preset(DEFAULT_PRESET).replaced(**named)
         elif named:
             changes["weights"] = LossWeights.of(**named)
-        return Choices().replaced(**changes)
+        made = Choices().replaced(**changes)
+        if made.weights.all_zero and made.method != "quadric":
+            raise InputError("All weights of the loss are 0, so there is nothing to optimise; raise one.")
+        return made

@@ -137,7 +137,7 @@ def _measured(
     target: Target, result: MethodResult, method: str, n_faces: int, weights: LossWeights
 ) -> Coarsened:
     """Measure the result by the public descriptors, independently of the method."""
-    unit = ConvexPolyhedron.from_half_spaces(result.half_spaces)
+    unit = result.polyhedron or ConvexPolyhedron.from_half_spaces(result.half_spaces)
     polyhedron = unit.moved(rotation=target.axes.T, scale=target.scale)
     achieved = describe(unit)
     errors = relative_errors(target.descriptors, achieved)

@@ -27,6 +27,8 @@ class MethodResult:
         Numbers worth knowing about the run: iterations, restarts, refused proposals ...
     variants
         Relative errors (and the Jaccard distance) of other readings of the result, by name.
+    polyhedron
+        By :meth:`ConvexPolyhedron.from_half_spaces`, where the method has made it already.
     """
 
     half_spaces: HalfSpaces
@@ -34,6 +36,7 @@ class MethodResult:
     reason: str | None = None
     steps: Mapping[str, float] = field(default_factory=dict)
     variants: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    polyhedron: ConvexPolyhedron | None = None
 
 
 @dataclass(frozen=True)

@@ -80,12 +80,13 @@ def least_hidden_volume(mesh: Mesh) -> FloatArray:
     if cost(np.zeros(3)) == 0.0:
         return start
     simplex = np.vstack([np.zeros(3), 0.4 * np.eye(3)])
-    found = minimize(
-        cost,
-        np.zeros(3),
-        method="Nelder-Mead",
-        options={"initial_simplex": simplex, "maxfev": 80, "xatol": 1e-2, "fatol": 1e-5},
-    )
+    with np.errstate(invalid="ignore"):  # costs of two points outside are both infinite
+        found = minimize(
+            cost,
+            np.zeros(3),
+            method="Nelder-Mead",
+            options={"initial_simplex": simplex, "maxfev": 80, "xatol": 1e-2, "fatol": 1e-5},
+        )
     return np.asarray(start + found.x * reach)
 
 

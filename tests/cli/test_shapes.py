@@ -113,6 +113,7 @@ def test_that_the_number_of_processes_changes_no_byte(command, grains: Path, tmp
         ("--weight", "volume=much"),
         ("--weight", "beauty=1"),
         ("--weight", "volume=-1"),
+        ("--preset", "overlap", "--weight", "jaccard_distance=0"),
         ("--set", "colour=red"),
         ("--target", "moon"),
         ("--l-max", 99),

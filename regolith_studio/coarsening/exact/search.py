@@ -128,10 +128,11 @@ class Search:
         """
         outcome = self._record.outcome or self._found()
         planes = real_planes(with_facets_back(self._target, self._full, outcome))
-        found = describe(ConvexPolyhedron.from_half_spaces(planes), LOSS_KEYS)
+        solid = ConvexPolyhedron.from_half_spaces(planes)
+        found = describe(solid, LOSS_KEYS)
         reason = reason_for(self._target, self._request, self._n_faces, len(planes), found)
         counts = {"starts": float(self._tried), "exact": float(self._record.met)}
-        return MethodResult(planes, tuple(self._record.history), reason, counts)
+        return MethodResult(planes, tuple(self._record.history), reason, counts, polyhedron=solid)
 
     def _solved(self) -> Iterator[Attempt]:
         """From few facets or from all at once, in turns; nothing where the sphericity is above its bound."""
