@@ -102,6 +102,24 @@ def test_that_a_coarsening_shows_its_first_polyhedron_before_it_makes_room(
     assert session.results.coarsened.n_faces_asked == 14
 
 
+def test_that_the_search_for_the_fewest_facets_shows_every_trial(session: Session, held: Held) -> None:
+    session.choose(stop_at="error", largest_error=0.08)
+    shown: list[int] = []
+
+    def look() -> None:
+        solid = session.results.polyhedron
+        if solid is not None and (not shown or shown[-1] != solid.n_faces):
+            shown.append(solid.n_faces)
+
+    assert held.let("coarsening", look)
+    done = session.results.coarsened
+    assert done is not None
+    assert done.reason is None
+    assert len(set(shown)) > 3  # doubled, then halved
+    assert shown[-1] == done.n_faces
+    assert max(done.errors[key] for key in ("sphericity", "min_diameter", "max_diameter")) <= 0.08
+
+
 def test_that_another_particle_never_waits_for_the_surface_of_the_last(session: Session, held: Held) -> None:
     session.adopt([Particle("pea", icosphere(2).moved(scale=3.0))], add=True)
     held.all()
