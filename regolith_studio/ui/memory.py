@@ -25,9 +25,12 @@ class LayoutMemory:
         self._preferences = preferences
 
     def restore_window(self, window: QMainWindow) -> bool:
-        """Give the window its last size and place; says whether there was one."""
+        """Give the window its last place, or one that the screen holds; says whether there was a last."""
         kept = _bytes(self._kept().get("window"))
-        return kept is not None and window.restoreGeometry(kept)
+        if kept is not None and window.restoreGeometry(kept):
+            return True
+        window.resize(window.size().boundedTo(window.screen().availableSize()))
+        return False
 
     def restore_parts(self, root: QWidget) -> None:
         """Put the borders in a page back where they were."""

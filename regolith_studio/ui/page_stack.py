@@ -1,30 +1,15 @@
 """The sidebar and the page that is seen; a page is built when it is first visited."""
 
 from collections.abc import Callable
-from functools import partial
 
-from PySide6.QtCore import QSize, Qt, QTimer, Signal
-from PySide6.QtGui import QEnterEvent, QFocusEvent, QKeySequence
-from PySide6.QtWidgets import (
-    QAbstractItemView,
-    QButtonGroup,
-    QFrame,
-    QHBoxLayout,
-    QSizePolicy,
-    QStackedWidget,
-    QToolButton,
-    QVBoxLayout,
-    QWidget,
-)
+from PySide6.QtCore import QTimer, Signal
+from PySide6.QtWidgets import QAbstractItemView, QHBoxLayout, QStackedWidget, QWidget
 
-from regolith_studio.ui.icons import icon
 from regolith_studio.ui.page import Page, PageContext, PageWidget
 from regolith_studio.ui.page_building import PageBuilder, Steps, polish
-from regolith_studio.ui.shortcuts import with_keys
+from regolith_studio.ui.room import Room
+from regolith_studio.ui.sidebar import Sidebar
 from regolith_studio.ui.theme import Theme, current_theme
-from regolith_studio.ui.translation import tr
-
-_ICON = 24
 
 
 class PageStack(QWidget):
@@ -55,11 +40,11 @@ class PageStack(QWidget):
         self._theming = QTimer(self, interval=0)
         self._theming.timeout.connect(self._theme_next)
         self._stack = QStackedWidget()
-        self._bar = QFrame()
-        self._bar.setObjectName("sidebar")
-        self._bar.setProperty("role", "sidebar")
-        self._group = QButtonGroup(self)
-        self.buttons: dict[str, QToolButton] = {}
+        self._rooms: dict[str, Room] = {}
+        self._bar = Sidebar(self.pages)
+        self.buttons = self._bar.buttons
+        self._bar.chosen.connect(self.visit)
+        self._bar.approached.connect(self.approached)
         self._arrange()
 
     @property
@@ -75,7 +60,7 @@ class PageStack(QWidget):
             self._leave()
             self._theme(key)
             self._current = key
-            self._stack.setCurrentWidget(widget)
+            self._stack.setCurrentWidget(self._rooms[key])
             self.buttons[key].setChecked(True)
             self._contexts[key].wiring.resume()
             widget.entered()
@@ -115,8 +100,7 @@ class PageStack(QWidget):
 
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of the present theme: the page that is seen at once, the others one by one."""
-        for key, page in self.pages.items():
-            self.buttons[key].setIcon(icon(page.icon, theme.text, theme.muted))
+        self._bar.set_theme(theme)
         self._unthemed = [key for key in self.widgets if key != self._current]
         self._theming.start()
         if self._current:
@@ -148,7 +132,8 @@ class PageStack(QWidget):
         yield
         for view in widget.findChildren(QAbstractItemView):
             view.setTabKeyNavigation(False)  # Tab leaves a table; arrows move in it
-        self._stack.addWidget(widget)
+        room = self._rooms[key] = Room(widget)
+        self._stack.addWidget(room)
         yield
         yield from polish(widget)
         widget.set_theme(current_theme())
@@ -178,48 +163,8 @@ class PageStack(QWidget):
             self.widgets[self._current].left()
 
     def _arrange(self) -> None:
-        column = QVBoxLayout(self._bar)
-        column.setContentsMargins(5, 8, 5, 8)
-        column.setSpacing(3)
-        for number, (key, page) in enumerate(self.pages.items(), start=1):
-            button = self.buttons[key] = self._button(page, number)
-            self._group.addButton(button)
-            column.addWidget(button)
-        column.addStretch(1)
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
         row.setSpacing(0)
         row.addWidget(self._bar)
         row.addWidget(self._stack, 1)
-
-    def _button(self, page: Page, number: int) -> QToolButton:
-        button = _PageButton()
-        button.approached.connect(partial(self.approached.emit, page.key))
-        button.setObjectName(f"page_{page.key}")
-        button.setText(tr(page.title))
-        button.setAccessibleName(tr("Page {title}", title=tr(page.title)))
-        button.setToolTip(with_keys(tr(page.tip), QKeySequence(f"Alt+{number}")))
-        button.setCheckable(True)
-        button.setAutoRaise(True)
-        button.setIconSize(QSize(_ICON, _ICON))
-        button.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextUnderIcon)
-        button.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
-        button.clicked.connect(partial(self._clicked, page.key))
-        return button
-
-    def _clicked(self, key: str) -> None:
-        self.visit(key)
-
-
-class _PageButton(QToolButton):
-    """Says when the mouse or the keyboard comes to it: a moment before it is pressed."""
-
-    approached = Signal()
-
-    def enterEvent(self, event: QEnterEvent) -> None:
-        super().enterEvent(event)
-        self.approached.emit()
-
-    def focusInEvent(self, event: QFocusEvent) -> None:
-        super().focusInEvent(event)
-        self.approached.emit()

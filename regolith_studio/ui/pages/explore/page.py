@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping
 from functools import partial
 
+from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QHBoxLayout, QMainWindow
 
 from regolith_studio.scene.cameras import DIRECTIONS
@@ -19,6 +20,8 @@ from regolith_studio.ui.views.triptych import Triptych
 
 LIST_WIDTH = 40
 """Of the list of particles at first, in digits."""
+LOW = 620
+"""Pixels of height below which the views keep the larger share."""
 
 
 class ExplorePage(PageWidget):
@@ -63,8 +66,15 @@ class ExplorePage(PageWidget):
     def release(self) -> None:
         self.triptych.release()
 
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        views, plots = self._rows.sizes()
+        whole = views + plots
+        if 0 < whole < LOW and views < plots:
+            self._rows.setSizes([3 * whole // 5, whole - 3 * whole // 5])
+
     def _place(self) -> None:
-        middle = stacked([self.triptych, self.plots], [520, 300], stretch=0)
+        middle = self._rows = stacked([self.triptych, self.plots], [520, 300], stretch=0)
         middle.setObjectName("explore_rows")
         controls = scrolled_column([self.fit, self.coarsening, self.loss])
         parts = [padded(self.particles, 10, 10, 2, 8), padded(middle, 2, 10, 2, 8), controls]

@@ -1,0 +1,138 @@
+"""The buttons of the pages: icons over words; beside them in a low window, alone in a very low one."""
+
+from collections.abc import Mapping
+from functools import partial
+
+from PySide6.QtCore import QEvent, QSize, Qt, Signal
+from PySide6.QtGui import QEnterEvent, QFocusEvent, QKeySequence, QResizeEvent
+from PySide6.QtWidgets import QButtonGroup, QFrame, QSizePolicy, QToolButton, QVBoxLayout
+
+from regolith_studio.ui.icons import icon
+from regolith_studio.ui.page import Page
+from regolith_studio.ui.shortcuts import with_keys
+from regolith_studio.ui.theme import Theme
+from regolith_studio.ui.translation import tr
+
+_STYLES = (
+    (Qt.ToolButtonStyle.ToolButtonTextUnderIcon, 24),
+    (Qt.ToolButtonStyle.ToolButtonTextBesideIcon, 16),
+    (Qt.ToolButtonStyle.ToolButtonIconOnly, 18),
+)
+"""From the most room that the buttons can take to the least, with the size of their icons."""
+
+
+class Sidebar(QFrame):
+    """One button a page, in the order of the pages.
+
+    Parameters
+    ----------
+    pages
+        By key.
+    """
+
+    chosen = Signal(str)
+    approached = Signal(str)
+    """The mouse, or the keyboard, has come to the button of a page."""
+
+    def __init__(self, pages: Mapping[str, Page]) -> None:
+        super().__init__()
+        self.setObjectName("sidebar")
+        self.setProperty("role", "sidebar")
+        self._pages = pages
+        self._group = QButtonGroup(self)
+        self._column = QVBoxLayout(self)
+        self._column.setContentsMargins(5, 8, 5, 8)
+        self._column.setSpacing(3)
+        self._heights: tuple[int, ...] = ()
+        self._style = 0
+        self.buttons: dict[str, QToolButton] = {}
+        for number, (key, page) in enumerate(pages.items(), start=1):
+            button = self.buttons[key] = self._button(page, number)
+            self._group.addButton(button)
+            self._column.addWidget(button)
+        self._column.addStretch(1)
+        self._choose(0)
+
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        for key, page in self._pages.items():
+            self.buttons[key].setIcon(icon(page.icon, theme.text, theme.muted))
+        self._measure_again()
+
+    def sizeHint(self) -> QSize:
+        return QSize(super().sizeHint().width(), self._needed()[0])
+
+    def minimumSizeHint(self) -> QSize:
+        return QSize(super().minimumSizeHint().width(), self._needed()[-1])
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._fit()
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() in (QEvent.Type.FontChange, QEvent.Type.StyleChange):
+            self._measure_again()
+
+    def _measure_again(self) -> None:
+        self._heights = ()
+        self.updateGeometry()
+        self._fit()
+
+    def _fit(self) -> None:
+        """The most roomy style that fits."""
+        fitting = (at for at, height in enumerate(self._needed()) if height <= self.height())
+        self._choose(next(fitting, len(_STYLES) - 1))
+
+    def _needed(self) -> tuple[int, ...]:
+        """Height of the buttons in each style."""
+        if not self._heights:
+            now, heights = self._style, []
+            for at in range(len(_STYLES)):
+                self._choose(at)
+                heights.append(self._height())
+            self._heights = tuple(heights)
+            self._choose(now)
+        return self._heights
+
+    def _height(self) -> int:
+        margins, between = self._column.contentsMargins(), self._column.spacing()
+        inside = sum(button.sizeHint().height() + between for button in self.buttons.values())
+        return inside + margins.top() + margins.bottom()
+
+    def _choose(self, at: int) -> None:
+        style, size = _STYLES[at]
+        self._style = at
+        for button in self.buttons.values():
+            button.setToolButtonStyle(style)
+            button.setIconSize(QSize(size, size))
+
+    def _button(self, page: Page, number: int) -> QToolButton:
+        button = _PageButton()
+        button.approached.connect(partial(self.approached.emit, page.key))
+        button.clicked.connect(partial(self._clicked, page.key))
+        button.setObjectName(f"page_{page.key}")
+        button.setText(tr(page.title))
+        button.setAccessibleName(tr("Page {title}", title=tr(page.title)))
+        button.setToolTip(with_keys(tr(page.tip), QKeySequence(f"Alt+{number}")))
+        button.setCheckable(True)
+        button.setAutoRaise(True)
+        button.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        return button
+
+    def _clicked(self, key: str) -> None:
+        self.chosen.emit(key)
+
+
+class _PageButton(QToolButton):
+    """Says when the mouse or the keyboard comes to it: a moment before it is pressed."""
+
+    approached = Signal()
+
+    def enterEvent(self, event: QEnterEvent) -> None:
+        super().enterEvent(event)
+        self.approached.emit()
+
+    def focusInEvent(self, event: QFocusEvent) -> None:
+        super().focusInEvent(event)
+        self.approached.emit()

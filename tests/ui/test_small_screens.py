@@ -1,0 +1,79 @@
+"""Windows with little room: a screen of 1920x1080 pixels at a scale of two leaves 960x540."""
+
+import pytest
+from PySide6.QtCore import QSize, Qt
+from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QWidget
+
+from regolith_studio.jobs.runners.inline import InlineRunner
+from regolith_studio.session.session import Session
+from regolith_studio.ui.dialogs.preferences import LETTERS
+from regolith_studio.ui.main_window import MainWindow
+from regolith_studio.ui.pages import pages
+from regolith_studio.ui.room import Room
+from regolith_studio.ui.sidebar import Sidebar
+from regolith_studio.ui.theme import LIGHT, choose_letters
+
+SCREEN = QSize(960, 540)
+FRAME = 40
+"""Pixels that a title bar and a panel of the desktop take."""
+
+
+@pytest.fixture
+def usual_letters(app):
+    usual = app.font()
+    yield
+    choose_letters(None)
+    app.setFont(usual)
+
+
+@pytest.mark.usefixtures("usual_letters")
+@pytest.mark.parametrize("letters", [100, 150, 200])
+def test_that_the_window_fits_a_small_screen_at_any_size_of_letters(shown, preferences, letters, app):
+    preferences.window = preferences.window | {LETTERS: letters}
+    window = shown(MainWindow(Session(InlineRunner()), preferences, "image"))
+    app.processEvents()
+    least = window.minimumSizeHint()
+    assert least.width() <= SCREEN.width()
+    assert least.height() <= SCREEN.height() - FRAME
+    assert all(button.isVisible() for button in window.pages.buttons.values())
+
+
+def test_that_the_sidebar_gives_up_room_before_words(shown):
+    place = shown(QWidget())
+    bar = Sidebar({page.key: page for page in pages()})
+    bar.set_theme(LIGHT)
+    bar.setParent(place)
+    bar.show()
+    roomy, least = bar.sizeHint().height(), bar.minimumSizeHint().height()
+    assert least < roomy
+    seen = []
+    for height in (roomy, roomy - 1, least, roomy):
+        bar.resize(bar.sizeHint().width(), height)
+        bar.layout().activate()
+        seen.append({button.toolButtonStyle() for button in bar.buttons.values()})
+        assert all(bar.rect().contains(button.geometry()) for button in bar.buttons.values())
+    assert seen[0] == seen[3] == {Qt.ToolButtonStyle.ToolButtonTextUnderIcon}
+    assert seen[1] == {Qt.ToolButtonStyle.ToolButtonTextBesideIcon}
+    assert Qt.ToolButtonStyle.ToolButtonTextUnderIcon not in seen[2]
+
+
+def test_that_a_page_too_wide_for_the_window_scrolls_to_what_has_the_focus(shown, wait):
+    page = QWidget()
+    row = QHBoxLayout(page)
+    fields = [QLineEdit() for _ in range(4)]
+    for field in fields:
+        field.setMinimumWidth(300)
+        row.addWidget(field)
+    room = Room(page)
+    room.resize(500, 200)
+    shown(room)
+    assert page.width() >= 1200
+    for field in (fields[-1], fields[0]):
+        room.ensureWidgetVisible(fields[0])
+        room.activateWindow()
+        field.setFocus()
+        room.focusNextPrevChild(True)
+        focused = room.focusWidget()
+        wait(lambda one=focused: not one.visibleRegion().isEmpty(), 5.0)
+    room.resize(1400, 200)
+    assert page.width() == room.viewport().width()
