@@ -104,14 +104,15 @@ def extract(path: Path, grey: bool, memory: float) -> dict[str, float]:
     if memory:
         limit = int(memory * 2**30)
         resource.setrlimit(resource.RLIMIT_DATA, (limit, limit))
-    begin, stages = time.monotonic(), {}
+    stages: dict[str, float] = {}
+    begin, values = time.monotonic(), None
     volume = VolumeInput(path, 2.3, kind="grey" if grey else "labels").opened()
     with Scratch(path.parent) as scratch:
         if grey:
             steps = segmentation_steps(volume, SegmentationSettings(DenoiseSettings("gaussian")), scratch)
-            volume = _timed(steps, stages).labels
-        steps = extraction_steps(volume, ExtractionSettings(), collect=False)
-        extraction = _timed(steps, stages)
+            volume, values = _timed(steps, stages).labels, volume
+        made = extraction_steps(volume, ExtractionSettings(), collect=False, grey=values)
+        extraction = _timed(made, stages)
     return {
         "particles": extraction.n_found,
         "seconds": time.monotonic() - begin,

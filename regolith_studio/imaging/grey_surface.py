@@ -22,10 +22,11 @@ from regolith_studio.geometry.arrays import BoolArray
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.imaging.bodies import largest_body, pores_filled
 from regolith_studio.imaging.contour import contour
+from regolith_studio.imaging.crossings import LIGHTLY, uncrossed
 from regolith_studio.imaging.depth import depth
 from regolith_studio.imaging.label_table import GrainCrop
 from regolith_studio.imaging.smoothing import windowed_sinc, with_volume
-from regolith_studio.imaging.surface_fit import LIGHTLY, FitSettings, fitted, uncrossed
+from regolith_studio.imaging.surface_fit import FitSettings, fitted
 
 MARGIN = 7
 """Voxels about a grain's box that are looked at."""
@@ -51,8 +52,8 @@ _WIDENING, _POWER, _WIDEST = 0.65, 0.4, 0.3
 """The pass band that smooths it after each is so many times the usual over the noise (as a share of the
 contrast) to this power, at most so wide: chosen on balls, ellipsoids, polyhedra and rough grains at noise of
 2, 5 and 10 %."""
-_TWICING, _NARROWING = 0.9, 0.38
-"""How many times what one more smoothing takes is added, and its pass band as a share of that one."""
+_TWICING = 0.9
+"""How many times what one more smoothing takes is added at the end."""
 
 Floats = NDArray[np.float32]
 
@@ -88,7 +89,7 @@ def grey_mesh(crop: GrainCrop, body: BoolArray, iterations: int = 20, pass_band:
     mesh = windowed_sinc(rough, iterations, pass_band)
     if iterations:
         wider = min(_WIDENING * pass_band / max(noise, 1e-6) ** _POWER, _WIDEST)
-        how = FitSettings(_STEPS, iterations, wider, _TWICING, _NARROWING * wider)
+        how = FitSettings(_STEPS, iterations, wider, _TWICING)
         blur = _blur(rim, noise, mesh.surface_area)
         fit = fitted(mesh, rim, told, blur, how)
         mesh = uncrossed(fit, windowed_sinc(rough, iterations, min(LIGHTLY * pass_band, 2.0)))

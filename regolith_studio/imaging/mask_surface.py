@@ -12,16 +12,17 @@ import numpy as np
 from regolith_studio.geometry.arrays import BoolArray
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.imaging.contour import contour
+from regolith_studio.imaging.crossings import LIGHTLY, uncrossed
 from regolith_studio.imaging.smoothing import windowed_sinc, with_volume
-from regolith_studio.imaging.surface_fit import LIGHTLY, FitSettings, fitted_to_mask, uncrossed
+from regolith_studio.imaging.surface_fit import FitSettings, fitted_to_mask
 
 _MARGIN = 4
 """Voxels about the mask into which the surface may move."""
 _STEPS = 8
 """Moves of the surface to its side of the centres."""
-_WIDENING, _TWICING = 2.0, 2.0
+_WIDENING, _TWICING = 2.0, 1.45
 """Pass band of the smoothing after each move as a multiple of the usual, and how many times what one more
-smoothing with the usual takes is added: chosen on balls, ellipsoids, polyhedra and rough grains."""
+smoothing takes is added: chosen on balls, ellipsoids, polyhedra and rough grains of 24 to 48 voxels."""
 
 
 def mask_mesh(body: BoolArray, iterations: int = 20, pass_band: float = 0.13) -> Mesh:
@@ -39,6 +40,6 @@ def mask_mesh(body: BoolArray, iterations: int = 20, pass_band: float = 0.13) ->
     mesh = windowed_sinc(rough, iterations, pass_band)
     if iterations:
         wider = min(_WIDENING * pass_band, 2.0)
-        fit = fitted_to_mask(mesh, padded, FitSettings(_STEPS, iterations, wider, _TWICING, pass_band))
+        fit = fitted_to_mask(mesh, padded, FitSettings(_STEPS, iterations, wider, _TWICING))
         mesh = uncrossed(fit, windowed_sinc(rough, iterations, min(LIGHTLY * pass_band, 2.0)))
     return with_volume(mesh, float(np.count_nonzero(body))).moved(shift=np.full(3, -float(_MARGIN)))

@@ -18,11 +18,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
-from regolith_studio.geometry.compiled import kernel
+from regolith_studio.geometry.arrays import BoolArray
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.geometry.self_intersection import crossing_pairs
 from regolith_studio.imaging.coverage import coverage
+from regolith_studio.imaging.crossings import corner_normals
 from regolith_studio.imaging.smoothing import LowPass
 
 Floats = NDArray[np.float32]
@@ -38,10 +37,8 @@ _EAGERNESS = 1.6
 _COLUMNS, _COLUMNS_OF_MASKS = 3, 2
 """Columns along the edge of a voxel that its share is measured by."""
 
-LIGHTLY = 4.0
-"""Times the usual pass band: a contour smoothed with so wide a one does not cross itself."""
-_RINGS, _ATTEMPTS = 3, 4
-"""Corners about crossing faces that go back to where they were, and how often faces are looked for."""
+_NARROWING = 0.38
+"""Pass band of the smoothing whose effect the twicing adds, as a share of that of the fit."""
 
 
 @dataclass(frozen=True)
@@ -54,15 +51,14 @@ class FitSettings:
         How often.
     iterations, pass_band
         Of the smoothing after each step (:class:`~regolith_studio.imaging.smoothing.LowPass`).
-    twicing, twicing_pass_band
-        At the end, what one more smoothing with this pass band takes is added so many times.
+    twicing
+        At the end, what one more and stronger smoothing takes is added so many times.
     """
 
     steps: int
     iterations: int
     pass_band: float
     twicing: float = 0.0
-    twicing_pass_band: float = 0.13
 
 
 def fitted(mesh: Mesh, share: Floats, rim: BoolArray, blur: float, how: FitSettings) -> Mesh:
@@ -98,27 +94,6 @@ def fitted_to_mask(mesh: Mesh, mask: BoolArray, how: FitSettings) -> Mesh:
     return _moved(mesh, missing, _BOX**0.5, _REACH_OF_MASKS, how)
 
 
-def uncrossed(mesh: Mesh, safe: Mesh) -> Mesh:
-    """The mesh with the corners of the safe one, of the same faces, where its faces cross each other.
-
-    That happens about tunnels and in plates of one voxel, whose two sides come too near. If it does not end,
-    or is too much to look through, the safe mesh.
-    """
-    for _ in range(_ATTEMPTS):
-        found = crossing_pairs(mesh.vertices, mesh.faces)
-        if found is None:
-            break
-        count, crossing = found
-        if count == 0:
-            return mesh
-        near = np.zeros(len(mesh.vertices), dtype=np.bool_)
-        for _ in range(_RINGS):
-            near[mesh.faces[crossing]] = True
-            crossing = np.asarray(near[mesh.faces].any(axis=1))
-        mesh = Mesh(np.where(near[:, None], safe.vertices, mesh.vertices), mesh.faces)
-    return safe
-
-
 def _moved(
     mesh: Mesh, missing: Callable[[Mesh], Floats], blur: float, reach: float, how: FitSettings
 ) -> Mesh:
@@ -129,30 +104,10 @@ def _moved(
         lacking = ndimage.gaussian_filter(missing(mesh), reach)
         there = ndimage.map_coordinates(lacking, mesh.vertices.T, order=1)
         away = np.clip(pace * there.astype(np.float64), -_FARTHEST, _FARTHEST)
-        outward = _normals(mesh.vertices, mesh.faces)
+        outward = corner_normals(mesh.vertices, mesh.faces)
         mesh = Mesh(smooth(mesh.vertices + away[:, None] * outward, how.pass_band), mesh.faces)
-    taken = mesh.vertices - smooth(mesh.vertices, how.twicing_pass_band)
+    taken = mesh.vertices - smooth(mesh.vertices, _NARROWING * how.pass_band)
     return Mesh(mesh.vertices + how.twicing * taken, mesh.faces)
-
-
-@kernel
-def _normals(vertices: FloatArray, faces: IntArray) -> FloatArray:
-    """Unit normals of the corners: sums of those of the faces about them, weighted by area."""
-    total = np.zeros(vertices.shape)
-    for face in range(len(faces)):
-        a, b, c = vertices[faces[face, 0]], vertices[faces[face, 1]], vertices[faces[face, 2]]
-        ux, uy, uz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
-        vx, vy, vz = c[0] - a[0], c[1] - a[1], c[2] - a[2]
-        x, y, z = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
-        for corner in range(3):
-            total[faces[face, corner], 0] += x
-            total[faces[face, corner], 1] += y
-            total[faces[face, corner], 2] += z
-    for corner in range(len(vertices)):
-        x, y, z = total[corner]
-        length = max(np.sqrt(x * x + y * y + z * z), 1e-300)
-        total[corner, 0], total[corner, 1], total[corner, 2] = x / length, y / length, z / length
-    return total
 
 
 def _shape(array: Floats | BoolArray) -> tuple[int, int, int]:

@@ -6,14 +6,13 @@ from scipy import ndimage
 
 from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.geometry.self_intersection import count_self_intersections
 from regolith_studio.imaging.contour import contour
 from regolith_studio.imaging.coverage import coverage
 from regolith_studio.imaging.grey_surface import grey_mesh
 from regolith_studio.imaging.label_table import GrainCrop
 from regolith_studio.imaging.mask_surface import mask_mesh
 from regolith_studio.imaging.smoothing import windowed_sinc
-from regolith_studio.imaging.surface_fit import FitSettings, fitted, fitted_to_mask, uncrossed
+from regolith_studio.imaging.surface_fit import FitSettings, fitted, fitted_to_mask
 from regolith_studio.imaging.waves import SphereField, power_law
 
 EDGE, BLUR = 45, 0.8
@@ -93,33 +92,6 @@ def test_that_the_surface_of_a_mask_lies_between_the_centres_of_its_voxels() -> 
     ]
     assert wrong[0] > 500
     assert wrong[1] < 50
-
-
-def plate_and_ring() -> list[np.ndarray]:
-    plate = np.zeros((16, 16, 3), dtype=bool)
-    plate[:, :, 1] = True
-    x, y, z = np.indices((22, 22, 9)) - np.array([10.5, 10.5, 4.0])[:, None, None, None]
-    return [plate, (np.abs(np.hypot(x, y) - 7) < 2.4) & (np.abs(z) < 3)]
-
-
-@pytest.mark.parametrize("case", [0, 1])
-def test_that_thin_grains_do_not_cross_themselves(case: int) -> None:
-    mask = plate_and_ring()[case]
-    found = mask_mesh(mask)
-    assert count_self_intersections(found.vertices, found.faces) == 0
-    assert found.volume == pytest.approx(mask.sum())
-
-
-def test_that_corners_go_back_only_where_faces_cross() -> None:
-    """A ball with one corner pushed through to the other side."""
-    pushed = np.array(SPHERE.vertices)
-    pushed[7] *= -1.3
-    found = uncrossed(Mesh(pushed, SPHERE.faces), SPHERE)
-    assert count_self_intersections(found.vertices, found.faces) == 0
-    twice = Mesh(2.0 * SPHERE.vertices, SPHERE.faces)
-    assert uncrossed(twice, SPHERE) is twice
-    mended = uncrossed(Mesh(2.0 * pushed, SPHERE.faces), twice)
-    assert mended.vertices == pytest.approx(twice.vertices)
 
 
 def test_that_a_surface_that_explains_all_stays_where_it_is() -> None:
