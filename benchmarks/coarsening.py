@@ -23,7 +23,6 @@ from benchmarks.independent import measured
 from benchmarks.plain_loss import HAS_BOOLEANS, KEYS, PlainLoss, plain_annealing
 from regolith_studio.coarsening import warm_up
 from regolith_studio.coarsening.coarsen import coarsen
-from regolith_studio.coarsening.core.box_search import FINE_ANGLE, SAMPLE_ANGLE
 from regolith_studio.coarsening.evaluation import LossFunction
 from regolith_studio.coarsening.start import quadric_half_spaces
 from regolith_studio.coarsening.target import Target
@@ -119,15 +118,14 @@ ALL_PLAIN: dict[str, dict[str, str | bool]] = {
 }
 PLAIN = {name: how for name, how in ALL_PLAIN.items() if HAS_BOOLEANS or how.get("overlap") != "boolean"}
 """The plain programs by name; see benchmarks/plain_loss.py."""
-CASES: tuple[tuple[str, str, bool, float, tuple[str, ...]], ...] = (
-    ("box on a facet", "descriptors", True, FINE_ANGLE, ("meshes", "lean")),
-    ("box on a facet, IoU", "all", True, FINE_ANGLE, ("meshes, boolean", "lean, points")),
-    ("least box, while searching", "descriptors", False, SAMPLE_ANGLE, ("meshes", "lean, exact box")),
-    ("least box, fine", "descriptors", False, FINE_ANGLE, ("meshes", "lean, exact box")),
-    ("least box, fine, IoU", "all", False, FINE_ANGLE, ("meshes, boolean", "meshes, exact box, boolean")),
+CASES: tuple[tuple[str, str, bool, tuple[str, ...]], ...] = (
+    ("box on a facet", "descriptors", True, ("meshes", "lean")),
+    ("box on a facet, IoU", "all", True, ("meshes, boolean", "lean, points")),
+    ("least box", "descriptors", False, ("meshes", "lean, exact box")),
+    ("least box, IoU", "all", False, ("meshes, boolean", "meshes, exact box, boolean")),
 )
-"""What our evaluation measures: name, preset, whether the box lies on a facet, angle between the axes that
-are tried, and the plain programs that it is held against."""
+"""What our evaluation measures: name, preset, whether the box lies on a facet, and the plain programs that it
+is held against."""
 
 
 def evaluation_rounds(target: Target, n_faces: int) -> Array:
@@ -137,9 +135,9 @@ def evaluation_rounds(target: Target, n_faces: int) -> Array:
     work: list[tuple[Callable[[], object], int]] = [
         (partial(plain_loss(target, **how), points), 1 if how.get("exact") else 2) for how in PLAIN.values()
     ]
-    for _, preset, on_facets, angle, _ in CASES:
+    for _, preset, on_facets, _ in CASES:
         loss = LossFunction(target, LossWeights.from_preset(preset), on_facets=on_facets)
-        work.append((partial(loss.value, normals, offsets, angle), 50))
+        work.append((partial(loss.value, normals, offsets), 50))
     for call, _ in work:
         call()
     return np.array(
@@ -171,7 +169,7 @@ def report_evaluations(rounds: Array, n_faces: int) -> None:
     names = list(PLAIN)
     print(f"\n| one evaluation of the loss, {n_faces} faces | ours, us | plain program | us | ratio | 80 % |")
     print("| --- | ---: | --- | ---: | ---: | --- |")
-    for number, (title, _, _, _, against) in enumerate(CASES):
+    for number, (title, _, _, against) in enumerate(CASES):
         ours = rounds[:, len(names) + number]
         for name in [each for each in against if each in PLAIN]:
             theirs = rounds[:, names.index(name)]

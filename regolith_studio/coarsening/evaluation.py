@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from regolith_studio.coarsening.core.box_search import FINE_ANGLE
 from regolith_studio.coarsening.core.evaluate import (
     AREA,
     BOX_ON_FACETS,
@@ -74,18 +73,14 @@ class LossFunction:
         self._wanted = np.array([target.descriptors[key] for key in LOSS_KEYS])
         self._alphas = np.array([weights[key] for key in (*LOSS_KEYS, JACCARD)])
 
-    def __call__(
-        self, normals: FloatArray, offsets: FloatArray, sample_angle: float = FINE_ANGLE
-    ) -> Evaluation | None:
+    def __call__(self, normals: FloatArray, offsets: FloatArray) -> Evaluation | None:
         """Errors and loss, or ``None`` where the half-spaces bound no proper polyhedron."""
-        status, values = evaluate(
-            np.array(normals), np.array(offsets), *self._rays, *self._what, sample_angle
-        )
+        status, values = evaluate(np.array(normals), np.array(offsets), *self._rays, *self._what)
         return self._judged(values) if is_proper(status, values) else None
 
-    def value(self, normals: FloatArray, offsets: FloatArray, sample_angle: float = FINE_ANGLE) -> float:
+    def value(self, normals: FloatArray, offsets: FloatArray) -> float:
         """The loss alone, infinite where the half-spaces bound no proper polyhedron: quicker."""
-        return loss_of(normals, offsets, *self._rays, *self._what, sample_angle, self._wanted, self._alphas)
+        return loss_of(normals, offsets, *self._rays, *self._what, self._wanted, self._alphas)
 
     def of(self, values: FloatArray) -> float:
         """The loss of values as from :func:`regolith_studio.coarsening.core.evaluate.evaluate`."""

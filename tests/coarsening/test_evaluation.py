@@ -5,6 +5,7 @@ import pytest
 
 from regolith_studio.coarsening.core.box import Solid
 from regolith_studio.coarsening.core.box_flush import box_on_facets
+from regolith_studio.coarsening.core.evaluate import least_extents
 from regolith_studio.coarsening.core.intersection import edges_of, intersect
 from regolith_studio.coarsening.core.measures import facets_of
 from regolith_studio.coarsening.evaluation import LossFunction
@@ -15,6 +16,7 @@ from regolith_studio.descriptors.catalogue import LOSS_KEYS
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
+from regolith_studio.geometry.oriented_box import minimum_volume_box
 from tests.geometry.solids import rough_stone
 
 
@@ -74,3 +76,22 @@ def test_that_the_quick_box_is_the_least_with_a_side_on_a_facet(n_faces: int, se
     assert on_facets is not None
     assert exact is not None
     assert on_facets.errors["volume"] == exact.errors["volume"]
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("n_faces", [6, 12, 20, 60])
+def test_that_the_least_box_is_the_public_one(n_faces: int, seed: int) -> None:
+    target = Target.of(rough_stone(seed))
+    planes = planes_of(target, n_faces)
+    # a corner is cut so little that some edges are too short to have a direction
+    solid = ConvexPolyhedron.from_half_spaces(planes)
+    corner = solid.vertices[seed]
+    normal = corner / np.linalg.norm(corner)
+    reach = float((solid.vertices @ normal).max())
+    normals = np.vstack([planes.normals, normal])
+    offsets = np.append(planes.offsets, reach - 1e-10)
+    _, vertices, triples = intersect(normals, offsets)
+    edges = edges_of(triples, len(offsets))
+    areas, _ = facets_of(normals, offsets, vertices, edges)
+    extents = least_extents(Solid(vertices, normals, areas, edges))
+    assert np.sort(extents) == pytest.approx(np.sort(minimum_volume_box(solid).extents), rel=1e-7)

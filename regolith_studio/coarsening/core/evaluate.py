@@ -2,19 +2,23 @@
 
 import numpy as np
 
-from regolith_studio.coarsening.core.box import Solid
+from regolith_studio.coarsening.core.box import Solid, from_to
 from regolith_studio.coarsening.core.box_flush import box_on_facets
-from regolith_studio.coarsening.core.box_search import local_boxes
 from regolith_studio.coarsening.core.intersection import DEGENERATE, FINE, edges_of, intersect
 from regolith_studio.coarsening.core.measures import facets_of, volume_of
-from regolith_studio.coarsening.core.overlap import exits, shared_volume
+from regolith_studio.coarsening.core.overlap import shared_by_planes
 from regolith_studio.geometry.arrays import FloatArray, IntArray
+from regolith_studio.geometry.box_facets import Facets
+from regolith_studio.geometry.box_search import least_box
 from regolith_studio.geometry.compiled import kernel
+from regolith_studio.geometry.vectors import length
 
 VOLUME, AREA, SHORTEST, LONGEST, SHARED, FACETS = 0, 1, 2, 3, 4, 5
 """Places in the result of :func:`evaluate`."""
 NO_BOX, BOX_ON_FACETS, LEAST_BOX = 0, 1, 2
 """Which box to measure."""
+NO_EDGE = 1e-8
+"""Edges of a polyhedron of about unit volume that are shorter bear no box."""
 
 
 @kernel
@@ -28,7 +32,6 @@ def evaluate(
     weight: float,
     box: int,
     with_overlap: bool,
-    sample_angle: float,
 ) -> tuple[int, FloatArray]:
     """Status of the intersection, and volume, area, shortest and longest box edge, shared volume, facets.
 
@@ -49,15 +52,31 @@ def evaluate(
         extents = box_on_facets(solid)
         values[SHORTEST], values[LONGEST] = extents.min(), extents.max()
     elif box == LEAST_BOX:
-        boxes = local_boxes(solid, 1e-3, sample_angle, np.empty((0, 3)))
-        if len(boxes.volumes) == 0:
+        extents = least_extents(solid)
+        if not extents.min() > 0.0:
             return DEGENERATE, values
-        values[SHORTEST], values[LONGEST] = boxes.extents[0].min(), boxes.extents[0].max()
+        values[SHORTEST], values[LONGEST] = extents.min(), extents.max()
     if with_overlap:
-        radius, plane = np.empty(len(directions)), np.empty(len(directions), np.int64)
-        exits(normals, offsets, directions, radius, plane)
-        values[SHARED] = shared_volume(first, distance, sign, weight, radius)
+        values[SHARED] = shared_by_planes(normals, offsets, directions, first, distance, sign, weight)
     return status, values
+
+
+@kernel
+def least_extents(solid: Solid) -> FloatArray:
+    """Edges of the least box of all, by :func:`regolith_studio.geometry.box_search.least_box`.
+
+    Edges that are too short to have a direction are passed over, as if their ends were one vertex.
+    """
+    vertices, normals, _, edges = solid
+    kept = np.full(len(edges), True)
+    for e in range(len(edges)):
+        kept[e] = length(from_to(vertices, edges[e, 0], edges[e, 1])) >= NO_EDGE
+    facets = Facets(np.ascontiguousarray(vertices.T), normals, edges[kept])
+    axes, extents = least_box(facets, np.inf).axes, np.empty(3)
+    for k in range(3):
+        along = vertices @ axes[k]
+        extents[k] = along.max() - along.min()
+    return extents
 
 
 @kernel
@@ -71,7 +90,6 @@ def loss_of(
     weight: float,
     box: int,
     with_overlap: bool,
-    sample_angle: float,
     wanted: FloatArray,
     weights: FloatArray,
 ) -> float:
@@ -89,7 +107,6 @@ def loss_of(
         weight,
         box,
         with_overlap,
-        sample_angle,
     )
     return weighted_loss(values, wanted, weights) if is_proper(status, values) else np.inf
 

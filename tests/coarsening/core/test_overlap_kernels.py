@@ -5,7 +5,7 @@ import pytest
 
 from regolith_studio.coarsening.core.cuts import with_all_facets
 from regolith_studio.coarsening.core.intersection import intersect
-from regolith_studio.coarsening.core.overlap import exits, shared_charge, shared_volume
+from regolith_studio.coarsening.core.overlap import exits, shared_by_planes, shared_charge, shared_volume
 from regolith_studio.coarsening.core.planes import gradient_of, levers_of, moved, tangents_of
 from regolith_studio.coarsening.core.rays import bundle_of, cast
 from regolith_studio.coarsening.target import Target
@@ -43,6 +43,27 @@ def test_that_a_cube_shares_the_sphere_inside_it() -> None:
     # ball minus six caps of height 0.2 R, which do not overlap
     caps = 6 * np.pi * (0.2 * radius) ** 2 * (radius - 0.2 * radius / 3)
     assert shared(target, CUBE, np.full(6, side))[0] == pytest.approx(1.0 - caps, abs=3e-3)
+
+
+@pytest.mark.parametrize("n_faces", [4, 5, 6, 7, 20])
+@pytest.mark.parametrize("shift", [0.0, 0.35])
+def test_that_the_shared_volume_does_not_need_the_planes_that_rays_meet(
+    target: Target, n_faces: int, shift: float
+) -> None:
+    """Seen from beside its middle, the particle is crossed several times by some rays and never by others."""
+    rng = np.random.default_rng(n_faces)
+    normals = np.vstack([CUBE, rng.normal(size=(20, 3))])[-n_faces:]
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    offsets, directions = rng.uniform(0.4, 0.7, n_faces), fibonacci_directions(2_100)
+    mesh = target.mesh.moved(shift=(shift, 0.1, 0.0))
+    crossings = cast(mesh.vertices, mesh.faces, bundle_of(directions))
+    radius = 1.0 / np.maximum((directions @ (normals / offsets[:, None]).T).max(axis=1), 1e-300)
+    expected = shared_volume(*crossings, 1e-3, radius)
+    for function in (shared_by_planes, shared_by_planes.py_func):  # type: ignore[attr-defined]
+        if function is shared_by_planes or n_faces == 4:
+            with np.errstate(divide="ignore"):
+                found = function(normals, offsets, directions, *crossings, 1e-3)
+            assert found == pytest.approx(expected, rel=1e-12)
 
 
 def test_that_the_jaccard_distance_is_that_of_the_geometry_folder(target: Target) -> None:
