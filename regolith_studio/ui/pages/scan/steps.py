@@ -7,7 +7,7 @@ from regolith_studio.imaging.segmentation.segment import Segmentation
 from regolith_studio.jobs.scanning import Scan
 from regolith_studio.ui.translation import tr, tr_count
 from regolith_studio.ui.translation.sentences import retold
-from regolith_studio.ui.widgets.labels import heading, remark
+from regolith_studio.ui.widgets.labels import WholeLabel, heading
 
 _DENSEST, _LARGEST = 0.7, 0.4
 """Shares of the voxels that the grains of no packing have, and that no single grain has."""
@@ -38,7 +38,7 @@ class StepsPanel(QWidget):
             "scan_make", tr("Make particles"), tr("Contour each grain and open it as a particle")
         )
         self.show_them = _button("scan_show", tr("Show particles"), tr("Go to the table of particles"))
-        self.volume, self.found, self.made = remark(), remark(), remark()
+        self.volume, self.found, self.made = _words(), _words(), _words()
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         for title, buttons, words in (
@@ -139,6 +139,13 @@ def _about(scan: Scan | None) -> str:
         what=tr("labels") if volume.kind == "labels" else tr("grey values"),
         dtype=volume.dtype,
     )
+
+
+def _words() -> WholeLabel:
+    """What a step has come to; all its lines are seen, however low the window is."""
+    label = WholeLabel()
+    label.setProperty("role", "remark")
+    return label
 
 
 def _button(name: str, words: str, tip: str) -> QPushButton:
