@@ -5,6 +5,7 @@ from PySide6.QtCore import QSize, Qt
 from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QWidget
 
 from regolith_studio.jobs.runners.inline import InlineRunner
+from regolith_studio.session.choices import Choices
 from regolith_studio.session.session import Session
 from regolith_studio.ui.dialogs.preferences import LETTERS
 from regolith_studio.ui.main_window import MainWindow
@@ -77,3 +78,22 @@ def test_that_a_page_too_wide_for_the_window_scrolls_to_what_has_the_focus(shown
         wait(lambda one=focused: not one.visibleRegion().isEmpty(), 5.0)
     room.resize(1400, 200)
     assert page.width() == room.viewport().width()
+
+
+def framed(view):
+    """Half of what the shorter side of a view shows, in micrometres."""
+    width, height = view.widget.width(), view.widget.height()
+    return view.pose.parallel_scale * min(1.0, width / height)
+
+
+def test_that_an_enlarged_view_shows_the_particle_as_large_as_it_can(shown, preferences, settled):
+    session = Session(InlineRunner(), Choices(method="quadric"))  # which needs no kernels to be compiled
+    window = shown(MainWindow(session, preferences, "image"))
+    session.open_sample()
+    settled(window)
+    views = window.page.triptych.views
+    window.menus.by_name["explore.reset"].trigger()
+    usual = framed(views["particle"])
+    for name in ("particle", "fit", "polyhedron"):
+        window.menus.by_name["explore.enlarge"].trigger()
+        assert framed(views[name]) == pytest.approx(usual, rel=0.02)

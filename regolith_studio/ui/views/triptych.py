@@ -53,7 +53,7 @@ class Triptych(QSplitter):
         self.link = CameraLink(list(self.views.values()))
         for name, frame in self.frames.items():
             self.addWidget(frame)
-            frame.setMinimumWidth(150)
+            frame.setMinimumWidth(124)
             frame.enlargeRequested.connect(partial(self.enlarge, name))
         self.setSizes([1000, 1000, 1000])
         self._shapes: dict[str, Shape] = {}
@@ -170,7 +170,7 @@ class Triptych(QSplitter):
         alone = all(frame.isHidden() for other, frame in self.frames.items() if other != name)
         for other, frame in self.frames.items():
             frame.setVisible(alone or other == name)
-        self.reset_cameras()
+        self._frame_anew()
 
     def enlarge_next(self) -> None:
         """One view after the other, then all."""
@@ -182,7 +182,12 @@ class Triptych(QSplitter):
         else:
             self.frames[seen[0]].hide()
             self.frames[NAMES[NAMES.index(seen[0]) + 1]].show()
-            self.reset_cameras()
+            self._frame_anew()
+
+    def _frame_anew(self) -> None:
+        """Show the bodies whole in the room that the views have from now on."""
+        self.refresh()  # the splitter would give it a moment later
+        self.reset_cameras()
 
     @property
     def shapes(self) -> tuple[Shape, ...]:
