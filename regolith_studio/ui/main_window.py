@@ -114,7 +114,7 @@ class MainWindow(QMainWindow):
             "standard_layout": self._standard_layout,
             "tour": self.show_round,
             "quit": self.close,
-            "go": self.go,
+            "go": self.pages.visit,
             "next_page": partial(self.pages.neighbour, 1),
             "previous_page": partial(self.pages.neighbour, -1),
             "shortcuts": lambda: ShortcutsDialog(self.shortcuts, self.menus.places(), self).open(),
@@ -192,6 +192,7 @@ class MainWindow(QMainWindow):
         self.preferences.save()
         QGuiApplication.styleHints().colorSchemeChanged.disconnect(self._apply_theme)
         self.hide()
+        self.pages.finish()
         self.wiring.cut()
         self.projects.close()
         self.session.close()
