@@ -111,9 +111,14 @@ class LecturePage(PageWidget):
         """Other random numbers for the lesson that is seen."""
         if self.lesson == "field":
             self.field.draw_another()
+        elif self.lesson == "degrees":
+            self._context.toast.note(tr("The series of a fit has no random numbers."))
         else:
             self._seed += 1
+            before = self._made_for.get("annealing")
             self._fill()
+            if self._made_for.get("annealing") == before:
+                self._tell_absence()
 
     def scale_letters(self, factor: float) -> None:
         """Larger or smaller letters; remembered."""
@@ -223,10 +228,20 @@ class LecturePage(PageWidget):
         self._fill()
 
     def _with_transport(self, action: Callable[[Transport], object]) -> None:
-        if self.lesson == "annealing":
-            action(self.annealing.transport)
-        elif self.lesson == "degrees":
-            action(self.degrees.transport)
+        if self.lesson == "field":
+            self._context.toast.note(tr("A random field has no steps: drag its bars, or draw anew."))
+            return
+        transport = (self.annealing if self.lesson == "annealing" else self.degrees).transport
+        if transport.has_steps:
+            action(transport)
+        else:
+            self._tell_absence()
+
+    def _tell_absence(self) -> None:
+        """Say why there is no lesson."""
+        opened = self._session.selected is not None
+        words = tr("The lesson is still being computed.") if opened else tr("Open a particle first.")
+        self._context.toast.note(words)
 
     def _show_letters(self) -> Iterator[None]:
         """By one style sheet for the whole page: fonts of widgets are overruled by that of the program."""

@@ -74,6 +74,11 @@ class Transport(QWidget):
         """Whether it goes on by itself."""
         return self._timer.isActive()
 
+    @property
+    def has_steps(self) -> bool:
+        """Whether there is anything to play."""
+        return self.slider.maximum() > 0
+
     def set_count(self, count: int, at: int = 0) -> None:
         """There are so many steps; one of them is chosen, which is not announced."""
         with QSignalBlocker(self.slider):
@@ -96,7 +101,7 @@ class Transport(QWidget):
         """Play on, from the beginning if the end is reached, or pause."""
         if self.playing:
             self.pause()
-        elif self.slider.maximum() > 0:
+        elif self.has_steps:
             if self.step == self.slider.maximum():
                 self.slider.setValue(0)
             self.play.setText(tr("Pause"))

@@ -142,9 +142,11 @@ class ModelPage(PageWidget):
 
     def another(self) -> None:
         """Show another particle of the model."""
-        if self._model is not None:
-            self._live_seed += 1
-            self._show_live(again=True)
+        if self._model is None:
+            self._context.toast.problem(tr("There is no model to draw from: fit one first."))
+            return
+        self._live_seed += 1
+        self._show_live(again=True)
 
     def judge(self) -> None:
         """Judge the chosen model, or all."""

@@ -95,7 +95,7 @@ class ReposePage(PageWidget):
             "open_dataset": self.open_dataset,
             "run_test": self.run_test,
             "start_study": self.start_study,
-            "play": self.player.toggle,
+            "play": lambda: self.player.play_or_tell(self._context.toast.problem),
             "open_positions": self.open_positions,
             "export_run": self.export_run,
             "choose_folder": self.choose_folder,

@@ -1,6 +1,6 @@
 """The particles in three dimensions, live or from the snapshots of a run, with a slider for the time."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -92,6 +92,13 @@ class Player(QWidget):
         self._set_files(list(files))
         if files:
             self._show_file(len(files) - 1)
+
+    def play_or_tell(self, tell: Callable[[str], object]) -> None:
+        """Play or pause; say so where there is no run."""
+        if self._files:
+            self.toggle()
+        else:
+            tell(tr("There is no run to play: make one, or choose one of the list."))
 
     def toggle(self) -> None:
         """Play from the beginning, or from here, or pause."""
