@@ -1,8 +1,9 @@
 """From a label volume to particles: one closed, smooth, outward mesh for each label (section 2.1).
 
 A binary mask contoured as it is overstates the surface area by up to 9 % at any resolution. Each
-contour is therefore smoothed (windowed sinc) and scaled back to the volume of its voxels; on
-spheres, ellipsoids and polyhedra of 24 voxels a diameter and more the area is then right within 2 %.
+contour is therefore moved to lie smoothly between the centres of voxels, and has their volume
+(:mod:`~regolith_studio.imaging.mask_surface`); on spheres, ellipsoids, polyhedra and rough grains of
+24 voxels a diameter and more the area is then right within 2 %.
 Where the grey values are at hand, they can tell the surface and above all its volume better.
 
 The volume is seen slab by slab: once for the sizes and boxes of the labels, once to cut them out.

@@ -20,7 +20,7 @@ _MARGIN = 4
 """Voxels about the mask into which the surface may move."""
 _STEPS = 8
 """Moves of the surface to its side of the centres."""
-_WIDENING, _TWICING = 2.0, 1.45
+_WIDENING, _TWICING = 2.0, 1.4
 """Pass band of the smoothing after each move as a multiple of the usual, and how many times what one more
 smoothing takes is added: chosen on balls, ellipsoids, polyhedra and rough grains of 24 to 48 voxels."""
 
