@@ -53,7 +53,7 @@ def test_that_a_ball_of_24_voxels_has_its_volume_and_area(diameter: float) -> No
     mask = np.linalg.norm(grid(diameter / 2) - [0.3, -0.2, 0.4], axis=-1) <= diameter / 2
     mesh = only_mesh(labels(mask))
     assert mesh.volume == pytest.approx(np.pi / 6 * diameter**3, rel=5e-3)
-    assert mesh.surface_area == pytest.approx(np.pi * diameter**2, rel=0.02)
+    assert mesh.surface_area == pytest.approx(np.pi * diameter**2, rel=5e-3)
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -62,22 +62,22 @@ def test_that_an_ellipsoid_of_24_voxels_has_its_volume_and_area(seed: int) -> No
     turn = random_rotation(np.random.default_rng(seed))
     mesh = only_mesh(labels((((grid(18.0) - 0.25) @ turn / axes) ** 2).sum(axis=-1) <= 1.0))
     assert mesh.volume == pytest.approx(4 / 3 * np.pi * axes.prod(), rel=5e-3)
-    assert mesh.surface_area == pytest.approx(ellipsoid_area(*axes), rel=0.02)
+    assert mesh.surface_area == pytest.approx(ellipsoid_area(*axes), rel=0.012)
 
 
-@pytest.mark.parametrize("seed", range(4))
-def test_that_a_polyhedron_of_24_voxels_has_its_volume_and_area(seed: int) -> None:
+@pytest.mark.parametrize(("seed", "n_faces"), [(0, 14), (1, 14), (2, 8), (3, 8), (4, 40)])
+def test_that_a_polyhedron_of_24_voxels_has_its_volume_and_area(seed: int, n_faces: int) -> None:
     generator = np.random.default_rng(seed)
-    normals = even_sphere(14).vertices + 0.4 * generator.standard_normal((14, 3))
+    normals = even_sphere(n_faces).vertices + 0.3 * generator.standard_normal((n_faces, 3))
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    offsets = generator.uniform(0.8, 1.2, 14)
+    offsets = generator.uniform(0.85, 1.15, n_faces)
     unit = ConvexHull(HalfspaceIntersection(np.column_stack([normals, -offsets]), np.zeros(3)).intersections)
     scale = 12.0 / (3 * unit.volume / 4 / np.pi) ** (1 / 3)
     reach = scale * np.linalg.norm(unit.points, axis=1).max()
     mask = ((grid(reach) - 0.25) @ normals.T <= scale * offsets).all(axis=-1)
     mesh = only_mesh(labels(mask))
     assert mesh.volume == pytest.approx(unit.volume * scale**3, rel=5e-3)
-    assert mesh.surface_area == pytest.approx(unit.area * scale**2, rel=0.02)
+    assert mesh.surface_area == pytest.approx(unit.area * scale**2, rel=0.015)
 
 
 def test_that_anisotropic_voxels_give_the_same_ball_in_micrometres() -> None:
@@ -85,7 +85,7 @@ def test_that_anisotropic_voxels_give_the_same_ball_in_micrometres() -> None:
     mask = np.linalg.norm(grid(25.0, step), axis=-1) <= 25.0
     mesh = only_mesh(labels(mask, step))
     assert mesh.volume == pytest.approx(4 / 3 * np.pi * 25.0**3, rel=5e-3)
-    assert mesh.surface_area == pytest.approx(4 * np.pi * 25.0**2, rel=0.02)
+    assert mesh.surface_area == pytest.approx(4 * np.pi * 25.0**2, rel=0.01)
     assert np.ptp(mesh.vertices, axis=0) == pytest.approx(50.0, rel=0.03)
 
 
