@@ -53,7 +53,7 @@ class Triptych(QSplitter):
         self.link = CameraLink(list(self.views.values()))
         for name, frame in self.frames.items():
             self.addWidget(frame)
-            frame.setMinimumWidth(124)
+            frame.setMinimumWidth(136)
             frame.enlargeRequested.connect(partial(self.enlarge, name))
         self.setSizes([1000, 1000, 1000])
         self._shapes: dict[str, Shape] = {}
