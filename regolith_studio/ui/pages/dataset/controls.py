@@ -6,7 +6,7 @@ from dataclasses import asdict
 from typing import Any
 
 from PySide6.QtCore import QSignalBlocker, Signal
-from PySide6.QtWidgets import QComboBox, QLineEdit, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLineEdit, QPushButton, QVBoxLayout, QWidget
 
 from regolith_studio.dataset.size_spec import Sizing, parse_sizes
 from regolith_studio.errors import InputError
@@ -205,8 +205,13 @@ class FolderPanel(QWidget):
         self.open.setObjectName("dataset_open")
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        for widget in (heading(tr("3  Dataset")), self.name, self.shapes, self.build, self.open, self.state):
+        for widget in (heading(tr("3  Dataset")), self.name, self.shapes):
             layout.addWidget(widget)
+        buttons = QHBoxLayout()
+        for button in (self.build, self.open):
+            buttons.addWidget(button, 1)
+        layout.addLayout(buttons)
+        layout.addWidget(self.state)
         self.build.clicked.connect(self.buildRequested)
         self.open.clicked.connect(self.openRequested)
         self.show_dataset("")
