@@ -1,6 +1,6 @@
 """The table on the left with its filter and statistics; the particle and the scatter plot on the right."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -39,23 +39,34 @@ class SamplePage(PageWidget):
         self._context, self._session = context, context.session
         self.title = heading(tr("Sample"))
         self.filter = QLineEdit()
+        self._shown: Mesh | None = None
+        self._reported: ParticleEntry | None = None
+        self._faults: dict[str, FloatArray] = {}
+
+    def assemble(self) -> Iterator[None]:
+        wiring = self._context.wiring
         self.filter.setObjectName("sample_filter")
         self.filter.setAccessibleName(tr("Filter of the table"))
         self.filter.setPlaceholderText(tr("Filter: words and comparisons, such as  flat S<0.8 AR>1.5"))
         self.filter.setClearButtonEnabled(True)
         self.verdict = remark(role="warning")
         self.verdict.hide()
-        self.table, self.statistics, self.scatter = SampleTable(), StatisticsPanel(), ScatterPanel()
+        self.table = SampleTable()
+        yield
+        self.statistics = StatisticsPanel()
+        yield
+        self.scatter = ScatterPanel()
+        yield
         self.health = HealthPanel()
-        self.frame = ViewFrame(make_view(context.views, current_theme().surroundings), "sample_view")
+        self.frame = ViewFrame(make_view(self._context.views, current_theme().surroundings), "sample_view")
         self._camera = CameraLink([self.frame.view])
-        self._shown: Mesh | None = None
-        self._reported: ParticleEntry | None = None
-        self._faults: dict[str, FloatArray] = {}
+        yield
         self._place()
         self._connect()
-        context.wiring.refresh("particles", self._show_particles, slow=True)
-        context.wiring.refresh("choices", self._show_current)
+        yield
+        wiring.refresh("particles", self._show_particles, slow=True, holds=True)
+        yield
+        wiring.refresh("choices", self._show_current)
 
     def set_theme(self, theme: Theme) -> None:
         self.table.model_.set_theme(theme)
