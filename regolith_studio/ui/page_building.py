@@ -62,7 +62,8 @@ class PageBuilder(QObject):
 
     def _go_on(self) -> None:
         end = time.perf_counter() + SLICE
-        self._step()
+        if self._begun:  # a page that was needed at once may have been the last
+            self._step()
         while self._begun and time.perf_counter() < end:
             self._step()
         if not self._begun:

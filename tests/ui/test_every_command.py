@@ -86,7 +86,13 @@ class Witness:
         window, session = self.window, self.window.session
         self.started += [task.id for task in session.tasks if task.id not in self.started]
         return (
-            *(len(self.asked), len(self.started), window.pages.current, session.choices),
+            *(
+                len(self.asked),
+                len(self.started),
+                window.pages.current,
+                window.pages.awaited,
+                session.choices,
+            ),
             *(window.size(), window.isFullScreen(), window.activity.isVisible(), window.windowTitle()),
             QGuiApplication.clipboard().text(),
             tuple(action.isChecked() for action in window.menus.by_name.values()),
