@@ -198,7 +198,10 @@ def _metadata(provenance: Provenance) -> dict[str, Any]:
     fields = _plain(vars(provenance))
     fields["angular_power_spectrum_um2"] = fields.pop("angular_power_spectrum")
     if provenance.coarsening is not None:
-        fields["coarsening"] = _plain(vars(provenance.coarsening))
+        asked = _plain(vars(provenance.coarsening))
+        if asked["largest_error"] is None:  # as it was before there was such a choice
+            del asked["largest_error"]
+        fields["coarsening"] = asked
     if provenance.representation is not None:
         fields["representation"] = _plain(vars(provenance.representation))
     return fields

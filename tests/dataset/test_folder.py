@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -49,6 +50,23 @@ def test_that_the_same_dataset_gives_the_same_bytes_and_so_does_the_one_read_bac
     write_dataset(tmp_path / "b", make_dataset())
     write_dataset(tmp_path / "c", read_dataset(tmp_path / "a"))
     assert contents(tmp_path / "a") == contents(tmp_path / "b") == contents(tmp_path / "c")
+
+
+def test_that_a_largest_error_is_written_where_one_was_asked_for_and_nowhere_else(
+    tmp_path, make_dataset
+) -> None:
+    """What was written before there was that choice stays the same bytes when it is written again."""
+    by_count = make_dataset()
+    asked = replace(by_count.provenance.coarsening, largest_error=0.02)
+    by_error = replace(by_count, provenance=replace(by_count.provenance, coarsening=asked))
+    records = []
+    for name, dataset in (("count", by_count), ("error", by_error)):
+        folder = write_dataset(tmp_path / name, dataset)
+        assert read_dataset(folder).provenance == dataset.provenance
+        document = json.loads((folder / "dataset.json").read_text(encoding="utf-8"))
+        records.append(document["metadata"]["coarsening"])
+    assert records[1] == records[0] | {"largest_error": 0.02}
+    assert "largest_error" not in records[0]
 
 
 def test_that_the_folder_holds_the_promised_files(tmp_path: Path, make_dataset) -> None:
