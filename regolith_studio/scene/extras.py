@@ -74,7 +74,8 @@ def show_hidden(plotter: Any, mesh: Mesh | None, hidden: BoolArray | None) -> No
         return
     faces = mesh.faces[hidden]
     cells = np.column_stack([np.full(len(faces), 3), faces]).ravel()
-    show_named(plotter, HIDDEN, pv.PolyData(np.array(mesh.vertices), faces=cells), palette.HIDDEN_COLOUR, 1.0)
+    data = pv.PolyData(np.array(mesh.vertices), faces=cells)
+    bring_forward(show_named(plotter, HIDDEN, data, palette.HIDDEN_COLOUR, 1.0))
 
 
 def show_named(
@@ -95,6 +96,18 @@ def show_named(
     actor.prop.color, actor.prop.opacity, actor.prop.line_width = colour, opacity, line_width
     actor.SetVisibility(True)
     return actor
+
+
+def bring_forward(actor: Any, steps: int = 1) -> None:
+    """Let an actor that lies on another surface hide it, instead of the two showing in turn.
+
+    Parameters
+    ----------
+    steps
+        Of depth as it is stored; of several actors at one place the one with the most is seen.
+    """
+    actor.mapper.SetResolveCoincidentTopologyToPolygonOffset()
+    actor.mapper.SetRelativeCoincidentTopologyPolygonOffsetParameters(-float(steps), -float(steps))
 
 
 def hide_named(plotter: Any, name: str) -> None:

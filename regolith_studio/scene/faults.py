@@ -7,7 +7,7 @@ import numpy as np
 import pyvista as pv
 
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.scene.extras import hide_named, show_named
+from regolith_studio.scene.extras import bring_forward, hide_named, show_named
 
 COLOURS = {
     "filled": "#0072b2",
@@ -36,5 +36,6 @@ def show_faults(plotter: Any, faults: Mapping[str, FloatArray]) -> None:
         cells = np.column_stack([np.full(len(triangles), 3), np.arange(3 * len(triangles)).reshape(-1, 3)])
         data = pv.PolyData(np.array(triangles).reshape(-1, 3), faces=cells.ravel())
         actor = show_named(plotter, f"fault {kind}", data, colour, 1.0, line_width=2.5)
+        bring_forward(actor)
         actor.prop.show_edges, actor.prop.edge_color = kind in SMALL, colour
         actor.prop.ambient = 0.45 if kind in SMALL else 0.24
