@@ -8,6 +8,7 @@ import os
 import sys
 import threading
 import time
+from unittest.mock import patch
 
 import pytest
 
@@ -20,6 +21,7 @@ from PySide6.QtWidgets import QApplication, QWidget
 from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
 
 from regolith_studio.session.preferences import Preferences
+from regolith_studio.ui import main_window
 from regolith_studio.ui.application import make_application
 from regolith_studio.ui.translation.language import Translator, fall_silent, speak
 from regolith_studio.ui.wiring import Wiring
@@ -94,7 +96,8 @@ def shown(app):
 
     yield show
     for widget in kept:
-        widget.close()
+        with patch.object(main_window, "may_close", return_value=True):  # nobody is there to answer
+            widget.close()
         widget.deleteLater()
     kept.clear()
 

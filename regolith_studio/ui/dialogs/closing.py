@@ -9,7 +9,8 @@ from regolith_studio.session.tasks import Task
 from regolith_studio.ui.translation import tr
 
 LESSONS = ("lecture:annealing", "lecture:degrees")
-SHORT = {*(str(kind) for kind in LIVE), "load", "inspect", "warm-up", *LESSONS}
+LOOKS = ("sample:faults", "scan:preview", "repose:preview", "dataset:library", "model:compare")
+SHORT = {*(str(kind) for kind in LIVE), "load", "inspect", "warm-up", *LESSONS, *LOOKS}
 """Lanes whose work is repeated by itself when the file, or the page, is opened again."""
 
 
