@@ -44,10 +44,16 @@ class Record:
             return self.best
         return self._nearest or self.best
 
+    def _value(self, found: Attempt) -> float:
+        """Eq. 9; of one that nobody will confirm with the least box of all, not one that was followed."""
+        if found.exact:
+            return self._judge.of(found.values)
+        return self._judge.value(found.normals, found.offsets)
+
     def told(self, step: int, attempts: Iterable[Attempt]) -> Iterator[MethodStep]:
         """Keep what is better, and tell of it as `step`."""
         for found in attempts:
-            value = self._judge.of(found.values)
+            value = self._value(found)
             worth = found.better_than(self.best)
             if worth:
                 self.best = found
