@@ -189,10 +189,15 @@ def _check(
     if wrong or not keys:
         raise InputError(f"The descriptors are {', '.join(CATALOGUE)}; got {', '.join(wrong) or 'none'}.")
     n_draws, n_splits, n_repeats = counts
-    if len(sample) < FEWEST or n_draws < FEWEST or n_splits < 1 or n_repeats < 1:
+    if len(sample) < FEWEST:
         raise InputError(
-            f"Judging models needs at least {FEWEST} particles, {FEWEST} draws and one split, got "
-            f"{len(sample)}, {n_draws} and {min(n_splits, n_repeats)}."
+            f"Judging models needs at least {FEWEST} particles, half to fit and half to compare with; "
+            f"this sample has {len(sample)}."
+        )
+    if n_draws < FEWEST or n_splits < 1 or n_repeats < 1:
+        raise InputError(
+            f"Judging models needs at least {FEWEST} draws, one split and one drawing, got "
+            f"{n_draws}, {n_splits} and {n_repeats}."
         )
 
 

@@ -127,7 +127,7 @@ def test_that_a_study_becomes_tables_and_pictures(
     [
         ({"models": ["wavelets"]}, "got wavelets"),
         ({"models": []}, "got none"),
-        ({"n_draws": 5}, "at least 20 particles, 20 draws and one split"),
+        ({"n_draws": 5}, "at least 20 draws, one split and one drawing, got 5, 1 and"),
         ({"n_splits": 0}, "one split"),
         ({"n_repeats": 0}, "one split"),
         ({"keys": ["charm"]}, "got charm"),
@@ -138,6 +138,11 @@ def test_that_a_study_that_cannot_be_made_is_refused(changes: dict[str, object],
     options = {"models": ["gaussian_field"], "l_max": 4, "n_draws": 20, "n_splits": 1} | changes
     with pytest.raises(InputError, match=words):
         run(rough_sample(20), **options)
+
+
+def test_that_a_small_sample_is_told_how_many_particles_it_needs() -> None:
+    with pytest.raises(InputError, match=r"at least 20 particles.* this sample has 12\.$"):
+        run(rough_sample(12), models=["gaussian_field"], l_max=4, n_draws=20, n_splits=1)
 
 
 @pytest.mark.slow
