@@ -6,6 +6,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QColor, QGuiApplication, QPalette
 from PySide6.QtWidgets import QApplication, QWidget
 
+from regolith_studio.resources import resource
 from regolith_studio.scene import palette
 from regolith_studio.scene.palette import Surroundings
 
@@ -203,4 +204,11 @@ QTabBar::tab:selected {{ color: {theme.text}; background: {theme.base}; border-c
 QTabBar::tab:hover {{ color: {theme.text}; }}
 QTabBar::tab:focus {{ color: {theme.accent}; }}
 QScrollArea {{ border: none; }}
+QCheckBox::indicator {{ width: 1.05em; height: 1.05em; border: 1px solid {theme.muted}; border-radius: 3px;
+    background: {theme.base}; }}
+QCheckBox::indicator:hover {{ border-color: {theme.accent}; }}
+QCheckBox::indicator:checked {{ background: {theme.accent}; border-color: {theme.accent};
+    image: url("{resource("icons", "tick.svg").as_posix()}"); }}
+QCheckBox::indicator:disabled {{ border-color: {theme.border}; }}
+QCheckBox::indicator:checked:disabled {{ background: {theme.border}; }}
 """

@@ -2,7 +2,7 @@
 
 import pytest
 from PySide6.QtGui import QColor
-from PySide6.QtWidgets import QDialog, QDialogButtonBox, QLabel, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QCheckBox, QDialog, QDialogButtonBox, QLabel, QVBoxLayout, QWidget
 
 from regolith_studio.ui.dialogs.preferences import LETTERS
 from regolith_studio.ui.looks import Looks
@@ -47,3 +47,31 @@ def test_that_a_theme_reaches_dialogs_of_the_window_and_changes_no_sheet_of_the_
         assert window.palette().window().color() == QColor(theme.window)
     assert all(button.icon().isNull() for button in buttons.buttons())
     assert app.styleSheet() == everywhere
+
+
+def luminance(colour):
+    """Relative luminance of sRGB, as WCAG 2.2 defines it."""
+    parts = [value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4 for value in colour]
+    return 0.2126 * parts[0] + 0.7152 * parts[1] + 0.0722 * parts[2]
+
+
+def contrast(one, other):
+    """WCAG's ratio of two colours, 1 to 21."""
+    high, low = sorted((luminance(one), luminance(other)), reverse=True)
+    return (high + 0.05) / (low + 0.05)
+
+
+@pytest.mark.parametrize("theme", [LIGHT, DARK])
+@pytest.mark.parametrize("checked", [False, True])
+def test_that_a_check_box_stands_out_as_controls_must(app, shown, theme, checked):
+    """WCAG 2.2, 1.4.11: what shows a control and its state has a contrast of at least 3."""
+    window = QWidget()
+    box = QCheckBox(window)
+    box.setChecked(checked)
+    QVBoxLayout(window).addWidget(box)
+    apply_theme(app, theme, shown(window))
+    app.processEvents()
+    image = box.grab().toImage()
+    seen = {image.pixelColor(x, y).getRgbF()[:3] for x in range(image.width()) for y in range(image.height())}
+    ground = QColor(theme.window).getRgbF()[:3]
+    assert max(contrast(colour, ground) for colour in seen) >= 3.0
