@@ -2,7 +2,7 @@
 
 import pytest
 from PySide6.QtCore import QSize, Qt
-from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QSplitter, QWidget
 
 from regolith_studio.jobs.runners.inline import InlineRunner
 from regolith_studio.session.choices import Choices
@@ -37,6 +37,16 @@ def test_that_the_window_fits_a_small_screen_at_any_size_of_letters(shown, prefe
     assert least.width() <= SCREEN.width()
     assert least.height() <= SCREEN.height() - FRAME
     assert all(button.isVisible() for button in window.pages.buttons.values())
+
+
+@pytest.mark.parametrize(("height", "least"), [(900, 280), (500, 120)])
+def test_that_views_take_room_from_plots_in_low_windows_only(shown, preferences, app, height, least):
+    window = MainWindow(Session(InlineRunner()), preferences, "image")
+    window.resize(1480, height)
+    shown(window)
+    app.processEvents()
+    views, plots = window.page.findChild(QSplitter, "explore_rows").sizes()
+    assert views > plots >= least
 
 
 def test_that_the_sidebar_gives_up_room_before_words(shown):

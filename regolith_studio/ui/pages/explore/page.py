@@ -69,9 +69,9 @@ class ExplorePage(PageWidget):
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
         views, plots = self._rows.sizes()
-        whole = views + plots
-        if 0 < whole < LOW and views < plots:
-            self._rows.setSizes([3 * whole // 5, whole - 3 * whole // 5])
+        height = event.size().height()
+        if height < LOW and views < plots:
+            self._rows.setSizes([3 * height // 5, height - 3 * height // 5])
 
     def _place(self) -> None:
         middle = self._rows = stacked([self.triptych, self.plots], [520, 300], stretch=0)
