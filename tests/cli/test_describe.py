@@ -42,6 +42,18 @@ def test_that_a_table_names_particles_and_descriptors(command, grains: Path) -> 
         assert word in said.out
 
 
+def test_that_the_table_tells_sound_mended_and_broken_meshes_apart(command, tmp_path: Path) -> None:
+    box = trimesh.creation.box((30, 20, 10))
+    box.export(tmp_path / "whole.ply")
+    trimesh.Trimesh(box.vertices, box.faces[:, ::-1], process=False).export(tmp_path / "inside-out.ply")
+    ends = {
+        line.split()[0]: line.split()[-1] for line in command("describe", tmp_path).out.splitlines() if line
+    }
+    assert (ends["whole"], ends["inside-out"]) == ("yes", "mended")
+    left = command("describe", tmp_path / "inside-out.ply", "--no-repair").out
+    assert left.splitlines()[1].split()[-1] == "no"
+
+
 def test_that_a_file_that_is_no_mesh_is_one_sentence(command, tmp_path: Path) -> None:
     path = tmp_path / "letter.stl"
     path.write_text("Dear Sir")

@@ -52,10 +52,16 @@ def short_table(particles: Sequence[Particle], facts: Sequence[Examined]) -> Tab
     keys = ("volume", "equivalent_radius", "surface_area", *(key for key in LOSS_KEYS if key != "volume"))
     columns = [Column(CATALOGUE[key].symbol, _POWERS[CATALOGUE[key].dimension]) for key in keys]
     rows = [
-        (particle.name, *[_value(each, key) for key in keys], "yes" if each.health.sound else "no")
+        (particle.name, *[_value(each, key) for key in keys], _soundness(particle, each))
         for particle, each in zip(particles, facts, strict=True)
     ]
     return Table("", (Column("name"), *columns, Column("sound")), tuple(rows))
+
+
+def _soundness(particle: Particle, facts: Examined) -> str:
+    if not facts.health.sound:
+        return "no"
+    return "mended" if particle.repair is not None and particle.repair.actions else "yes"
 
 
 class Named(Protocol):
