@@ -193,7 +193,7 @@ def test_that_models_are_judged_on_what_they_have_not_seen(command, fit: Path, t
         ("ma165", (), "holds no measured particles"),
         (None, ("--models", "wavelets"), "got wavelets"),
         (None, ("--descriptors", "charm"), "got charm"),
-        (None, ("--splits", 0), "at least 20 particles"),
+        (None, ("--splits", 0), "one split and one drawing, got 20, 0 and"),
     ],
 )
 def test_that_a_study_that_cannot_be_made_is_one_sentence(
