@@ -32,11 +32,6 @@ class Solid:
     outcome: CoarsenedParticle
 
 
-def row_labels() -> tuple[str, ...]:
-    """What the rows of Fig. 8 are called."""
-    return tuple(row.label for row in paper_rows())
-
-
 def draw_solids(
     particles: Sequence[Particle], order: CoarseningOrder, rows: Sequence[StudyRow] | None = None
 ) -> Steps:

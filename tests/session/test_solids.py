@@ -9,7 +9,8 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.coarsening import CoarseningOrder
 from regolith_studio.jobs.events import Partial, Progress
 from regolith_studio.session.choices import Choices
-from regolith_studio.session.solids import draw_solids, row_labels
+from regolith_studio.session.solids import draw_solids
+from regolith_studio.studies.loss_rows import paper_rows
 
 
 @pytest.fixture(scope="module")
@@ -26,7 +27,7 @@ def test_that_each_particle_is_coarsened_once_for_each_row(order: CoarseningOrde
             told.append(next(story))
     except StopIteration as end:
         solids = end.value
-    rows = len(row_labels())
+    rows = len(paper_rows())
     assert {(each.row, each.column) for each in solids} == set(np.ndindex(rows, 2))
     assert all(each.outcome.coarsened.n_faces == 12 for each in solids)
     assert [len(each.value) for each in told if isinstance(each, Partial)] == list(range(1, 2 * rows + 1))
