@@ -5,27 +5,15 @@ from typing import Annotated
 
 import typer
 
-from regolith_studio.cli.coarsen import FACES, choices_from, fineness_from
+from regolith_studio.cli.grouping import grouped
+from regolith_studio.cli.option_groups import CoarseningOptions, FinenessOptions, ReadingOptions
 from regolith_studio.cli.options import (
-    Faces,
     Folder,
     Jobs,
     Json,
-    LMax,
-    MaxError,
     Meshes,
-    Method,
     Preset,
-    RadiusRule,
-    Reference,
-    Repair,
     Seed,
-    Settings,
-    StarPoint,
-    Target,
-    Triangles,
-    Unit,
-    Weights,
     as_bad_use,
     usable_file,
     values,
@@ -43,21 +31,14 @@ app = typer.Typer(
 
 
 @app.command("build")
+@grouped
 def build(
+    *,
     meshes: Meshes,
     output: Folder,
-    faces: Faces = FACES,
-    triangles: Triangles = None,
-    max_error: MaxError = None,
-    method: Method = "",
+    fineness: FinenessOptions,
     preset: Preset = "",
-    weight: Weights = None,
-    set_: Settings = None,
-    target: Target = "fit",
-    l_max: LMax = 10,
-    star_point: StarPoint = "",
-    rule: RadiusRule = "volume",
-    reference: Reference = "sphere",
+    how: CoarseningOptions,
     representatives: Annotated[
         int,
         typer.Option(
@@ -84,14 +65,13 @@ def build(
     ] = None,
     name: Annotated[str, typer.Option("--name", help="Name of the dataset; the folder's if left out.")] = "",
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace what is in the folder.")] = False,
-    unit: Unit = "um",
-    repair: Repair = True,
+    reading: ReadingOptions,
     json: Json = False,
     jobs: Jobs = 1,
     seed: Seed = 0,
 ) -> None:
     """Coarsen the meshes, or N that stand for all of them, and write a dataset folder."""
-    from regolith_studio.cli.inputs import exit_code, read_inputs
+    from regolith_studio.cli.inputs import exit_code
     from regolith_studio.cli.terminal import complain, follow, print_json
     from regolith_studio.dataset.size_spec import parse_sizes
     from regolith_studio.jobs.building import DatasetOptions, build_dataset_folder, check_place
@@ -101,15 +81,12 @@ def build(
     from regolith_studio.studies.representatives import quality_table
     from regolith_studio.studies.tables import csv_text
 
-    wish = choices_from(
-        *(faces, method, preset, weight, set_, target, l_max, seed, star_point, rule, reference),
-        fineness=fineness_from(faces, triangles, max_error),
-    )
+    wish = how.choices(preset, seed=seed, **fineness.changes)
     with as_bad_use():
         parse_sizes(sizes)
         chosen = RepresentativesOrder.of(representatives or 10, weighting, size_importance, seed)
     check_place(output, overwrite)
-    loaded = read_inputs(meshes, unit, repair)
+    loaded = reading.read(meshes)
     if quality_curve is not None:
         population = follow(measure_population(loaded.particles, jobs))
         curve = follow(measure_quality(population, chosen))

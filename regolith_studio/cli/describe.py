@@ -5,7 +5,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from regolith_studio.cli.options import Jobs, Json, Meshes, Repair, Seed, Unit
+from regolith_studio.cli.grouping import grouped
+from regolith_studio.cli.option_groups import ReadingOptions
+from regolith_studio.cli.options import Jobs, Json, Meshes, Seed
 
 if TYPE_CHECKING:
     from regolith_studio.session.results import ParticleEntry
@@ -32,20 +34,21 @@ Csv = Annotated[
 ]
 
 
+@grouped
 def describe(
+    *,
     meshes: Meshes,
     statistics: Statistics = False,
     weighting: Weighting = "number",
     border_weights: BorderWeights = True,
     csv: Csv = None,
-    unit: Unit = "um",
-    repair: Repair = True,
+    reading: ReadingOptions,
     json: Json = False,
     jobs: Jobs = 1,
     seed: Seed = 0,
 ) -> None:
     """Measure particles: volume, area, sphericity, diameters ..., and what is wrong with their meshes."""
-    from regolith_studio.cli.inputs import exit_code, read_inputs, start_reader
+    from regolith_studio.cli.inputs import exit_code, start_reader
 
     if weighting not in ("number", "volume"):
         raise typer.BadParameter(f"Particles weigh by number or by volume, not by {weighting!r}.")
@@ -56,7 +59,7 @@ def describe(
     from regolith_studio.session.results import ParticleEntry
 
     del seed  # taken by every command; nothing here is random
-    loaded = read_inputs(meshes, unit, repair)
+    loaded = reading.read(meshes)
     facts = follow(examine_sample(loaded.particles, workers=jobs))
     pairs = list(zip(loaded.particles, facts, strict=True))
     entries = [ParticleEntry(p.name, p, each.health, each.descriptors, sight=each.sight) for p, each in pairs]

@@ -1,20 +1,18 @@
 """``extract``: particle meshes from a volume of grey values or labels."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
+from regolith_studio.cli.grouping import grouped
 from regolith_studio.cli.options import Folder, Jobs, Json, Seed, as_bad_use
-
-if TYPE_CHECKING:
-    from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
-    from regolith_studio.imaging.volume import VolumeKind
-    from regolith_studio.jobs.grain_recipe import GrainRecipe
-    from regolith_studio.readers.volume_header import RawLayout
+from regolith_studio.cli.volume_options import GrainOptions, VolumeOptions
 
 
+@grouped
 def extract(
+    *,
     volume: Annotated[
         Path,
         typer.Argument(
@@ -22,88 +20,8 @@ def extract(
         ),
     ],
     output: Folder,
-    kind: Annotated[str, typer.Option("--kind", help="labels or grey; else guessed.", metavar="KIND")] = "",
-    voxel_size: Annotated[
-        str,
-        typer.Option(
-            "--voxel-size",
-            help="Edge of a voxel, or X,Y,Z, in the unit; else what the file says.",
-            metavar="SIZE",
-        ),
-    ] = "",
-    unit: Annotated[
-        str, typer.Option("--unit", help="Unit of the voxel size: um mm m nm cm.", metavar="U")
-    ] = "",
-    dataset: Annotated[
-        str, typer.Option("--dataset", help="Which volume of an HDF5 file.", metavar="NAME")
-    ] = "",
-    axes: Annotated[
-        str,
-        typer.Option(
-            "--axes", help="NPY and HDF5: order of the array's axes; else zyx, slices first.", metavar="AXES"
-        ),
-    ] = "",
-    shape: Annotated[
-        str, typer.Option("--shape", help="Raw files: voxels along x, y, z.", metavar="NX,NY,NZ")
-    ] = "",
-    dtype: Annotated[
-        str, typer.Option("--dtype", help="Raw files: uint8, uint16, float32, ...", metavar="TYPE")
-    ] = "uint8",
-    byte_order: Annotated[
-        str, typer.Option("--byte-order", help="Raw files: little or big.", metavar="ORDER")
-    ] = "little",
-    offset: Annotated[
-        int, typer.Option("--offset", help="Raw files: bytes before the first voxel.", metavar="N")
-    ] = 0,
-    denoise: Annotated[
-        str,
-        typer.Option(
-            "--denoise", help="Grey volumes: none gaussian median non-local-means.", metavar="METHOD"
-        ),
-    ] = "median",
-    threshold: Annotated[
-        str,
-        typer.Option(
-            "--threshold",
-            help="Grey volumes: otsu, multi-otsu, multi-otsu:CLASSES:BOUNDARY, a grey value, or "
-            "probability[:P] for a probability map.",
-            metavar="HOW",
-        ),
-    ] = "otsu",
-    dark: Annotated[
-        bool, typer.Option("--dark", help="Grains are darker than what is between them.")
-    ] = False,
-    opening: Annotated[
-        int, typer.Option("--opening", help="Remove specks and bridges, in voxels.", metavar="N")
-    ] = 0,
-    closing: Annotated[int, typer.Option("--closing", help="Close cracks, in voxels.", metavar="N")] = 0,
-    h_maxima: Annotated[
-        float,
-        typer.Option(
-            "--h-maxima",
-            help="How far a bump must stand out to be a grain of its own, in voxels: the larger, the "
-            "fewer grains.",
-            metavar="H",
-        ),
-    ] = 0.8,
-    split: Annotated[bool, typer.Option("--split/--no-split", help="Part touching grains.")] = True,
-    min_voxels: Annotated[
-        int, typer.Option("--min-voxels", help="Leave out what has fewer voxels.", metavar="N")
-    ] = 268,
-    border: Annotated[
-        str,
-        typer.Option(
-            "--border", help="Grains that the border cuts: exclude (and weight) or keep.", metavar="HOW"
-        ),
-    ] = "exclude",
-    surface: Annotated[
-        str,
-        typer.Option(
-            "--surface",
-            help="Grey volumes: take surfaces from the grey values about each grain, or from its mask.",
-            metavar="FROM",
-        ),
-    ] = "grey",
+    contents: VolumeOptions,
+    grains: GrainOptions,
     recipe: Annotated[
         Path | None,
         typer.Option("--recipe", help="Take all settings from an extraction.json instead.", metavar="FILE"),
@@ -117,32 +35,15 @@ def extract(
     Writes one STL a particle, particles.csv and extraction.json with all settings.
     """
     from regolith_studio.cli.terminal import follow, print_json
-    from regolith_studio.jobs.extracting import VolumeInput, extract_measured
+    from regolith_studio.jobs.extracting import extract_measured
     from regolith_studio.jobs.grain_recipe import read_grain_recipe
-    from regolith_studio.readers.units import unit_factor
     from regolith_studio.session.outputs.extraction import ExtractionFolder
     from regolith_studio.session.outputs.staging import staged_folder
 
     del seed  # taken by every command; nothing here is random
     with as_bad_use():
-        given = VolumeInput(
-            volume,
-            _edges(voxel_size),
-            unit or None,
-            volume_kind(kind),
-            dataset or None,
-            _raw_layout(shape, dtype, byte_order, offset),
-            axes or None,
-        )
-        settings = (
-            read_grain_recipe(recipe)
-            if recipe
-            else _recipe(
-                denoise, threshold, dark, opening, closing, h_maxima, split, min_voxels, border, surface
-            )
-        )
-        if unit:
-            unit_factor(unit)
+        given = contents.of(volume)
+        settings = read_grain_recipe(recipe) if recipe else grains.recipe
     with staged_folder(output) as stage:
         folder = ExtractionFolder(stage)
         done = follow(extract_measured(given, settings, output.parent, folder.add, jobs))
@@ -151,98 +52,3 @@ def extract(
         print_json(document)
     else:
         typer.echo(f"{done.extraction.summary} Written to {output}.")
-
-
-def volume_kind(text: str) -> "VolumeKind | None":
-    """``labels``, ``grey`` or nothing, for guessing."""
-    match text:
-        case "":
-            return None
-        case "labels" | "grey":
-            return text
-        case _:
-            raise typer.BadParameter(f"A volume holds labels or grey values, not {text!r}.")
-
-
-def threshold_from(text: str, dark: bool) -> "ThresholdSettings":
-    """The threshold that ``otsu``, ``multi-otsu:4:2``, ``probability:0.6`` or ``87.5`` stands for."""
-    from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
-
-    name, _, rest = text.partition(":")
-    try:
-        match name:
-            case "otsu" if not rest:
-                return ThresholdSettings("otsu", dark=dark)
-            case "multi-otsu":
-                classes, boundary = map(int, rest.split(":")) if rest else (3, 1)
-                return ThresholdSettings("multi-otsu", classes=classes, boundary=boundary, dark=dark)
-            case "probability":
-                return ThresholdSettings("probability", float(rest or 0.5), dark=dark)
-            case _:
-                return ThresholdSettings("manual", float(text), dark=dark)
-    except ValueError:
-        raise typer.BadParameter(
-            f"A threshold is otsu, multi-otsu[:CLASSES:BOUNDARY], probability[:P] or a number, got {text!r}."
-        ) from None
-
-
-def _recipe(
-    denoise: str,
-    threshold: str,
-    dark: bool,
-    opening: int,
-    closing: int,
-    h_maxima: float,
-    split: bool,
-    min_voxels: int,
-    border: str,
-    surface: str,
-) -> "GrainRecipe":
-    from regolith_studio.imaging.extraction import ExtractionSettings
-    from regolith_studio.imaging.segmentation.cleaning import CleaningSettings
-    from regolith_studio.imaging.segmentation.denoising import DenoiseSettings
-    from regolith_studio.imaging.segmentation.segment import SegmentationSettings
-    from regolith_studio.imaging.segmentation.splitting import SplittingSettings
-    from regolith_studio.jobs.grain_recipe import GrainRecipe
-
-    if border not in ("exclude", "keep"):
-        raise typer.BadParameter(f"Grains at the border are to exclude or to keep, not {border!r}.")
-    least = min(min_voxels, CleaningSettings.min_voxels)
-    return GrainRecipe(
-        SegmentationSettings(
-            DenoiseSettings(denoise),  # type: ignore[arg-type]  # checked by the settings
-            threshold_from(threshold, dark),
-            CleaningSettings(opening, closing, min_voxels=least),
-            SplittingSettings(split, h_maxima),
-        ),
-        ExtractionSettings(
-            exclude_border=border == "exclude",
-            min_voxels=min_voxels,
-            surface=surface,  # type: ignore[arg-type]  # checked by the settings
-        ),
-    )
-
-
-def _edges(text: str) -> tuple[float, ...] | None:
-    """One edge or three, written as ``2.3`` or ``2.3,2.3,5``."""
-    if not text:
-        return None
-    try:
-        edges = tuple(float(part) for part in text.split(","))
-    except ValueError:
-        edges = ()
-    if len(edges) not in (1, 3) or not all(0.0 < edge < float("inf") for edge in edges):
-        raise typer.BadParameter(f"A voxel size is a positive number or three as X,Y,Z, got {text!r}.")
-    return edges * 3 if len(edges) == 1 else edges
-
-
-def _raw_layout(shape: str, dtype: str, byte_order: str, offset: int) -> "RawLayout | None":
-    from regolith_studio.readers.volume_header import RawLayout
-
-    if not shape:
-        return None
-    try:
-        nx, ny, nz = (int(part) for part in shape.split(","))
-    except ValueError:
-        raise typer.BadParameter(f"Write the shape of a raw file as NX,NY,NZ, got {shape!r}.") from None
-    return RawLayout((nx, ny, nz), dtype, byte_order, offset)

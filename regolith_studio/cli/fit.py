@@ -5,22 +5,9 @@ from typing import Annotated
 
 import typer
 
-from regolith_studio.cli.options import (
-    Jobs,
-    Json,
-    Level,
-    LMax,
-    Meshes,
-    RadiusRule,
-    Reference,
-    Repair,
-    Seed,
-    StarPoint,
-    Unit,
-    as_bad_use,
-    usable,
-    usable_file,
-)
+from regolith_studio.cli.grouping import grouped
+from regolith_studio.cli.option_groups import ExpansionOptions, ReadingOptions
+from regolith_studio.cli.options import Jobs, Json, Level, LMax, Meshes, Seed, as_bad_use, usable, usable_file
 
 Stem = Annotated[
     Path,
@@ -41,34 +28,32 @@ Surfaces = Annotated[
 ]
 
 
+@grouped
 def fit(
+    *,
     meshes: Meshes,
     output: Stem,
     l_max: LMax = 30,
-    star_point: StarPoint = "",
-    rule: RadiusRule = "volume",
-    reference: Reference = "sphere",
+    radii: ExpansionOptions,
     surfaces: Surfaces = None,
     level: Level = 4,
-    unit: Unit = "um",
-    repair: Repair = True,
+    reading: ReadingOptions,
     json: Json = False,
     jobs: Jobs = 1,
     seed: Seed = 0,
 ) -> None:
     """Fit spherical harmonics to meshes; write coefficients and spectrum."""
-    from regolith_studio.cli.inputs import exit_code, read_inputs
+    from regolith_studio.cli.inputs import exit_code
     from regolith_studio.cli.terminal import complain, follow, print_json
-    from regolith_studio.harmonics.expansion import Expansion
     from regolith_studio.jobs.fitting import FitOrder, fit_sample
     from regolith_studio.session.choices import Choices
     from regolith_studio.session.outputs.fits import FittedSample, fits_document, write_fits, write_surfaces
 
     with as_bad_use():
         Choices(l_max=l_max, seed=seed, level=level)
-        order = FitOrder(l_max, Expansion(star_point, rule, reference))
+        order = FitOrder(l_max, radii.expansion)
     stem = output.with_suffix("") if output.suffix in (".json", ".npz") else output
-    loaded = read_inputs(meshes, unit, repair)
+    loaded = reading.read(meshes)
     sample = FittedSample.of(loaded.particles, follow(fit_sample(loaded.particles, order, jobs)))
     complain(f"{name}: {sentence}" for name, sentence in sample.failed)
     holes: dict[str, str] = {}

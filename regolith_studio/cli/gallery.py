@@ -5,19 +5,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from regolith_studio.cli.options import (
-    Degrees,
-    Folder,
-    Json,
-    Meshes,
-    RadiusRule,
-    Reference,
-    Repair,
-    StarPoint,
-    Unit,
-    as_bad_use,
-    whole_numbers,
-)
+from regolith_studio.cli.grouping import grouped
+from regolith_studio.cli.option_groups import ExpansionOptions, ReadingOptions
+from regolith_studio.cli.options import Degrees, Folder, Json, Meshes, as_bad_use, whole_numbers
 
 if TYPE_CHECKING:
     from regolith_studio.geometry.mesh import Mesh
@@ -28,31 +18,29 @@ Animation = Annotated[
 ]
 
 
+@grouped
 def gallery(
+    *,
     meshes: Meshes,
     output: Folder,
     degrees: Degrees = "0,1,2,5,10,20,30",
     animation: Animation = True,
-    star_point: StarPoint = "",
-    rule: RadiusRule = "volume",
-    reference: Reference = "sphere",
-    unit: Unit = "um",
-    repair: Repair = True,
+    radii: ExpansionOptions,
+    reading: ReadingOptions,
     json: Json = False,
 ) -> None:
     """Draw each particle and its fits at several l_max (Fig. 2)."""
-    from regolith_studio.cli.inputs import exit_code, read_inputs
+    from regolith_studio.cli.inputs import exit_code
     from regolith_studio.cli.picture import draw_apart
     from regolith_studio.cli.terminal import complain, follow, print_json
-    from regolith_studio.harmonics.expansion import Expansion
     from regolith_studio.harmonics.fit import HarmonicFit
     from regolith_studio.jobs.fitting import FIT_DEGREE, FitOrder, fit_sample
     from regolith_studio.session.outputs.staging import staged_folder
 
     wanted = whole_numbers(degrees, 0, FIT_DEGREE)
     with as_bad_use():
-        order = FitOrder(max(wanted), Expansion(star_point, rule, reference))
-    loaded = read_inputs(meshes, unit, repair)
+        order = FitOrder(max(wanted), radii.expansion)
+    loaded = reading.read(meshes)
     fits = follow(fit_sample(loaded.particles, order))
     drawn: list[str] = []
     failed = 0

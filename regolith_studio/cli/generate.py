@@ -5,15 +5,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from regolith_studio.cli.grouping import grouped
+from regolith_studio.cli.option_groups import ReadingOptions
 from regolith_studio.cli.options import (
     Folder,
     Jobs,
     Json,
     Level,
-    Repair,
     Seed,
     Settings,
-    Unit,
     as_bad_use,
     values,
 )
@@ -64,7 +64,9 @@ ModelFile = Annotated[
 ]
 
 
+@grouped
 def generate(
+    *,
     sources: Sources,
     output: Folder,
     n: Number = 100,
@@ -76,8 +78,7 @@ def generate(
     level: Level = 4,
     names: Names = "",
     save_model: ModelFile = None,
-    unit: Unit = "um",
-    repair: Repair = True,
+    reading: ReadingOptions,
     json: Json = False,
     jobs: Jobs = 1,
     seed: Seed = 0,
@@ -94,7 +95,7 @@ def generate(
         order = GenerateOrder(model, tuple(values(set_, "setting").items()), l_max, n, seed, size_range)
         if format_ not in ("stl", "npz"):
             raise typer.BadParameter(f"The format must be stl or npz, got {format_!r}.")
-    source = shape_source(sources, unit, order, jobs, repair)
+    source = shape_source(sources, reading, order, jobs)
     complain(source.notes)
     fitted = _named(follow(fit_model(source, order)), names)
     draws = follow(draw(fitted, order))
@@ -113,10 +114,9 @@ def generate(
 
 def shape_source(
     sources: list[str],
-    unit: str,
+    reading: ReadingOptions,
     order: "GenerateOrder | None" = None,
     jobs: int = 1,
-    repair: bool = True,
 ) -> "ShapeSource":
     """What the arguments of a command name: one fit, card or model, or meshes, which are expanded.
 
@@ -125,7 +125,6 @@ def shape_source(
     FileError
         If nothing can be read.
     """
-    from regolith_studio.cli.inputs import read_inputs
     from regolith_studio.cli.terminal import follow
     from regolith_studio.jobs.generating import expansion_of, sample_of_meshes
     from regolith_studio.readers.shape_files import is_shape_source, read_shape_source
@@ -135,7 +134,7 @@ def shape_source(
         raise typer.BadParameter(f"Give one fit, card or model, or meshes only; {named[0]} is not a mesh.")
     if named:
         return read_shape_source(named[0])
-    loaded = read_inputs([Path(source) for source in sources], unit, repair)
+    loaded = reading.read([Path(source) for source in sources])
     found: ShapeSource = follow(sample_of_meshes(loaded.particles, expansion_of(order), jobs))
     return found
 

@@ -2,11 +2,12 @@
 
 import dataclasses
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from regolith_studio.cli.options import as_bad_use, values
+from regolith_studio.cli.options import Settings, as_bad_use, values
 
 if TYPE_CHECKING:
     from regolith_studio.dem.evaluation.settings import EvaluationSettings
@@ -25,44 +26,41 @@ Measure = Annotated[
 ]
 
 
+@dataclass(frozen=True)
+class CaseOptions:
+    """How a lifting cylinder is simulated and its pile measured."""
+
+    engine: EngineKey = "mujoco"
+    contact: Contact = None
+    test: Test = None
+    set_: Settings = None
+    measure: Measure = None
+
+    def order(self, **case: Any) -> "ReposeOrder":
+        """The order that the options stand for; a wrong one is bad use. `case`: fields of ``ReposeCase``."""
+        from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
+        from regolith_studio.dem.case import ReposeCase
+        from regolith_studio.dem.engines import engine_named
+        from regolith_studio.jobs.repose import ReposeOrder
+
+        with as_bad_use():
+            code = engine_named(self.engine)
+        test = filled(LiftingCylinderTest, values(self.test, "value"), "value of the test")
+        contact = filled(ContactParameters, values(self.contact, "value"), "contact parameter")
+        return ReposeOrder(
+            filled(ReposeCase, {"test": test, "contact": contact, **case}, "value of the case"),
+            self.engine,
+            filled(code.Settings, values(self.set_, "setting"), f"setting of {code.label}"),
+            evaluation_settings(self.measure),
+        )
+
+
 def evaluation_settings(entries: list[str] | None) -> "EvaluationSettings":
     """Settings of the evaluation from KEY=VALUE entries; a wrong one is bad use."""
     from regolith_studio.dem.evaluation.settings import EvaluationSettings
 
     found: EvaluationSettings = filled(EvaluationSettings, values(entries, "setting"), "evaluation setting")
     return found
-
-
-def order_from(
-    engine: str,
-    contact: list[str] | None,
-    test: list[str] | None,
-    settings: list[str] | None,
-    measure: list[str] | None,
-    **case: Any,
-) -> "ReposeOrder":
-    """The order that options stand for; a wrong one is bad use. `case` are fields of ``ReposeCase``."""
-    from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
-    from regolith_studio.dem.case import ReposeCase
-    from regolith_studio.dem.engines import engine_named
-    from regolith_studio.jobs.repose import ReposeOrder
-
-    with as_bad_use():
-        code = engine_named(engine)
-    return ReposeOrder(
-        filled(
-            ReposeCase,
-            {
-                "test": filled(LiftingCylinderTest, values(test, "value"), "value of the test"),
-                "contact": filled(ContactParameters, values(contact, "value"), "contact parameter"),
-                **case,
-            },
-            "value of the case",
-        ),
-        engine,
-        filled(code.Settings, values(settings, "setting"), f"setting of {code.label}"),
-        evaluation_settings(measure),
-    )
 
 
 def filled(kind: type[Any], given: Mapping[str, Any], what: str) -> Any:

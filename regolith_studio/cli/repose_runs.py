@@ -5,26 +5,18 @@ from typing import Annotated, Any
 
 import typer
 
-from regolith_studio.cli.options import Folder, Jobs, Json, Seed, Settings, as_bad_use, values
-from regolith_studio.cli.repose_options import (
-    Contact,
-    EngineKey,
-    Measure,
-    Particles,
-    Test,
-    order_from,
-)
+from regolith_studio.cli.grouping import grouped
+from regolith_studio.cli.options import Folder, Jobs, Json, Seed, as_bad_use, values
+from regolith_studio.cli.repose_options import CaseOptions, Particles
 
 
+@grouped
 def run(
+    *,
     dataset: Annotated[Path, typer.Argument(metavar="DATASET", help="A dataset folder.")],
     output: Folder,
     particles: Particles = 300,
-    engine: EngineKey = "mujoco",
-    contact: Contact = None,
-    test: Test = None,
-    set_: Settings = None,
-    measure: Measure = None,
+    how: CaseOptions,
     coarse_graining: Annotated[
         float,
         typer.Option(
@@ -46,12 +38,7 @@ def run(
     from regolith_studio.jobs.repose import simulate_repose
 
     del jobs  # a run is one process
-    order = order_from(
-        engine,
-        contact,
-        test,
-        set_,
-        measure,
+    order = how.order(
         n_particles=particles,
         coarse_graining=coarse_graining,
         shapes="spheres" if spheres else "polyhedra",
@@ -66,7 +53,9 @@ def run(
         typer.echo(run_in_words(done.document))
 
 
+@grouped
 def study(
+    *,
     datasets: Annotated[list[Path], typer.Argument(metavar="DATASET...", help="Dataset folders.")],
     output: Folder,
     vary: Annotated[
@@ -79,11 +68,7 @@ def study(
     ] = "",
     repeats: Annotated[int, typer.Option("--repeats", min=1, help="Seeds a value.", metavar="N")] = 1,
     particles: Particles = 1000,
-    engine: EngineKey = "mujoco",
-    contact: Contact = None,
-    test: Test = None,
-    set_: Settings = None,
-    measure: Measure = None,
+    how: CaseOptions,
     json: Json = False,
     jobs: Jobs = 1,
     seed: Seed = 0,
@@ -95,7 +80,7 @@ def study(
 
     del jobs  # one run after the other, so that what is there already is known
     key, points = _varied(vary)
-    order = order_from(engine, contact, test, set_, measure, n_particles=particles, seed=seed)
+    order = how.order(n_particles=particles, seed=seed)
     rows = []
     for folder in datasets:
         name = (key if len(datasets) == 1 else f"{key} {folder.name}") if points else "dataset"

@@ -1,12 +1,14 @@
 """``study``: tables and figures over a sample."""
 
+from collections.abc import Sequence
 from functools import partial
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from regolith_studio.cli import variations
-from regolith_studio.cli.coarsen import choices_from
+from regolith_studio.cli.grouping import grouped
+from regolith_studio.cli.option_groups import FACES, CoarseningOptions, ExpansionOptions, ReadingOptions
 from regolith_studio.cli.options import (
     Degrees,
     Faces,
@@ -16,22 +18,17 @@ from regolith_studio.cli.options import (
     Level,
     LMax,
     Meshes,
-    Method,
-    RadiusRule,
-    Reference,
-    Repair,
     Resume,
     Seed,
-    Settings,
-    StarPoint,
-    Target,
-    Unit,
-    Weights,
     as_bad_use,
     whole_numbers,
 )
 from regolith_studio.cli.variations import BoxMetric, check_box, conclude
 from regolith_studio.cli.whole_help import WholeHelp
+
+if TYPE_CHECKING:
+    from regolith_studio.session.choices import Choices
+    from regolith_studio.studies.loss_rows import StudyRow
 
 Below = Annotated[
     float,
@@ -83,25 +80,23 @@ app = typer.Typer(
 
 
 @app.command("lmax")
+@grouped
 def lmax(
+    *,
     meshes: Meshes,
     output: Folder,
     degrees: Degrees = "1-20",
     level: Level = 4,
     below: Below = 5.0,
-    star_point: StarPoint = "",
-    rule: RadiusRule = "volume",
-    reference: Reference = "sphere",
-    unit: Unit = "um",
-    repair: Repair = True,
+    radii: ExpansionOptions,
+    reading: ReadingOptions,
     json: Json = False,
     jobs: Jobs = 1,
     resume: Resume = False,
     seed: Seed = 0,
 ) -> None:
     """RMSRE of the descriptors against l_max (Fig. 3)."""
-    from regolith_studio.cli.inputs import exit_code, read_inputs
-    from regolith_studio.harmonics.expansion import Expansion
+    from regolith_studio.cli.inputs import exit_code
     from regolith_studio.jobs.studying import study_lmax
     from regolith_studio.session.choices import L_MAX_LIMIT, Choices
     from regolith_studio.studies.lmax import enough_degrees
@@ -109,10 +104,9 @@ def lmax(
     wanted = whole_numbers(degrees, 0, L_MAX_LIMIT)
     with as_bad_use():
         Choices(level=level, seed=seed)
-        expansion = Expansion(star_point, rule, reference)
-    loaded = read_inputs(meshes, unit, repair)
+    loaded = reading.read(meshes)
     study = partial(study_lmax, loaded.particles, jobs, seed, degrees=wanted, level=level)
-    steps = partial(study, expansion=expansion)
+    steps = partial(study, expansion=radii.expansion)
     found = conclude("lmax_study", steps, output, json, resume)
     if not json:
         typer.echo(enough_degrees(found, below / 100))
@@ -120,80 +114,62 @@ def lmax(
 
 
 @app.command("coarsening")
+@grouped
 def coarsening(
+    *,
     meshes: Meshes,
     output: Folder,
-    faces: Faces = 20,
-    method: Method = "",
+    faces: Faces = FACES,
     loss: Losses = None,
-    weight: Weights = None,
-    set_: Settings = None,
-    target: Target = "fit",
-    l_max: LMax = 10,
-    star_point: StarPoint = "",
-    rule: RadiusRule = "volume",
-    reference: Reference = "sphere",
+    how: CoarseningOptions,
     box: BoxMetric = "exact",
-    unit: Unit = "um",
-    repair: Repair = True,
+    reading: ReadingOptions,
     json: Json = False,
     jobs: Jobs = 1,
     resume: Resume = False,
     seed: Seed = 0,
 ) -> None:
     """RMSRE of the descriptors for each set of loss weights (Fig. 8)."""
-    from regolith_studio.cli.inputs import exit_code, read_inputs
+    from regolith_studio.cli.inputs import exit_code
     from regolith_studio.jobs.studying import study_coarsening
-    from regolith_studio.session.variations import CHOSEN, chosen_rows
-    from regolith_studio.studies.loss_rows import PAPER_ROWS
 
     check_box(box)
-    wish = choices_from(faces, method, "", weight, set_, target, l_max, seed, star_point, rule, reference)
-    names = tuple(loss or (PAPER_ROWS if not weight else (*PAPER_ROWS, CHOSEN)))
-    with as_bad_use():
-        rows = chosen_rows(names, wish)
-    loaded = read_inputs(meshes, unit, repair)
+    wish = how.choices(n_faces=faces, seed=seed)
+    rows = _rows(loss, wish, bool(how.weight))
+    loaded = reading.read(meshes)
     study = partial(study_coarsening, loaded.particles, wish.order, jobs, rows=rows, box_metric=box)
     conclude("coarsening_study", study, output, json, resume)
     raise typer.Exit(exit_code(meshes, loaded))
 
 
 @app.command("solids")
+@grouped
 def solids(
+    *,
     meshes: Meshes,
     output: Folder,
-    faces: Faces = 20,
-    method: Method = "",
+    faces: Faces = FACES,
     loss: Losses = None,
-    weight: Weights = None,
-    set_: Settings = None,
-    target: Target = "fit",
-    l_max: LMax = 10,
-    star_point: StarPoint = "",
-    rule: RadiusRule = "volume",
-    reference: Reference = "sphere",
-    unit: Unit = "um",
-    repair: Repair = True,
+    how: CoarseningOptions,
+    reading: ReadingOptions,
     json: Json = False,
     seed: Seed = 0,
 ) -> None:
     """The polyhedra that each set of loss weights makes of each particle (Fig. 7)."""
-    from regolith_studio.cli.inputs import exit_code, read_inputs
+    from regolith_studio.cli.inputs import exit_code
     from regolith_studio.session.solids import study_solids
-    from regolith_studio.session.variations import CHOSEN, chosen_rows
-    from regolith_studio.studies.loss_rows import PAPER_ROWS
 
-    wish = choices_from(faces, method, "", weight, set_, target, l_max, seed, star_point, rule, reference)
-    names = tuple(loss or (PAPER_ROWS if not weight else (*PAPER_ROWS, CHOSEN)))
-    with as_bad_use():
-        rows = chosen_rows(names, wish)
-    loaded = read_inputs(meshes, unit, repair)
+    wish = how.choices(n_faces=faces, seed=seed)
+    rows = _rows(loss, wish, bool(how.weight))
+    loaded = reading.read(meshes)
     conclude("solids_study", partial(study_solids, loaded.particles, wish.order, rows), output, json)
     raise typer.Exit(exit_code(meshes, loaded))
 
 
 @app.command("population")
+@grouped
 def population(
+    *,
     sources: SampleSources,
     output: Folder,
     models: Models = "",
@@ -202,8 +178,7 @@ def population(
     splits: Splits = 5,
     repeats: Repeats = 5,
     descriptors: DescriptorKeys = "",
-    unit: Unit = "um",
-    repair: Repair = True,
+    reading: ReadingOptions,
     json: Json = False,
     jobs: Jobs = 1,
     resume: Resume = False,
@@ -222,7 +197,7 @@ def population(
 
     with as_bad_use():
         order = GenerateOrder(l_max=l_max, seed=seed)
-    source = shape_source(sources, unit, order, jobs, repair)
+    source = shape_source(sources, reading, order, jobs)
     complain(source.notes)
     if not isinstance(source.content, Sample):
         raise InputError(
@@ -244,6 +219,15 @@ def population(
     if not json:
         typer.echo()
         print_table(target_table(study))
+
+
+def _rows(names: Sequence[str] | None, wish: "Choices", weighted: bool) -> "tuple[StudyRow, ...]":
+    """The rows of a study by name; without names Fig. 8's, and those that the options weight."""
+    from regolith_studio.session.variations import CHOSEN, chosen_rows
+    from regolith_studio.studies.loss_rows import PAPER_ROWS
+
+    with as_bad_use():
+        return chosen_rows(tuple(names or (*PAPER_ROWS, *((CHOSEN,) if weighted else ()))), wish)
 
 
 def _words(text: str) -> tuple[str, ...]:

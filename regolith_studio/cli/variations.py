@@ -1,38 +1,29 @@
 """``study faces``, ``study tradeoff``, ``study sensitivity``: what a choice about the coarsening costs."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from regolith_studio.cli.coarsen import choices_from
+from regolith_studio.cli.grouping import grouped
+from regolith_studio.cli.option_groups import FACES, CoarseningOptions, ReadingOptions
 from regolith_studio.cli.options import (
     Faces,
     Folder,
     Jobs,
     Json,
-    LMax,
     Meshes,
-    Method,
     Preset,
-    RadiusRule,
-    Reference,
-    Repair,
     Resume,
     Seed,
-    Settings,
-    StarPoint,
-    Target,
-    Unit,
-    Weights,
     as_bad_use,
 )
 
 if TYPE_CHECKING:
     from regolith_studio.jobs.events import Steps
-    from regolith_studio.session.choices import Choices
 
 BoxMetric = Annotated[
     str,
@@ -56,109 +47,68 @@ ChangeFactors = Annotated[
 ]
 
 
+@dataclass(frozen=True, kw_only=True)
+class VariedOptions:
+    """What the three studies take besides the values that vary."""
+
+    preset: Preset = ""
+    how: CoarseningOptions
+    box: BoxMetric = "exact"
+    reading: ReadingOptions
+    json: Json = False
+    jobs: Jobs = 1
+    resume: Resume = False
+    seed: Seed = 0
+
+    def run(self, key: str, values: str, meshes: Sequence[Path], output: Path, n_faces: int = FACES) -> None:
+        """Do the study of this key and leave the program with its exit code."""
+        from regolith_studio.cli.inputs import exit_code
+        from regolith_studio.jobs.studying import study_coarsening
+        from regolith_studio.session.variations import varied_rows
+
+        check_box(self.box)
+        wish = self.how.choices(self.preset, n_faces=n_faces, seed=self.seed)
+        with as_bad_use():
+            rows = varied_rows(key, wish, values)
+        loaded = self.reading.read(meshes)
+        order = wish.order
+        study = partial(study_coarsening, loaded.particles, order, self.jobs, rows=rows, box_metric=self.box)
+        conclude(f"{key}_study", study, output, self.json, self.resume)
+        raise typer.Exit(exit_code(meshes, loaded))
+
+
+@grouped
 def faces(
-    meshes: Meshes,
-    output: Folder,
-    faces: Counts = "8,12,16,20,30,50",
-    method: Method = "",
-    preset: Preset = "",
-    weight: Weights = None,
-    set_: Settings = None,
-    target: Target = "fit",
-    l_max: LMax = 10,
-    star_point: StarPoint = "",
-    rule: RadiusRule = "volume",
-    reference: Reference = "sphere",
-    box: BoxMetric = "exact",
-    unit: Unit = "um",
-    repair: Repair = True,
-    json: Json = False,
-    jobs: Jobs = 1,
-    resume: Resume = False,
-    seed: Seed = 0,
+    *, meshes: Meshes, output: Folder, faces: Counts = "8,12,16,20,30,50", varied: VariedOptions
 ) -> None:
     """RMSRE of the descriptors against the number of faces."""
-    wish = choices_from(20, method, preset, weight, set_, target, l_max, seed, star_point, rule, reference)
-    _vary("faces", faces, wish, meshes, output, box, (unit, repair), json, jobs, resume)
+    varied.run("faces", faces, meshes, output)
 
 
+@grouped
 def tradeoff(
+    *,
     meshes: Meshes,
     output: Folder,
-    faces: Faces = 20,
+    faces: Faces = FACES,
     factors: OverlapFactors = "0,0.1,0.3,1,3,10,30",
-    method: Method = "",
-    preset: Preset = "",
-    weight: Weights = None,
-    set_: Settings = None,
-    target: Target = "fit",
-    l_max: LMax = 10,
-    star_point: StarPoint = "",
-    rule: RadiusRule = "volume",
-    reference: Reference = "sphere",
-    box: BoxMetric = "exact",
-    unit: Unit = "um",
-    repair: Repair = True,
-    json: Json = False,
-    jobs: Jobs = 1,
-    resume: Resume = False,
-    seed: Seed = 0,
+    varied: VariedOptions,
 ) -> None:
     """Overlap against descriptors: what one costs the other."""
-    wish = choices_from(faces, method, preset, weight, set_, target, l_max, seed, star_point, rule, reference)
-    _vary("tradeoff", factors, wish, meshes, output, box, (unit, repair), json, jobs, resume)
+    varied.run("tradeoff", factors, meshes, output, faces)
 
 
+@grouped
 def sensitivity(
+    *,
     meshes: Meshes,
     output: Folder,
-    faces: Faces = 20,
+    faces: Faces = FACES,
     factors: ChangeFactors = "0,4",
-    method: Method = "",
-    preset: Preset = "",
-    weight: Weights = None,
-    set_: Settings = None,
-    target: Target = "fit",
-    l_max: LMax = 10,
-    star_point: StarPoint = "",
-    rule: RadiusRule = "volume",
-    reference: Reference = "sphere",
-    box: BoxMetric = "exact",
-    unit: Unit = "um",
-    repair: Repair = True,
-    json: Json = False,
-    jobs: Jobs = 1,
-    resume: Resume = False,
-    seed: Seed = 0,
+    varied: VariedOptions,
 ) -> None:
     """What changing one weight of the loss changes in every descriptor."""
-    wish = choices_from(faces, method, preset, weight, set_, target, l_max, seed, star_point, rule, reference)
-    _vary("sensitivity", factors, wish, meshes, output, box, (unit, repair), json, jobs, resume)
-
-
-def _vary(
-    key: str,
-    values: str,
-    wish: "Choices",
-    meshes: Sequence[Path],
-    output: Path,
-    box: str,
-    reading: tuple[str, bool],
-    json: bool,
-    jobs: int,
-    resume: bool,
-) -> None:
-    from regolith_studio.cli.inputs import exit_code, read_inputs
-    from regolith_studio.jobs.studying import study_coarsening
-    from regolith_studio.session.variations import varied_rows
-
-    check_box(box)
-    with as_bad_use():
-        rows = varied_rows(key, wish, values)
-    loaded = read_inputs(meshes, *reading)
-    study = partial(study_coarsening, loaded.particles, wish.order, jobs, rows=rows, box_metric=box)
-    conclude(f"{key}_study", study, output, json, resume)
-    raise typer.Exit(exit_code(meshes, loaded))
+    varied.run("sensitivity", factors, meshes, output, faces)
 
 
 def check_box(box: str) -> None:

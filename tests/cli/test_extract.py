@@ -119,7 +119,7 @@ def test_that_a_probability_map_of_an_hdf5_file_is_taken(command, tmp_path: Path
     [
         (("--threshold", "bright"), "A threshold is otsu"),
         (("--denoise", "wavelets"), "Denoise by one of"),
-        (("--border", "cut"), "to exclude or to keep"),
+        (("--border", "cut"), "Grains at the border are to exclude or to keep"),
         (("--kind", "colour"), "labels or grey values"),
         (("--voxel-size", "1,2"), "three as X,Y,Z"),
         (("--voxel-size", "-1"), "positive number"),

@@ -1,0 +1,54 @@
+"""Options that belong together, taken by a command as one argument.
+
+A group is a frozen dataclass whose fields are annotated as options, or are groups themselves. A command
+with :func:`grouped` above it has each of those fields as an option of its own, where the group stands.
+"""
+
+import functools
+import inspect
+from collections.abc import Callable, Iterator
+from dataclasses import fields, is_dataclass
+from typing import Any, get_type_hints
+
+
+def grouped(command: Callable[..., None]) -> Callable[..., None]:
+    """The command as typer is to see it: with the options of its groups in their places.
+
+    Raises
+    ------
+    ValueError
+        If two options have the same name, or an option of a group has no default.
+    """
+    hints = get_type_hints(command, include_extras=True)
+    given = inspect.signature(command).parameters.values()
+    groups = {each.name: hints[each.name] for each in given if is_dataclass(hints[each.name])}
+
+    @functools.wraps(command)
+    def called(**values: Any) -> None:
+        made = {name: _taken(group, values) for name, group in groups.items()}
+        command(**values, **made)
+
+    options = [option for each in given for option in _options(each.name, hints[each.name], each.default)]
+    signature = inspect.Signature(options)
+    called.__signature__ = signature  # type: ignore[attr-defined]
+    called.__annotations__ = {each.name: each.annotation for each in options}
+    return called
+
+
+def _options(name: str, hint: Any, default: Any) -> Iterator[inspect.Parameter]:
+    """An option, or those that a group stands for."""
+    if not is_dataclass(hint):
+        yield inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=hint)
+        return
+    hints = get_type_hints(hint, include_extras=True)
+    for each in fields(hint):
+        yield from _options(each.name, hints[each.name], each.default)
+
+
+def _taken(group: Any, values: dict[str, Any]) -> Any:
+    """The group, made of those of the values that are its own; they are taken out of the rest."""
+    hints = get_type_hints(group)
+    made = {}
+    for name in (each.name for each in fields(group)):
+        made[name] = _taken(hints[name], values) if is_dataclass(hints[name]) else values.pop(name)
+    return group(**made)
