@@ -62,7 +62,7 @@ def test_that_the_help_is_that_of_a_command_with_the_options_one_by_one():
 def test_that_a_wrong_value_of_a_group_is_bad_use():
     done = run(measure, "--number", "many", "a.stl")
     assert done.exit_code == 2
-    assert "many" in done.output
+    assert "--number" in done.output
 
 
 def test_that_two_options_of_one_name_are_a_mistake_of_the_programmer():
