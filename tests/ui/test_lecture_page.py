@@ -1,7 +1,10 @@
 """The page "Lecture": played, stepped, drawn anew; every formula can be set."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
+import shiboken6
 from PySide6.QtCore import QPointF, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QWidget
@@ -15,6 +18,7 @@ from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.lecture import PAGE, words
 from regolith_studio.ui.theme import DARK
+from regolith_studio.ui.widgets import formula
 from regolith_studio.ui.widgets.formula import FormulaLabel, outline
 from regolith_studio.ui.widgets.toast import Toast
 from regolith_studio.ui.wiring import Wiring
@@ -165,9 +169,10 @@ def test_that_letters_and_formulas_grow_and_the_theme_changes(page):
     assert page._context.recall("letters") > 1.5
 
 
-def test_that_a_formula_is_drawn_in_ink_and_shrinks_to_its_room(shown):
+def test_that_a_formula_is_drawn_in_ink_and_shrinks_to_its_room(shown, wait):
     label = shown(FormulaLabel("energy"))
     label.set_lines(r"$E=m\,c^2$", r"$\frac{1}{2}\sum_i x_i$")
+    wait(lambda: label.sizeHint().height() > 2 * label.fontMetrics().height())
     label.resize(label.sizeHint())
     wide = label.grab().toImage()
     ground = wide.pixelColor(0, 0)
@@ -183,6 +188,29 @@ def test_that_a_formula_is_drawn_in_ink_and_shrinks_to_its_room(shown):
     narrow = label.grab().toImage()
     right = [narrow.pixelColor(narrow.width() - 1, y) for y in range(narrow.height())]
     assert all(colour == ground for colour in right)
+
+
+def test_that_formulas_are_set_one_line_at_a_time_and_shown_when_all_are(shown, wait, monkeypatch):
+    labels = [shown(FormulaLabel(words)) for words in ("first", "second")]
+    monkeypatch.setattr(formula, "_outlines", {})
+    small = [label.sizeHint() for label in labels]
+    for label, name in zip(labels, "xy", strict=True):
+        label.set_lines(f"${name}_1$", f"${name}_2$")
+        assert label.lines() == (f"${name}_1$", f"${name}_2$")
+    assert not formula._outlines
+    assert [label.sizeHint() for label in labels] == small
+    counts = []
+    wait(lambda: counts.append(len(formula._outlines)) or counts[-1] == 4)
+    assert {after - before for before, after in pairwise(counts)} <= {0, 1}
+    assert all(label.sizeHint().height() > size.height() for label, size in zip(labels, small, strict=True))
+
+
+def test_that_a_label_whose_formula_was_never_set_can_go(shown, wait):
+    label, other = FormulaLabel("gone"), shown(FormulaLabel("stays"))
+    label.set_lines(r"$never\;set$")
+    shiboken6.delete(label)
+    other.set_lines(r"$set\;at\;last$")
+    wait(lambda: other.sizeHint().width() > 20)
 
 
 def test_that_what_is_no_formula_is_refused(app):  # noqa: ARG001

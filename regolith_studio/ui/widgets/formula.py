@@ -1,10 +1,12 @@
 """Formulas set by matplotlib's mathtext and drawn as outlines: sharp at any size, in the theme's ink."""
 
-from functools import lru_cache
+from functools import cache
+from weakref import WeakKeyDictionary
 
+import shiboken6
 from matplotlib.path import Path as OutlinePath
 from matplotlib.textpath import TextPath
-from PySide6.QtCore import QRectF, QSize, Qt
+from PySide6.QtCore import QCoreApplication, QObject, QRectF, QSize, Qt, QTimer
 from PySide6.QtGui import QPainter, QPainterPath, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
@@ -14,10 +16,17 @@ LEADING = 0.62
 """Space between two lines in units of the letters."""
 SMALLEST = 0.55
 """A formula shrinks to the room it has, but not below this share of its size."""
+MOST_KEPT = 512
+"""Lines whose outlines are at hand."""
+
+_outlines: dict[str, QPainterPath] = {}
 
 
 class FormulaLabel(QWidget):
     """Lines of mathtext, one below the other, as large as the font of the widget says.
+
+    A line takes up to 40 ms to set: lines that are not at hand are set between the events of the window, one
+    at a time, and what was there before is seen until all are.
 
     Parameters
     ----------
@@ -31,28 +40,44 @@ class FormulaLabel(QWidget):
         super().__init__(parent)
         self._words, self._factor = words, factor
         self._lines: tuple[str, ...] = ()
+        self._asked: tuple[str, ...] = ()
         self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Maximum)
         self.setAccessibleName(words)
 
     def lines(self) -> tuple[str, ...]:
-        """What is shown, as mathtext."""
-        return self._lines
+        """What is shown, or will be in a moment, as mathtext."""
+        return self._asked
 
     def set_lines(self, *lines: str) -> None:
-        """Show other lines.
+        """Show other lines, as soon as they are set."""
+        if lines == self._asked:
+            return
+        self._asked = lines
+        self.setToolTip(self._words)
+        self.setAccessibleDescription("; ".join(lines).replace("$", ""))
+        if all(line in _outlines for line in lines):
+            self._take()
+        else:
+            _setting().want(self)
+
+    def set_next(self) -> bool:
+        """Set one line that is missing; whether there are more.
 
         Raises
         ------
         ValueError
-            If a line is no mathtext.
+            If the line is no mathtext.
         """
-        if lines == self._lines:
-            return
-        for line in lines:
-            outline(line)
-        self._lines = lines
-        self.setToolTip(self._words)
-        self.setAccessibleDescription("; ".join(lines).replace("$", ""))
+        missing = [line for line in self._asked if line not in _outlines]
+        if missing:
+            outline(missing[0])
+        if len(missing) > 1:
+            return True
+        self._take()
+        return False
+
+    def _take(self) -> None:
+        self._lines = self._asked
         self.updateGeometry()
         self.update()
 
@@ -95,7 +120,36 @@ class FormulaLabel(QWidget):
         return sum(boxes) + LEADING * EM * max(0, len(boxes) - 1)
 
 
-@lru_cache(maxsize=512)
+class _Setting(QObject):
+    """Sets the lines of all labels, one of them between two events of the window."""
+
+    def __init__(self, parent: QObject | None) -> None:
+        super().__init__(parent)
+        self._labels: WeakKeyDictionary[FormulaLabel, None] = WeakKeyDictionary()
+        self._timer = QTimer(self, interval=0)
+        self._timer.timeout.connect(self._go_on)
+
+    def want(self, label: FormulaLabel) -> None:
+        """Set what this label misses."""
+        self._labels[label] = None
+        self._timer.start()
+
+    def _go_on(self) -> None:
+        for label in list(self._labels):
+            del self._labels[label]
+            if shiboken6.isValid(label):
+                if label.set_next():
+                    self._labels[label] = None
+                break
+        if not self._labels:
+            self._timer.stop()
+
+
+@cache
+def _setting() -> _Setting:
+    return _Setting(QCoreApplication.instance())
+
+
 def outline(line: str) -> QPainterPath:
     """The outlines of a line of mathtext, the base line at y = 0, y downwards.
 
@@ -104,6 +158,15 @@ def outline(line: str) -> QPainterPath:
     ValueError
         If it is no mathtext.
     """
+    if line not in _outlines:
+        made = _outlined(line)
+        if len(_outlines) >= MOST_KEPT:
+            _outlines.pop(next(iter(_outlines)), None)  # another thread may prepare formulas
+        _outlines[line] = made
+    return _outlines[line]
+
+
+def _outlined(line: str) -> QPainterPath:
     made = QPainterPath()
     made.setFillRule(Qt.FillRule.WindingFill)
     if not line:

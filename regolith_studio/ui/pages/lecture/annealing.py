@@ -1,5 +1,6 @@
 """Lesson one: the paper's annealing, one proposal after the other, and the exact method beside it."""
 
+from collections.abc import Iterator
 from functools import partial
 from typing import Any
 
@@ -43,10 +44,14 @@ class AnnealingView(QWidget):
         self.setObjectName("lesson_annealing")
         self._theme = current_theme()
         self._lesson: AnnealingLesson | None = None
-        ink = self._theme.surroundings
-        self.frames = {
-            name: ViewFrame(make_view(kind, ink), f"lecture_{name}") for name in ("annealing", "exact")
-        }
+        self._kind = kind
+
+    def assemble(self) -> Iterator[None]:
+        """Make the parts, right after construction; the window answers at each ``yield``."""
+        self.frames: dict[str, ViewFrame] = {}
+        for name in ("annealing", "exact"):
+            self.frames[name] = ViewFrame(make_view(self._kind, self._theme.surroundings), f"lecture_{name}")
+            yield
         self.link = CameraLink([frame.view for frame in self.frames.values()])
         self.sentence = WholeLabel(tr(WAIT))
         self.sentence.setObjectName("annealing_sentence")
@@ -54,7 +59,9 @@ class AnnealingView(QWidget):
         self.rule = FormulaLabel(tr("The proposal, T(k) and the decision with their numbers"))
         self.exact_formula = FormulaLabel(tr("Eq. 9 of the exact method"))
         self.loss = CurvePlot(tr("Step k"), tr("Loss L (Eq. 9)"), tr(WAIT))
+        yield
         self.chance = CurvePlot(tr("Step k"), tr("Probability"), tr(WAIT))
+        yield
         self.terms = BarPlot(tr("Term of Eq. 9"), "α ε", tr(WAIT), unit="")
         for plot, name in ((self.loss, "loss"), (self.chance, "chance"), (self.terms, "terms")):
             plot.setObjectName(f"annealing_{name}")
@@ -62,6 +69,7 @@ class AnnealingView(QWidget):
         self.frames["exact"].set_texts(tr("Exact method"))
         self.transport = Transport("annealing", mark("step"))
         self.transport.stepChanged.connect(self._show_step)
+        yield
         self._arrange()
 
     def show_lesson(self, lesson: AnnealingLesson) -> None:

@@ -1,5 +1,7 @@
 """Lesson two: the fit from a sphere to the particle, degree by degree (Eq. 4)."""
 
+from collections.abc import Iterator
+
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
@@ -37,10 +39,14 @@ class DegreesView(QWidget):
         self._theme = current_theme()
         self._particle: Mesh | None = None
         self._steps: tuple[DegreeStep, ...] = ()
-        ink = self._theme.surroundings
-        self.frames = {
-            name: ViewFrame(make_view(kind, ink), f"degrees_{name}") for name in ("particle", "fit")
-        }
+        self._kind = kind
+
+    def assemble(self) -> Iterator[None]:
+        """Make the parts, right after construction; the window answers at each ``yield``."""
+        self.frames: dict[str, ViewFrame] = {}
+        for name in ("particle", "fit"):
+            self.frames[name] = ViewFrame(make_view(self._kind, self._theme.surroundings), f"degrees_{name}")
+            yield
         self.link = CameraLink([frame.view for frame in self.frames.values()])
         self.sentence = remark(tr(WAIT), role="")
         self.sentence.setObjectName("degrees_sentence")
@@ -49,6 +55,7 @@ class DegreesView(QWidget):
         self.errors.setObjectName("degrees_errors")
         self.transport = Transport("degrees", mark("degree"))
         self.transport.stepChanged.connect(self._show_step)
+        yield
         self._arrange()
 
     def show_particle(self, mesh: Mesh, name: str) -> None:

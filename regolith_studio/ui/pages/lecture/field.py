@@ -1,5 +1,7 @@
 """Lesson three: a random field on the sphere, its spectrum to drag, and the particle that it makes."""
 
+from collections.abc import Iterator
+
 import numpy as np
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout, QWidget
@@ -41,8 +43,14 @@ class FieldView(QWidget):
         self._theme = current_theme()
         self.seed = 0
         self.drawn: DrawnField | None = None
-        ink = self._theme.surroundings
-        self.frames = {name: ViewFrame(make_view(kind, ink), f"field_{name}") for name in ("sphere", "grain")}
+        self._kind = kind
+
+    def assemble(self) -> Iterator[None]:
+        """Make the parts, right after construction; the window answers at each ``yield``."""
+        self.frames: dict[str, ViewFrame] = {}
+        for name in ("sphere", "grain"):
+            self.frames[name] = ViewFrame(make_view(self._kind, self._theme.surroundings), f"field_{name}")
+            yield
         self.link = CameraLink([frame.view for frame in self.frames.values()])
         self.sentence = remark("", role="")
         self.sentence.setObjectName("field_sentence")
@@ -55,6 +63,7 @@ class FieldView(QWidget):
         self.reset, self.another = QPushButton(tr("Reset the spectrum")), QPushButton(tr("Draw anew"))
         self.reset.setObjectName("field_reset")
         self.another.setObjectName("field_another")
+        yield
         self._arrange()
         self.material.currentIndexChanged.connect(lambda _: self.take_material())
         self.spectrum.valueChanged.connect(lambda _: self.redraw())

@@ -39,12 +39,11 @@ class LecturePage(PageWidget):
 
     def assemble(self) -> Iterator[None]:
         context = self._context
-        self.annealing = AnnealingView(context.views)
-        yield
-        self.degrees = DegreesView(context.views)
-        yield
-        self.field = FieldView(context.views)
-        yield
+        views = context.views
+        self.annealing, self.degrees, self.field = AnnealingView(views), DegreesView(views), FieldView(views)
+        for lesson in (self.annealing, self.degrees, self.field):
+            yield from lesson.assemble()
+            yield
         self.particle = ChoiceBox("lecture_particle", tr("Particle"), {})
         self.another = QPushButton(tr("Another seed"))
         self.another.setObjectName("lecture_another")
