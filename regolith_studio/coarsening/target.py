@@ -7,12 +7,15 @@ import numpy as np
 
 from regolith_studio.coarsening.core.overlap import exits, jaccard, shared_volume
 from regolith_studio.coarsening.core.rays import cast, fibonacci_bundle
-from regolith_studio.descriptors.describe import Descriptors, describe
+from regolith_studio.descriptors.catalogue import CATALOGUE, DEFAULT_KEYS
+from regolith_studio.descriptors.describe import Descriptors
+from regolith_studio.descriptors.facts import ShapeFacts
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.compiled import kernel
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.oriented_box import OrientedBox
 from regolith_studio.geometry.vectors import along, cross, length, mixed, row
 
 SMALLEST_SPAN = 1e-150
@@ -63,8 +66,8 @@ class Target:
         Principal axes in the particle's own frame, one a row, shape (3, 3).
     scale
         Length in the particle's unit that one unit of `mesh` stands for.
-    descriptors
-        Of `mesh`.
+    descriptors, box
+        Of `mesh`; the box is the least one.
     """
 
     mesh: Mesh
@@ -72,6 +75,7 @@ class Target:
     axes: FloatArray
     scale: float
     descriptors: Descriptors
+    box: OrientedBox
 
     @classmethod
     def of(cls, mesh: Mesh) -> "Target":
@@ -85,7 +89,9 @@ class Target:
         unit, centre, scale = _normalised(mesh)
         axes = principal_axes(unit)
         aligned = Mesh(np.round(unit.vertices @ axes.T / GRAIN) * GRAIN, unit.faces)
-        target = cls(aligned, centre, axes, scale, describe(aligned))
+        facts = ShapeFacts(aligned)
+        descriptors = Descriptors({key: CATALOGUE[key].compute(facts) for key in DEFAULT_KEYS})
+        target = cls(aligned, centre, axes, scale, descriptors, facts.box)
         _check_simple(target.rays)
         return target
 

@@ -68,7 +68,7 @@ def compromise(
         Whether to do nothing where a rougher polyhedron is wanted.
     """
     point = measured(rest, planes[0], planes[1], tangents_of(planes[0]), NOWHERE)
-    point = verified(rest, point, first_metric(point.shape), LONG_POLISH, TOLERANCE, reach(point))
+    point = verified(rest, point, first_metric(rest, point.shape), LONG_POLISH, TOLERANCE, reach(point))
     apart = 0.0
     if point.worst > TOLERANCE:
         nearest = None if only_rounder else met_in_turn(rest, planes)
@@ -106,7 +106,7 @@ def nearer_sphericity(
 def from_beyond(target: Target, full: Problem, state: State, bound_steps: int) -> Iterator[Attempt]:
     """From a polyhedron that went past the wanted sphericity back to it."""
     point = measured(full, state.point.shape.normals, state.point.shape.offsets, state.point.frames, NOWHERE)
-    point = verified(full, point, first_metric(point.shape), LONG_POLISH, TOLERANCE, reach(point))
+    point = verified(full, point, first_metric(full, point.shape), LONG_POLISH, TOLERANCE, reach(point))
     yield attempt(full, point)
     if point.worst > TOLERANCE:
         return

@@ -8,7 +8,7 @@ import numpy as np
 from regolith_studio.coarsening.core.box_follow import Watched
 from regolith_studio.coarsening.core.cuts import SMALLEST_FACET, with_all_facets
 from regolith_studio.coarsening.core.evaluate import AREA, FACETS, LONGEST, SHARED, SHORTEST, VOLUME
-from regolith_studio.coarsening.core.intersection import FINE, intersect
+from regolith_studio.coarsening.core.intersection import DEGENERATE, FINE, intersect
 from regolith_studio.coarsening.core.planes import tangents_of
 from regolith_studio.coarsening.exact.descent import (
     OVERLAP,
@@ -117,8 +117,9 @@ def touching_planes(
 
 
 def _bounds_a_solid(normals: FloatArray, offsets: FloatArray) -> bool:
-    if intersect(normals, offsets)[0] == FINE:
-        return True
+    status = intersect(normals, offsets)[0]
+    if status != DEGENERATE:
+        return bool(status == FINE)
     try:  # not in general position?
         polyhedron_of(HalfSpaces(normals, offsets))
     except GeometryError:
@@ -148,7 +149,7 @@ def course(
     point = measured(free, planes[0], planes[1], tangents_of(planes[0]), NOWHERE)
     if not np.isfinite(point.worst):
         return
-    point = polished(free, point, first_metric(point.shape), LONG_POLISH, TOLERANCE, reach(point))
+    point = polished(free, point, first_metric(free, point.shape), LONG_POLISH, TOLERANCE, reach(point))
     for _ in range(FREE_ROUNDS):
         state = descended(
             free, started(free, point, OVERLAP, reach(point)), OVERLAP, free_steps, POLISH_STEPS
@@ -158,7 +159,7 @@ def course(
         if cuts <= 0:
             break
         point = measured(free, normals, offsets, tangents_of(normals), NOWHERE)
-        point = polished(free, point, first_metric(point.shape), LONG_POLISH, TOLERANCE, reach(point))
+        point = polished(free, point, first_metric(free, point.shape), LONG_POLISH, TOLERANCE, reach(point))
     point = measured(full, shape.normals, shape.offsets, state.point.frames, NOWHERE)
     point = verified(full, point, state.metric, LONG_POLISH, TOLERANCE, reach(point))
     yield attempt(full, point)
@@ -180,6 +181,14 @@ def steps_down(problem: Problem, state: State, steps: int) -> Iterator[State]:
         yield state
 
 
+def onward(problem: Problem, begun: Attempt, steps: int) -> Iterator[Attempt]:
+    """The descent goes on from a polyhedron that meets all conditions."""
+    point = measured(problem, begun.normals, begun.offsets, tangents_of(begun.normals), NOWHERE)
+    if point.worst < TOLERANCE:
+        for later in steps_down(problem, started(problem, point, OVERLAP, reach(point) / 2), steps):
+            yield attempt(problem, later.point)
+
+
 def mended(target: Target, problem: Problem, begun: Polished, steps: int) -> Iterator[Attempt]:
     """Redundant half-spaces are put back as cuts, polished and taken along by a short descent.
 
@@ -193,7 +202,9 @@ def mended(target: Target, problem: Problem, begun: Polished, steps: int) -> Ite
         if cuts <= 0:
             break
         tried = measured(problem, normals, offsets, tangents_of(normals), point.conditions.watched)
-        tried = verified(problem, tried, steady_metric(tried.shape), LONG_POLISH, TOLERANCE, reach(tried))
+        tried = verified(
+            problem, tried, steady_metric(problem, tried.shape), LONG_POLISH, TOLERANCE, reach(tried)
+        )
         if tried.worst <= TOLERANCE and n_facets(tried) >= n_facets(point):
             point = tried
             yield attempt(problem, point)
@@ -212,7 +223,7 @@ def densely_checked(dense: Problem, found: Attempt) -> Attempt:
     """The polyhedron measured with a fine search for boxes; polished again where that found a smaller box."""
     point = measured(dense, found.normals, found.offsets, tangents_of(found.normals), NOWHERE)
     if point.worst > TOLERANCE:
-        point = verified(dense, point, first_metric(point.shape), LONG_POLISH, TOLERANCE, reach(point))
+        point = verified(dense, point, first_metric(dense, point.shape), LONG_POLISH, TOLERANCE, reach(point))
     return attempt(dense, point)
 
 

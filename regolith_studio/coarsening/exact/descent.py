@@ -103,12 +103,12 @@ def objective_gradient(problem: Problem, shape: Shape, frames: FloatArray, goal:
 
 
 @kernel
-def first_metric(shape: Shape) -> FloatArray:
+def first_metric(problem: Problem, shape: Shape) -> FloatArray:
     """A diagonal guess of the inverse second derivative: large facets resist."""
     n = len(shape.offsets)
     metric = np.zeros((3 * n, 3 * n))
     mean = shape.surface / n
-    for i in range(n):
+    for i in range(problem.held, n):
         area = max(shape.area[i], 0.3 * mean)
         metric[3 * i, 3 * i] = CURVATURE / area
         metric[3 * i + 1, 3 * i + 1] = 3.0 * CURVATURE / area
@@ -117,12 +117,12 @@ def first_metric(shape: Shape) -> FloatArray:
 
 
 @kernel
-def steady_metric(shape: Shape) -> FloatArray:
+def steady_metric(problem: Problem, shape: Shape) -> FloatArray:
     """A diagonal metric in which small facets hold still."""
     n = len(shape.offsets)
     metric = np.zeros((3 * n, 3 * n))
     mean = shape.surface / n
-    for i in range(n):
+    for i in range(problem.held, n):
         for k in range(3):
             metric[3 * i + k, 3 * i + k] = max(shape.area[i] / mean, 1e-3)
     return metric
@@ -133,7 +133,7 @@ def started(problem: Problem, point: Polished, goal: int, radius: float) -> Stat
     """A descent from a polyhedron on which all conditions hold."""
     gradient = objective_gradient(problem, point.shape, point.frames, goal)
     value = objective_at(problem, point.shape, goal)
-    return State(point, value, gradient, first_metric(point.shape), radius, False, 0)
+    return State(point, value, gradient, first_metric(problem, point.shape), radius, False, 0)
 
 
 @kernel
@@ -214,7 +214,7 @@ def descended(problem: Problem, state: State, goal: int, iterations: int, polish
         better, state = stepped(problem, state, goal, polish_steps, cap)
         failures = 0 if better else failures + 1
         if not better and state.radius < SHORTEST_STEP:
-            metric = first_metric(state.point.shape)
+            metric = first_metric(problem, state.point.shape)
             done = failures > 3
             state = State(state.point, state.value, state.gradient, metric, 0.02, done, state.iterations)
             failures += 2
@@ -261,7 +261,7 @@ def stepped(problem: Problem, state: State, goal: int, polish_steps: int, cap: f
     step, shadow = tangent_step(point.conditions, gradient, metric)
     length = np.abs(step).max()
     if not np.isfinite(length) or np.sum(step * gradient) >= 0.0:
-        metric = first_metric(point.shape)
+        metric = first_metric(problem, point.shape)
         step, shadow = tangent_step(point.conditions, gradient, metric)
         length = np.abs(step).max()
     if not length > 1e-9:

@@ -56,7 +56,7 @@ def towards(problem: Problem, point: Polished, key: int, goal: float) -> tuple[P
         tried = problem._replace(asked=asked, wanted=wanted)
         shape = best.shape
         then = measured(tried, shape.normals, shape.offsets, best.frames, NOWHERE)
-        then = verified(tried, then, first_metric(shape), LONG_POLISH, TOLERANCE, reach(best))
+        then = verified(tried, then, first_metric(tried, shape), LONG_POLISH, TOLERANCE, reach(best))
         if then.worst < TOLERANCE:
             held, best, now = tried, then, value
             if value == goal:

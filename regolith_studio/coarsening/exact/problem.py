@@ -32,6 +32,8 @@ class Problem(NamedTuple):
         Which of them are conditions, shape (5,).
     sample_angle
         Of the search for boxes.
+    held
+        So many of the half-spaces, the first ones, never move.
     """
 
     directions: FloatArray
@@ -42,6 +44,7 @@ class Problem(NamedTuple):
     wanted: FloatArray
     asked: BoolArray
     sample_angle: float
+    held: int
 
 
 class Shape(NamedTuple):

@@ -87,6 +87,7 @@ class Request:
             np.log(self.values),
             asked,
             sample_angle,
+            0,
         )
 
 

@@ -9,10 +9,11 @@ from regolith_studio.coarsening.bounds import sphericity_reason
 from regolith_studio.coarsening.core.box_search import DENSE_ANGLE, FINE_ANGLE, SAMPLE_ANGLE
 from regolith_studio.coarsening.core.cuts import SMALLEST_FACET
 from regolith_studio.coarsening.evaluation import LossFunction
+from regolith_studio.coarsening.exact.boxed import SIDES, boxed_planes
 from regolith_studio.coarsening.exact.compromise import compromise, with_facets_back
-from regolith_studio.coarsening.exact.course import Attempt, course, densely_checked, start_planes
+from regolith_studio.coarsening.exact.course import Attempt, course, densely_checked, onward, start_planes
 from regolith_studio.coarsening.exact.growth import grown, numbers_to_grow_from, with_waiting
-from regolith_studio.coarsening.exact.problem import SPHERICITY, Problem
+from regolith_studio.coarsening.exact.problem import SPHERICITY, Problem, needs_box
 from regolith_studio.coarsening.exact.record import AS_GOOD_AS_MET, Record
 from regolith_studio.coarsening.exact.request import CONDITION_KEYS, EXACT, Request, reason_for
 from regolith_studio.coarsening.polyhedra import facet_areas
@@ -45,6 +46,8 @@ ROUND_STARTS = 2
 """Starts from which polyhedra as round as can be are sought where the particle is rounder than the first."""
 OUT_OF_REACH = 4e-3
 """Where they miss the sphericity by more (in logarithms, added up), no further start is tried."""
+BOXED_STARTS = 3
+"""Starts with half-spaces on the sides of the particle's box, where others meet no request."""
 STARTS_FOR_FACETS = 3
 """Further starts where all conditions are met, but a half-space bounds no facet."""
 
@@ -88,6 +91,7 @@ class Search:
         self._planes: tuple[FloatArray, FloatArray]
         self._misses: list[float] = []
         self._tried = 0
+        self._in_box = False
 
     def from_starts(self) -> Iterator[MethodStep]:
         """A step for each better polyhedron until one is good enough; the first is the first start itself."""
@@ -98,6 +102,9 @@ class Search:
                 value = self._judge.value(*self._planes)
                 yield MethodStep(0, self._total, value, HalfSpaces(*self._planes))
             yield from self._record.told(tried, self._solved())
+            if self._in_box or not self._whole:
+                yield from self._record.told(tried, self._boxed())
+                self._in_box = self._record.met
             if self._round_asked and not self._record.met and tried <= ROUND_STARTS:
                 yield from self._as_round_as_can_be()
             if self._record.best is None:
@@ -146,6 +153,23 @@ class Search:
     def _all_at_once(self) -> Iterator[Attempt]:
         return course(self._target, self._free, self._full, self._planes, *self._steps)
 
+    def _boxed(self) -> Iterator[Attempt]:
+        """With six half-spaces on the sides of the particle's box; then all of them may move."""
+        planes = boxed_planes(self._target, self._n_faces, self._rng)
+        if planes is None or self._tried > BOXED_STARTS or not needs_box(self._full):
+            return
+        free, full, rest = (each._replace(held=SIDES) for each in (self._free, self._full, self._rest))
+        best: Attempt | None = None
+        for found in course(self._target, free, full, planes, *self._steps):
+            best = found if found.better_than(best) else best
+            yield found
+        if best is None or (not best.exact and self._round_asked):
+            for found in compromise(self._target, full, rest, planes, self._level.bound_steps, True):
+                best = found if found.better_than(best) else best
+                yield found
+        if best is not None and best.exact:
+            yield from onward(self._full, best, self._level.bound_steps)
+
     def _as_round_as_can_be(self) -> Iterator[MethodStep]:
         """The way to the sphericity from below; it is noted by how much it is missed."""
         rounder = list(self._compromise(self._planes, only_rounder=True))
@@ -171,7 +195,14 @@ class Search:
         """Whether the sphericity is missed by so much that other starts would miss it too."""
         best = self._record.best
         nearly_met = best is not None and best.worst < AS_GOOD_AS_MET
-        return sum(self._misses) > OUT_OF_REACH and not nearly_met
+        enough = self._hopeless or self._tried >= BOXED_STARTS
+        return enough and sum(self._misses) > OUT_OF_REACH and not nearly_met
+
+    @property
+    def _whole(self) -> bool:
+        """Whether a polyhedron with all facets meets all conditions."""
+        best = self._record.best
+        return best is not None and best.exact and best.n_facets == self._n_faces
 
     @property
     def _steps(self) -> tuple[int, int]:

@@ -1,0 +1,83 @@
+"""Particles that nearly fill their box, and others that only starts in the box can meet."""
+
+import numpy as np
+import pytest
+
+from benchmarks.independent import measured
+from regolith_studio.coarsening.coarsen import coarsen
+from regolith_studio.coarsening.core.intersection import FINE, intersect
+from regolith_studio.coarsening.exact.boxed import SIDES, boxed_planes
+from regolith_studio.coarsening.exact.course import start_planes
+from regolith_studio.coarsening.polyhedra import polyhedron_of
+from regolith_studio.coarsening.target import Target
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.directions import icosphere
+from regolith_studio.geometry.half_spaces import HalfSpaces
+from regolith_studio.geometry.mesh import Mesh
+
+KEPT = ("volume", "sphericity", "min_diameter", "max_diameter", "aspect_ratio")
+CUBE = np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
+NO_FACES = np.empty((0, 3), dtype=np.int64)
+
+
+def rounded_brick(*scales: float) -> Mesh:
+    ball = icosphere(4)
+    return Mesh(np.clip(1.6 * ball.vertices, -1.0, 1.0) * scales, ball.faces)
+
+
+def coin(radius: float) -> Mesh:
+    turn = np.linspace(0.0, 2.0 * np.pi, 64, endpoint=False)
+    rim = np.stack([radius * np.cos(turn), radius * np.sin(turn)], axis=1)
+    ends = [np.column_stack([rim, np.full(64, z)]) for z in (-1.0, 1.0)]
+    return Mesh(np.vstack(ends), NO_FACES).hull
+
+
+def errors_by_scipy(target: Target, n_faces: int) -> FloatArray:
+    found = coarsen(target, n_faces)
+    assert (found.n_faces, found.reason) == (n_faces, None)
+    planes = target.in_unit_frame(found.half_spaces)
+    values = measured(planes.normals, planes.offsets, 2.0)
+    return np.array([abs(values[key] / target.descriptors[key] - 1.0) for key in KEPT])
+
+
+@pytest.mark.parametrize("scales", [(10.0, 10.0, 1.0), (20.0, 20.0, 1.0), (10.0, 9.0, 1.0), (2.0, 2.0, 1.0)])
+@pytest.mark.parametrize("n_faces", [12, 20, 50])
+def test_that_bricks_with_rounded_corners_are_met(scales: tuple[float, ...], n_faces: int) -> None:
+    assert errors_by_scipy(Target.of(rounded_brick(*scales)), n_faces).max() <= 1e-6
+
+
+@pytest.mark.parametrize("n_faces", [20, 50])
+def test_that_a_coin_is_met(n_faces: int) -> None:
+    assert errors_by_scipy(Target.of(coin(2.0)), n_faces).max() <= 1e-6
+
+
+def test_that_a_smooth_needle_is_met_with_twelve_facets_or_has_a_reason() -> None:
+    ball = icosphere(4)
+    for thick in (1.0, 1.3, 1.7):
+        needle = coarsen(Mesh(ball.vertices * (15.0, thick, 1.0), ball.faces), 12)
+        worst = max(needle.errors[key] for key in KEPT)
+        assert worst <= 1e-6 or (needle.reason is not None and worst < 0.1)
+
+
+def test_that_starts_of_needles_end_within_reach() -> None:
+    ball = icosphere(4)
+    target = Target.of(Mesh(ball.vertices * (15.0, 1.7, 1.0), ball.faces))
+    for seed in range(5):
+        assert intersect(*start_planes(target, 12, np.random.default_rng(seed)))[0] == FINE
+
+
+def test_that_the_first_six_half_spaces_enclose_the_least_box() -> None:
+    target = Target.of(rounded_brick(3.0, 2.0, 1.0))
+    planes = boxed_planes(target, 14, np.random.default_rng(1))
+    assert planes is not None
+    box = polyhedron_of(HalfSpaces(planes[0][:SIDES], planes[1][:SIDES]))
+    wanted = [target.descriptors[f"{key}_diameter"] for key in ("min", "intermediate", "max")]
+    assert box.volume == pytest.approx(np.prod(wanted), rel=1e-9)
+    assert (target.mesh.vertices @ planes[0][:SIDES].T <= planes[1][:SIDES] + 1e-9).all()
+    assert len(planes[1]) == 14
+
+
+def test_that_there_is_no_start_in_the_box_where_nothing_lies_within_it() -> None:
+    box = Target.of(Mesh(CUBE * (3.0, 2.0, 1.0), NO_FACES).hull)
+    assert boxed_planes(box, 20, np.random.default_rng(0)) is None
+    assert boxed_planes(Target.of(rounded_brick(3.0, 2.0, 1.0)), SIDES, np.random.default_rng(0)) is None
