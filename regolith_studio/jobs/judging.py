@@ -13,7 +13,7 @@ from regolith_studio.errors import GeometryError, RegolithError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.surface import reconstruct
-from regolith_studio.jobs.events import Partial, Progress, Step, Steps
+from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
 from regolith_studio.jobs.generating import (
     GenerateOrder,
     draw,
@@ -36,6 +36,8 @@ if TYPE_CHECKING:  # matplotlib: the page is opened more often than models are j
 N_EXAMPLES = 6
 LEVEL = 4
 """Icosphere level of the examples."""
+MOST_SIZED = 10_000
+"""Drawn particles whose sizes are told at once."""
 DOTS_PER_INCH = 110
 COLUMNS = 5
 """Panels in a row: a window is wider than a page."""
@@ -61,22 +63,29 @@ class FittedShapes:
         Particles that the model was fitted to; 0 where it came as a card or file.
     examples
         Meshes of measured particles, centred; none where there are none.
+    first
+        A drawn particle, that of seed 0; none where the model can draw none.
     """
 
     source: ShapeSource
     model: FittedModel
     n_fitted: int
     examples: tuple[Mesh, ...]
+    first: Mesh | None = None
 
 
 @dataclass(frozen=True, eq=False)
 class DrawnShapes:
-    """Drawn particles, meshes of the first of them, and what they were drawn from."""
+    """Drawn particles, meshes of the first of them, what they were drawn from, and the ends of their r_eq.
+
+    `radii` is left out where there are more than :data:`MOST_SIZED`.
+    """
 
     draws: Draws
     examples: tuple[Mesh, ...]
     model: FittedModel
     order: GenerateOrder
+    radii: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,16 +118,20 @@ def fit_shapes(origin: Origin, order: GenerateOrder, half: bool = False) -> Step
         )
     model: FittedModel = yield from fit_model(seen, order)
     n_fitted = len(seen.content) if isinstance(seen.content, Sample) else 0
-    with suppress(RegolithError):  # the one that is shown first is then drawn without waiting for tables
-        live_mesh(model, order.seed)
-    return FittedShapes(source, model, n_fitted, _measured_examples(sample, model.l_max) if sample else ())
+    first: Mesh | None = None
+    with suppress(RegolithError):
+        first = live_mesh(model, 0)
+    examples = _measured_examples(sample, model.l_max) if sample else ()
+    return FittedShapes(source, model, n_fitted, examples, first)
 
 
 def draw_shapes(model: FittedModel, order: GenerateOrder) -> Steps:
     """Draw the particles of an order; returns :class:`DrawnShapes`."""
     draws: Draws = yield from draw(model, order)
     meshes = [virtual_mesh(draws, i, LEVEL) for i in range(min(N_EXAMPLES, len(draws)))]
-    return DrawnShapes(draws, tuple(meshes), model, order)
+    radii = draws.equivalent_radii() if 0 < len(draws) <= MOST_SIZED else None
+    ends = None if radii is None else (float(radii.min()), float(radii.max()))
+    return DrawnShapes(draws, tuple(meshes), model, order, ends)
 
 
 def judge_shapes(sample: Sample, models: Sequence[str] | None, **options: Any) -> Steps:
@@ -177,6 +190,12 @@ def png_of(figure: "Figure") -> bytes:
     stream = io.BytesIO()
     figure.savefig(stream, format="png", dpi=DOTS_PER_INCH)
     return stream.getvalue()
+
+
+def draw_live(model: FittedModel, seed: int) -> Steps:
+    """:func:`live_mesh` as a job; returns the mesh."""
+    yield Started("Drawing a particle", 1)
+    return live_mesh(model, seed)
 
 
 def live_mesh(model: FittedModel, seed: int, level: int = 4) -> Mesh:

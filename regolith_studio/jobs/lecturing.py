@@ -268,6 +268,12 @@ def draw_field(material: str, amplitudes: FloatArray, seed: int, level: int = 4)
     return DrawnField(radii_on_icosphere(ShCoefficients(relative), level), icosphere(level), mesh)
 
 
+def draw_field_later(material: str, amplitudes: FloatArray, seed: int) -> Steps:
+    """:func:`draw_field` as a job; returns :class:`DrawnField`."""
+    yield Started("Drawing a field", 1)
+    return draw_field(material, amplitudes, seed)
+
+
 def first_field(degree: int = 10) -> DrawnField:
     """The field of the first material: afterwards tables and kernels are there for all others."""
     key, card = next(iter(materials().items()))

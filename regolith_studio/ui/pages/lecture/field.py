@@ -6,11 +6,12 @@ import numpy as np
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout, QWidget
 
-from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.jobs.lecturing import DrawnField, draw_field
+from regolith_studio.jobs.events import Job
+from regolith_studio.jobs.lecturing import DrawnField, draw_field_later
 from regolith_studio.model.materials import materials
 from regolith_studio.scene.fields import show_field
+from regolith_studio.ui.following import Following
 from regolith_studio.ui.layout import side_by_side
 from regolith_studio.ui.pages.lecture import words
 from regolith_studio.ui.theme import Theme, current_theme
@@ -33,17 +34,20 @@ class FieldView(QWidget):
     ----------
     kind
         ``live`` or ``image``, of the views.
+    following
+        Draws what the spectrum makes, while it is dragged.
     """
 
     seedChanged = Signal(int)  # noqa: N815
 
-    def __init__(self, kind: str, parent: QWidget | None = None) -> None:
+    def __init__(self, kind: str, following: Following, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setObjectName("lesson_field")
         self._theme = current_theme()
         self.seed = 0
         self.drawn: DrawnField | None = None
-        self._kind = kind
+        self._kind, self._following = kind, following
+        self._unframed = True
 
     def assemble(self) -> Iterator[None]:
         """Make the parts, right after construction; the window answers at each ``yield``."""
@@ -89,13 +93,13 @@ class FieldView(QWidget):
         if not len(amplitudes):
             return
         self.formula.set_lines(*words.field_lines(amplitudes.tolist()))
-        try:
-            drawn = self.drawn = draw_field(self.material.value(), amplitudes, self.seed)
-        except RegolithError as error:
-            self.sentence.setText(str(error))
-            return
-        self._show(drawn, again)
-        self.sentence.setText(_sentence(drawn, amplitudes, self.seed))
+        self._unframed |= again
+        seed = self.seed
+        self._following.want(
+            Job(draw_field_later, (self.material.value(), amplitudes, seed)),
+            lambda drawn: self._take(drawn, amplitudes, seed),
+            self.sentence.setText,
+        )
 
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
@@ -111,6 +115,12 @@ class FieldView(QWidget):
         """Give the graphics memory back."""
         for frame in self.frames.values():
             frame.view.release()
+
+    def _take(self, drawn: DrawnField, amplitudes: FloatArray, seed: int) -> None:
+        self.drawn = drawn
+        again, self._unframed = self._unframed, False
+        self._show(drawn, again)
+        self.sentence.setText(_sentence(drawn, amplitudes, seed))
 
     def _show(self, drawn: DrawnField, again: bool) -> None:
         span = float(np.abs(drawn.values).max(initial=0.0))

@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QTabWidget, QVBo
 from regolith_studio.jobs.events import Failed, Job
 from regolith_studio.jobs.lecturing import anneal_slowly, grow_fit
 from regolith_studio.session.results import ParticleEntry
+from regolith_studio.ui.following import Following
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.page_building import polish
 from regolith_studio.ui.pages.lecture.annealing import AnnealingView
@@ -40,7 +41,9 @@ class LecturePage(PageWidget):
     def assemble(self) -> Iterator[None]:
         context = self._context
         views = context.views
-        self.annealing, self.degrees, self.field = AnnealingView(views), DegreesView(views), FieldView(views)
+        following = Following(context, tr("Drawing particles"), "field")
+        self.annealing, self.degrees = AnnealingView(views), DegreesView(views)
+        self.field = FieldView(views, following)
         for lesson in (self.annealing, self.degrees, self.field):
             yield from lesson.assemble()
             yield

@@ -9,6 +9,7 @@ import numpy as np
 from PySide6.QtWidgets import QFileDialog, QHBoxLayout
 
 from regolith_studio.errors import InputError, RegolithError
+from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.comparing import compare_distributions
 from regolith_studio.jobs.events import Job
@@ -16,16 +17,17 @@ from regolith_studio.jobs.generating import GenerateOrder, make_particles
 from regolith_studio.jobs.judging import (
     DrawnShapes,
     FittedShapes,
+    draw_live,
     draw_shapes,
     fit_shapes,
     judge_shapes,
-    live_mesh,
 )
 from regolith_studio.model.protocol import FittedModel
 from regolith_studio.model.sample import Sample
 from regolith_studio.model.spectra import can_be_edited, relative_amplitudes, with_amplitudes
 from regolith_studio.readers.shape_files import ShapeSource, read_shape_source
 from regolith_studio.session.origins import Drawn
+from regolith_studio.ui.following import Following
 from regolith_studio.ui.layout import padded, scrolled_column, side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.model.controls import DrawControls, SourceControls, order_from
@@ -57,6 +59,7 @@ class ModelPage(PageWidget):
         self._model: FittedModel | None = None
         self._drawn: DrawnShapes | None = None
         self._live_seed = 0
+        self._following = Following(context, tr("Drawing particles"), "live")
 
     def assemble(self) -> Iterator[None]:
         views, wiring = self._context.views, self._context.wiring
@@ -146,7 +149,7 @@ class ModelPage(PageWidget):
             self._context.toast.problem(tr("There is no model to draw from: fit one first."))
             return
         self._live_seed += 1
-        self._show_live(again=True)
+        self._ask_live(again=True)
 
     def judge(self) -> None:
         """Judge the chosen model, or all."""
@@ -229,7 +232,10 @@ class ModelPage(PageWidget):
         model = fitted.model
         self.live.spectrum.setValue(relative_amplitudes(model), editable=can_be_edited(model))
         self._live_seed = 0
-        self._show_live(again=True)
+        if fitted.first is None:
+            self._ask_live()  # and say why there is none
+        else:
+            self._show_live(fitted, fitted.first, again=True)
         self.gallery.show_shapes(fitted.examples, ())
         self._context.stop("compare")
         self.distributions.show_compared(None)
@@ -243,10 +249,10 @@ class ModelPage(PageWidget):
 
     def _show_drawn(self, drawn: DrawnShapes) -> None:
         self._drawn = drawn
-        radii = drawn.draws.equivalent_radii() if len(drawn.draws) <= 10_000 else None
         words = tr("{count:,} particles", count=len(drawn.draws))
-        if radii is not None:
-            words += ", " + tr("r_eq {low:.3g} to {high:.3g} µm", low=radii.min(), high=radii.max())
+        if drawn.radii is not None:
+            low, high = drawn.radii
+            words += ", " + tr("r_eq {low:.3g} to {high:.3g} µm", low=low, high=high)
         if drawn.draws.rejected:
             words += "; " + tr("{count:,} draws thrown away", count=drawn.draws.rejected)
         self.drawing.findings.setText(f"{words}.")
@@ -256,23 +262,28 @@ class ModelPage(PageWidget):
         self._context.start(tr("Comparing distributions"), job, show, lane="compare")
         self._show_state()
 
-    def _show_live(self, again: bool = False) -> None:
-        if self._model is None:
+    def _ask_live(self, again: bool = False) -> None:
+        """Draw the particle of the present model and seed."""
+        fitted = self._fitted
+        if self._model is None or fitted is None:
             self.live.show_mesh(None)
             return
-        try:
-            mesh = live_mesh(self._model, self._live_seed)
-        except RegolithError as error:
-            self.live.frame.set_texts(tr(DRAWN), str(error))
-            return
-        radius = float(np.cbrt(3 * mesh.volume / (4 * np.pi)))
-        self.live.show_mesh(mesh, tr("equivalent radius {radius:.3g} µm", radius=radius), again)
+        self._following.want(
+            Job(draw_live, (self._model, self._live_seed)),
+            lambda mesh: self._show_live(fitted, mesh, again),
+            lambda sentence: self.live.frame.set_texts(tr(DRAWN), sentence),
+        )
+
+    def _show_live(self, fitted: FittedShapes, mesh: Mesh, again: bool) -> None:
+        if fitted is self._fitted:
+            radius = float(np.cbrt(3 * mesh.volume / (4 * np.pi)))
+            self.live.show_mesh(mesh, tr("equivalent radius {radius:.3g} µm", radius=radius), again)
 
     def _edit(self, amplitudes: np.ndarray[Any, np.dtype[np.float64]]) -> None:
         if self._fitted is not None and can_be_edited(self._fitted.model):
             changed = self.live.spectrum.is_changed()
             self._model = with_amplitudes(self._fitted.model, amplitudes) if changed else self._fitted.model
-            self._show_live()
+            self._ask_live()
 
     def _rename(self, names: tuple[str, ...]) -> None:
         model: Any = self._model
