@@ -64,6 +64,7 @@ class Tour(QWidget):
         self.end = QPushButton(tr("End tour"))
         for button, name in ((self.back, "tour_back"), (self.next, "tour_next"), (self.end, "tour_end")):
             button.setObjectName(name)
+            button.setAutoDefault(True)  # the return key presses it, as in a dialog
         self._arrange()
         self.back.clicked.connect(lambda: self.go(self._at - 1))
         self.next.clicked.connect(lambda: self.go(self._at + 1))
@@ -117,6 +118,7 @@ class Tour(QWidget):
         painter.end()
 
     def _place(self) -> None:
+        self.hide()  # beside views that draw by themselves a frame that only moves leaves its trace behind
         self.setGeometry(self._window.rect())
         target = self._window.findChild(QWidget, self._steps[self._at].target)
         if target is None or not target.isVisible():

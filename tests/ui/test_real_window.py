@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from PySide6.QtCore import QPoint, Qt, QTimer
-from PySide6.QtGui import QGuiApplication
+from PySide6.QtCore import QPoint, QRect, Qt, QTimer
+from PySide6.QtGui import QColor, QGuiApplication
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import (
     QApplication,
@@ -27,6 +27,8 @@ from regolith_studio.resources import resource
 from regolith_studio.ui.app import open_window
 from regolith_studio.ui.dialogs.export import ExportDialog
 from regolith_studio.ui.dialogs.unit import UnitDialog
+from regolith_studio.ui.theme import current_theme
+from regolith_studio.ui.tour import start_tour
 
 pytestmark = pytest.mark.window
 
@@ -211,6 +213,37 @@ def test_that_a_file_becomes_a_dataset_by_mouse_and_keys_alone(window, wait, dra
     assert window.toast.sentence.text() == f"The dataset is in {folder}."
     assert list(validate_dataset(folder)) == []
     assert read_dataset(folder) is not None
+
+
+def on_screen(window, area):
+    """What the display really shows of an area of the window; `grab` would draw it anew."""
+    picture = window.screen().grabWindow(window.winId(), area.x(), area.y(), area.width(), area.height())
+    return picture.toImage()
+
+
+def accented(picture):
+    """Share of the dots that have the colour of the tour's frame."""
+    accent = QColor(current_theme().accent).rgb()
+    dots = [(x, y) for x in range(picture.width()) for y in range(picture.height())]
+    return sum(picture.pixel(x, y) == accent for x, y in dots) / len(dots)
+
+
+def test_that_the_tour_goes_on_with_return_and_leaves_no_frame_behind(window, wait, settled):
+    activate(window)
+    tour = start_tour(window, window.go, window.preferences)
+    triptych = window.page.triptych
+    corner = triptych.mapTo(window, QPoint(0, 0))
+    middle_of_the_left_edge = QRect(corner.x() - 3, corner.y() + triptych.height() // 2, 3, 40)
+    wait(lambda: accented(on_screen(window, middle_of_the_left_edge)) > 0.3)
+    QTest.keyClick(tour.next, Qt.Key.Key_Return)
+    assert tour.at == 1
+    wait(lambda: accented(on_screen(window, middle_of_the_left_edge)) == 0)
+    QTest.keyClick(tour.back, Qt.Key.Key_Return)
+    assert tour.at == 0
+    wait(lambda: accented(on_screen(window, middle_of_the_left_edge)) > 0.3)
+    tour.finish()
+    wait(lambda: accented(on_screen(window, middle_of_the_left_edge)) == 0)
+    settled(window)
 
 
 def test_that_the_picture_of_the_documentation_can_be_taken(window, drawn):
