@@ -153,6 +153,8 @@ def solids(
     how: CoarseningOptions,
     reading: ReadingOptions,
     json: Json = False,
+    jobs: Jobs = 1,
+    resume: Resume = False,
     seed: Seed = 0,
 ) -> None:
     """The polyhedra that each set of loss weights makes of each particle (Fig. 7)."""
@@ -162,7 +164,8 @@ def solids(
     wish = how.choices(n_faces=faces, seed=seed)
     rows = _rows(loss, wish, bool(how.weight))
     loaded = reading.read(meshes)
-    conclude("solids_study", partial(study_solids, loaded.particles, wish.order, rows), output, json)
+    study = partial(study_solids, loaded.particles, wish.order, rows, jobs)
+    conclude("solids_study", study, output, json, resume)
     raise typer.Exit(exit_code(meshes, loaded))
 
 

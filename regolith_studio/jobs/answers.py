@@ -143,10 +143,15 @@ def _digest(content: bytes) -> str:
 
 
 def _encoded(answer: Any) -> dict[str, Any] | None:
-    """A sentence, a table of numbers, or one with a flag for each row; ``None`` for anything else."""
+    """A sentence, a table of numbers, one with a flag for each row, or a document; ``None`` for other kinds.
+
+    A document is a dictionary of what JSON takes: its numbers come back to the bit.
+    """
     match answer:
         case str():
             return {"text": answer}
+        case dict():
+            return {"document": answer}
         case np.ndarray() if answer.dtype == np.float64 and answer.size <= LARGEST:
             numbers = base64.b64encode(np.ascontiguousarray(answer).astype("<f8").tobytes())
             return {"shape": list(answer.shape), "numbers": numbers.decode("ascii")}
@@ -159,6 +164,8 @@ def _encoded(answer: Any) -> dict[str, Any] | None:
 def _decoded(entry: Mapping[str, Any]) -> Any:
     if "text" in entry:
         return entry["text"]
+    if "document" in entry:
+        return entry["document"]
     numbers = np.frombuffer(base64.b64decode(entry["numbers"]), dtype="<f8")
     table = numbers.astype(np.float64).reshape(entry["shape"])
     return (table, tuple(entry["flags"])) if "flags" in entry else table

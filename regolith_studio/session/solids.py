@@ -3,16 +3,19 @@
 import dataclasses
 from collections.abc import Generator, Sequence
 from dataclasses import dataclass
+from functools import partial
+from typing import Any
 
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.fit import HarmonicFit
-from regolith_studio.jobs.answers import Answers
+from regolith_studio.jobs.answers import Answers, fingerprint
 from regolith_studio.jobs.coarsening import CoarsenedParticle, CoarseningOrder, coarsen_particle
+from regolith_studio.jobs.crew import Crew, hired
 from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
 from regolith_studio.session.choices import L_MAX_LIMIT
 from regolith_studio.studies.loss_rows import StudyRow, paper_rows
-from regolith_studio.studies.solid_study import SolidStudy
+from regolith_studio.studies.solid_study import SolidStudy, StudiedSolid
 
 
 @dataclass(frozen=True)
@@ -49,11 +52,10 @@ def draw_solids(
     yield Started("Coarsening for the gallery", total)
     done: list[Solid] = []
     for column, particle in enumerate(particles):
-        fit = order.expansion.fit(particle.mesh, L_MAX_LIMIT) if order.target == "fit" else None
+        fit = _fit_of(particle, order)
         for row, each in enumerate(chosen):
-            outcome = yield from _outcome(
-                particle, _by_row(order, each), column, fit, Progress(len(done), total)
-            )
+            now = Progress(len(done), total)
+            outcome = yield from _outcome(particle, _by_row(order, each), column, fit, now)
             done.append(Solid(row, column, outcome))
             yield Partial(list(done))
             yield Progress(len(done), total, particle.name)
@@ -64,19 +66,68 @@ def study_solids(
     particles: Sequence[Particle],
     order: CoarseningOrder,
     rows: Sequence[StudyRow] | None = None,
+    workers: int | Crew = 1,
     answers: Answers | None = None,
 ) -> Steps:
-    """As :func:`draw_solids`; the result is the study that can be written. No `answers` are kept of it."""
-    del answers
+    """As :func:`draw_solids`, particle by particle; the result is the study that can be written.
+
+    Parameters
+    ----------
+    workers
+        Processes at a time; 0 for one a core.
+    answers
+        Keeps what is known of each particle, so that the study can be taken up again.
+    """
     chosen = paper_rows() if rows is None else tuple(rows)
-    solids = yield from draw_solids(particles, order, chosen)
-    return solid_study(solids, [row.label for row in chosen], [particle.name for particle in particles])
+    yield Started("Coarsening for the gallery", len(particles))
+    if answers is not None:
+        answers.about("solids", (order, chosen), fingerprint(particles))
+    labels, names = [row.label for row in chosen], [particle.name for particle in particles]
+    cells: dict[tuple[int, int], StudiedSolid | str] = {}
+    with hired(workers) as crew:
+        mapper = crew.map if answers is None else answers.through(crew.map)
+        found = mapper(partial(solids_of, order=order, rows=chosen), list(enumerate(particles)))
+        for column, (name, answer) in enumerate(zip(names, found, strict=True)):
+            for row, cell in enumerate(answer["rows"]):
+                cells[row, column] = cell if isinstance(cell, str) else StudiedSolid.from_document(cell)
+            yield Progress(column + 1, len(names), name)
+    return SolidStudy(tuple(labels), tuple(names), cells)
+
+
+def solids_of(
+    numbered: tuple[int, Particle], order: CoarseningOrder, rows: Sequence[StudyRow]
+) -> dict[str, Any]:
+    """The polyhedra of one particle, by row, as a document; a sentence where there is none.
+
+    Pure and picklable: for process pools.
+    """
+    column, particle = numbered
+    fit = _fit_of(particle, order)
+    cells: list[dict[str, Any] | str] = []
+    for row in rows:
+        outcome = _ended(_outcome(particle, _by_row(order, row), column, fit, Progress(0, 0)))
+        solid = outcome.coarsened
+        cells.append(outcome.problem if solid is None else StudiedSolid.of(solid).document())
+    return {"rows": cells}
 
 
 def solid_study(solids: Sequence[Solid], labels: Sequence[str], names: Sequence[str]) -> SolidStudy:
     """What has been drawn, as a study that can be written."""
-    cells = {(each.row, each.column): each.outcome.coarsened or each.outcome.problem for each in solids}
+    cells: dict[tuple[int, int], StudiedSolid | str] = {}
+    for each in solids:
+        found = each.outcome.coarsened
+        cells[each.row, each.column] = each.outcome.problem if found is None else StudiedSolid.of(found)
     return SolidStudy(tuple(labels), tuple(names), cells)
+
+
+def _fit_of(particle: Particle, order: CoarseningOrder) -> HarmonicFit | str | None:
+    """The fit that is imitated, where one is; the sentence that says why there is none."""
+    if order.target != "fit":
+        return None
+    try:
+        return order.expansion.fit(particle.mesh, L_MAX_LIMIT)
+    except RegolithError as error:
+        return str(error)
 
 
 def _by_row(order: CoarseningOrder, row: StudyRow) -> CoarseningOrder:
@@ -87,9 +138,15 @@ def _by_row(order: CoarseningOrder, row: StudyRow) -> CoarseningOrder:
 
 
 def _outcome(
-    particle: Particle, order: CoarseningOrder, index: int, fit: HarmonicFit | None, now: Progress
+    particle: Particle,
+    order: CoarseningOrder,
+    index: int,
+    fit: HarmonicFit | str | None,
+    now: Progress,
 ) -> Generator[Step, None, CoarsenedParticle]:
     """What became of one coarsening; its own steps are not told, but it can be stopped between them."""
+    if isinstance(fit, str):
+        return CoarsenedParticle(particle.name, index, None, fit)
     story = coarsen_particle(particle, order, index, fit)
     try:
         while True:
@@ -100,3 +157,12 @@ def _outcome(
         return outcome
     except RegolithError as error:
         return CoarsenedParticle(particle.name, index, None, str(error))
+
+
+def _ended(story: Generator[Step, None, CoarsenedParticle]) -> CoarsenedParticle:
+    while True:
+        try:
+            next(story)
+        except StopIteration as end:
+            outcome: CoarsenedParticle = end.value
+            return outcome

@@ -7,11 +7,10 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 
-from regolith_studio.coarsening.result import Coarsened
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.studies.figure_files import write_figure
-from regolith_studio.studies.solid_study import SolidStudy, solid_table
+from regolith_studio.studies.solid_study import SolidStudy, StudiedSolid, solid_table
 from regolith_studio.studies.tables import write_table
 
 VIEW = np.array([[-0.5, 0.866, 0.0], [-0.296, -0.171, 0.94], [0.814, 0.47, 0.342]])
@@ -29,13 +28,13 @@ def solid_figure(study: SolidStudy) -> Figure:
     axes = figure.subplots(n_rows, n_columns, squeeze=False)
     for column, name in enumerate(study.names):
         solids = [study.cells.get((row, column)) for row in range(n_rows)]
-        reaches = [_reach(each.polyhedron) for each in solids if isinstance(each, Coarsened)]
+        reaches = [_reach(each.polyhedron) for each in solids if isinstance(each, StudiedSolid)]
         for row, found in enumerate(solids):
             axis = axes[row, column]
             axis.set_xticks([])
             axis.set_yticks([])
             axis.set_frame_on(False)
-            if isinstance(found, Coarsened):
+            if isinstance(found, StudiedSolid):
                 _draw(axis, found.polyhedron, 1.05 * max(reaches))
                 axis.set_xlabel(f"J {found.jaccard_distance:.3f}", fontsize=7)
         axes[0, column].set_title(name, fontsize=8)

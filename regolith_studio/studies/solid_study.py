@@ -2,11 +2,73 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any, Self
+
+import numpy as np
 
 from regolith_studio.coarsening.result import Coarsened
 from regolith_studio.coarsening.weights import JACCARD
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
+from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.studies.tables import Cell, Column, Table
+
+
+@dataclass(frozen=True, eq=False)
+class StudiedSolid:
+    """What a study keeps of a coarsened particle; it can become plain numbers and words, and come back.
+
+    Parameters
+    ----------
+    method, polyhedron, errors, jaccard_distance, loss, bounds, reason
+        As in :class:`regolith_studio.coarsening.result.Coarsened`.
+    """
+
+    method: str
+    polyhedron: ConvexPolyhedron
+    errors: Mapping[str, float]
+    jaccard_distance: float
+    loss: float
+    bounds: Mapping[str, float]
+    reason: str | None
+
+    @classmethod
+    def of(cls, found: Coarsened) -> Self:
+        """Of a particle just coarsened."""
+        return cls(
+            found.method,
+            found.polyhedron,
+            found.errors,
+            found.jaccard_distance,
+            found.loss,
+            found.bounds,
+            found.reason,
+        )
+
+    @classmethod
+    def from_document(cls, document: Mapping[str, Any]) -> Self:
+        """The inverse of :meth:`document`."""
+        planes = HalfSpaces(np.array(document["normals"]), np.array(document["offsets"]))
+        facets = tuple(tuple(facet) for facet in document["facets"])
+        polyhedron = ConvexPolyhedron(planes, np.array(document["vertices"]), facets)
+        kept = ("errors", "jaccard_distance", "loss", "bounds", "reason")
+        return cls(document["method"], polyhedron, *(document[key] for key in kept))
+
+    def document(self) -> dict[str, Any]:
+        """As JSON takes it, to the last bit."""
+        solid = self.polyhedron
+        return {
+            "method": self.method,
+            "normals": solid.half_spaces.normals.tolist(),
+            "offsets": solid.half_spaces.offsets.tolist(),
+            "vertices": solid.vertices.tolist(),
+            "facets": [[int(corner) for corner in facet] for facet in solid.facets],
+            "errors": {key: float(error) for key, error in self.errors.items()},
+            "jaccard_distance": float(self.jaccard_distance),
+            "loss": float(self.loss),
+            "bounds": {key: float(bound) for key, bound in self.bounds.items()},
+            "reason": self.reason,
+        }
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,7 +85,7 @@ class SolidStudy:
 
     rows: tuple[str, ...]
     names: tuple[str, ...]
-    cells: Mapping[tuple[int, int], Coarsened | str]
+    cells: Mapping[tuple[int, int], StudiedSolid | str]
 
 
 def solid_table(study: SolidStudy) -> Table:
@@ -40,10 +102,11 @@ def solid_table(study: SolidStudy) -> Table:
     return Table("Polyhedra by loss and particle", columns, tuple(lines), notes)
 
 
-def _numbers(found: Coarsened | str) -> tuple[Cell, ...]:
+def _numbers(found: StudiedSolid | str) -> tuple[Cell, ...]:
     if isinstance(found, str):
         return (*(None,) * (4 + 2 * (len(LOSS_KEYS) + 1) + 1), found)
     errors = [100 * found.errors[key] for key in LOSS_KEYS]
     bounds = [100 * found.bounds[key] for key in (*LOSS_KEYS, JACCARD)]
-    counts = (found.method, found.n_faces, found.n_vertices, found.n_triangles)
+    solid = found.polyhedron
+    counts = (found.method, solid.n_faces, solid.n_vertices, solid.n_triangles)
     return (*counts, *errors, 100 * found.jaccard_distance, *bounds, found.loss, found.reason)

@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from regolith_studio.session import solids
 from regolith_studio.studies import coarsening, lmax, population_work
 
 STUDIES: dict[str, tuple[Any, str, tuple[object, ...]]] = {
@@ -16,6 +17,7 @@ STUDIES: dict[str, tuple[Any, str, tuple[object, ...]]] = {
         "coarsening_errors",
         ("--method", "annealing", "--set", "iterations=5", "--weight", "volume=1", "--faces", 12),
     ),
+    "solids": (solids, "solids_of", ("--method", "quadric", "--loss", "all", "--loss", "only_volume")),
     "lmax": (lmax, "errors_or_reason", ("--degrees", "1,4", "--level", 2)),
 }
 

@@ -1,5 +1,7 @@
 """The polyhedra of Fig. 7: every row for every particle, failures included."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -7,10 +9,11 @@ from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.coarsening import CoarseningOrder
-from regolith_studio.jobs.events import Partial, Progress
+from regolith_studio.jobs.events import Partial, Progress, Steps
 from regolith_studio.session.choices import Choices
-from regolith_studio.session.solids import draw_solids
+from regolith_studio.session.solids import draw_solids, solid_study, study_solids
 from regolith_studio.studies.loss_rows import paper_rows
+from regolith_studio.studies.solid_study import solid_table
 
 
 @pytest.fixture(scope="module")
@@ -50,3 +53,30 @@ def test_that_a_particle_that_cannot_be_coarsened_does_not_stop_the_rest(
     by_name = {name: [s for s in solids if s.outcome.name == name] for name in ("flat", "ball")}
     assert all(each.outcome.coarsened is None and each.outcome.problem for each in by_name["flat"])
     assert all(each.outcome.coarsened is not None for each in by_name["ball"])
+
+
+def ended(story: Steps) -> Any:
+    while True:
+        try:
+            next(story)
+        except StopIteration as end:
+            return end.value
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_that_the_study_has_the_polyhedra_of_the_gallery(order: CoarseningOrder, workers: int) -> None:
+    sphere = icosphere(2)
+    eggs = [Particle(f"egg-{n}", Mesh(sphere.vertices * [n, 2, 3], sphere.faces)) for n in (1, 2, 0)]
+    rows, names = paper_rows()[:3], [egg.name for egg in eggs]
+    drawn = solid_study(ended(draw_solids(eggs, order, rows)), [row.label for row in rows], names)
+    study = ended(study_solids(eggs, order, rows, workers))
+    assert (study.rows, study.names) == (drawn.rows, drawn.names)
+    assert solid_table(study) == solid_table(drawn)
+    assert [isinstance(study.cells[0, column], str) for column in range(3)] == [False, False, True]
+
+
+def test_that_a_particle_without_a_fit_is_told_for_each_row() -> None:
+    fitted = Choices(method="quadric", n_faces=12, l_max=4, level=2, target="fit").order
+    flat = Mesh(icosphere(2).vertices * [1, 1, 0], icosphere(2).faces)
+    solids = ended(draw_solids([Particle("flat", flat)], fitted, paper_rows()[:2]))
+    assert [bool(each.outcome.problem) for each in solids] == [True, True]

@@ -1,23 +1,23 @@
 """The picture of Fig. 7 shows what can be seen of each polyhedron, and its table what is known of it."""
 
 import itertools
+import json
 
 import numpy as np
 import pytest
 
 from regolith_studio.coarsening.coarsen import coarsen
-from regolith_studio.coarsening.result import Coarsened
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.studies.solid_figures import VIEW, solid_figure, visible_facets, write_solids
-from regolith_studio.studies.solid_study import SolidStudy, solid_table
+from regolith_studio.studies.solid_study import SolidStudy, StudiedSolid, solid_table
 
 
 @pytest.fixture(scope="module")
-def brick() -> Coarsened:
+def brick() -> StudiedSolid:
     corners = np.array(list(itertools.product((-1.0, 1.0), repeat=3))) * (3.0, 2.0, 1.0)
-    return coarsen(Mesh(corners, np.empty((0, 3), dtype=np.int64)).hull, 6)
+    return StudiedSolid.of(coarsen(Mesh(corners, np.empty((0, 3), dtype=np.int64)).hull, 6))
 
 
 def test_that_the_outlines_cover_the_shadow_once() -> None:
@@ -37,7 +37,7 @@ def test_that_the_view_is_a_rotation() -> None:
     assert np.linalg.det(VIEW) == pytest.approx(1.0, abs=2e-3)
 
 
-def test_that_numbers_and_failures_have_lines_of_their_own(brick: Coarsened) -> None:
+def test_that_numbers_and_failures_have_lines_of_their_own(brick: StudiedSolid) -> None:
     study = SolidStudy(("All", "V"), ("a",), {(0, 0): brick, (1, 0): "The mesh is open."})
     table = solid_table(study)
     names = [column.name for column in table.columns]
@@ -47,7 +47,14 @@ def test_that_numbers_and_failures_have_lines_of_their_own(brick: Coarsened) -> 
     assert (second["volume"], second["reason"]) == (None, "The mesh is open.")
 
 
-def test_that_the_same_study_gives_the_same_bytes(brick: Coarsened, tmp_path) -> None:
+def test_that_a_solid_comes_back_from_text_to_the_bit(brick: StudiedSolid) -> None:
+    again = StudiedSolid.from_document(json.loads(json.dumps(brick.document())))
+    np.testing.assert_array_equal(again.polyhedron.vertices, brick.polyhedron.vertices)
+    np.testing.assert_array_equal(again.polyhedron.half_spaces.normals, brick.polyhedron.half_spaces.normals)
+    assert again.document() == brick.document()
+
+
+def test_that_the_same_study_gives_the_same_bytes(brick: StudiedSolid, tmp_path) -> None:
     study = SolidStudy(("All", "V"), ("a", "b"), {(0, 0): brick, (1, 1): brick, (0, 1): "No."})
     one, other = write_solids(study, tmp_path / "one"), write_solids(study, tmp_path / "other")
     assert [path.name for path in one] == ["solids.csv", "solids.json", "solids.png", "solids.svg"]
