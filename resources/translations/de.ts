@@ -3357,8 +3357,8 @@
   </message>
   <message>
    <location filename="ui/translation/sentences.py" />
-   <source>No polyhedron with {faces} faces was found that meets all descriptors: {name} is off by {error} %; the particle is convex and has {facets} facets itself, which meet them.</source>
-   <translation>Es fand sich kein Polyeder mit {faces} Facetten, das alle Deskriptoren trifft: {name} weicht um {error} % ab; das Partikel ist konvex und hat selbst {facets} Facetten, die sie treffen.</translation>
+   <source>The result has {real} facets instead of {faces}: the particle is convex and has {facets} facets itself, and no other polyhedron was found that meets all descriptors.</source>
+   <translation>Das Ergebnis hat {real} statt {faces} Facetten: Das Partikel ist konvex und hat selbst {facets} Facetten, und es fand sich kein anderes Polyeder, das alle Deskriptoren trifft.</translation>
   </message>
   <message>
    <location filename="ui/pages/scan/steps.py" />

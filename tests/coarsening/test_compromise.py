@@ -111,5 +111,7 @@ def test_that_a_cube_cannot_have_twenty_facets_and_the_reason_says_that_it_has_s
     cube = Mesh(corners, np.empty((0, 3), dtype=np.int64)).hull
     found = coarsen(cube, 20, settings={"retries": 0})
     assert found.reason is not None
-    assert found.reason.endswith("the particle is convex and has 6 facets itself, which meet them.")
+    assert found.reason.startswith("The result has 6 facets instead of 20: the particle is convex")
+    assert max(found.errors.values()) <= 1e-6
+    assert found.jaccard_distance <= 1e-6
     assert coarsen(cube, 6).reason is None

@@ -5,17 +5,104 @@ it, and Gauss-Newton fails. With six half-spaces held at its sides the diameters
 volume and sphericity are left to the other half-spaces.
 """
 
+from collections.abc import Iterator
+
 import numpy as np
 
+from regolith_studio.coarsening.core.cuts import SMALLEST_FACET
+from regolith_studio.coarsening.core.planes import tangents_of
+from regolith_studio.coarsening.exact.compromise import compromise
+from regolith_studio.coarsening.exact.course import NOWHERE, Attempt, attempt, course, onward
+from regolith_studio.coarsening.exact.growth import ALIKE, with_more_facets
+from regolith_studio.coarsening.exact.polish import measured
+from regolith_studio.coarsening.exact.problem import SPHERICITY, Problem
 from regolith_studio.coarsening.exact.starts import grouped_planes
+from regolith_studio.coarsening.polyhedra import facet_areas
 from regolith_studio.coarsening.target import Target
 from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.half_spaces import HalfSpaces
 
 SIDES = 6
+FEW_FACES = (0, 12, 20, 0)
+"""Facets that are begun with, by the number of the start; 0 for all."""
 FLUSH = 0.02
 """Triangles of the hull belong to a side of the box up to this sine, and this distance at unit volume."""
 INWARD = 1e-3
 """The other half-spaces begin so much farther in than the hull, as a share: so that none is redundant."""
+
+
+def boxed(
+    target: Target,
+    problems: tuple[Problem, Problem, Problem],
+    n_faces: int,
+    start: int,
+    rng: np.random.Generator,
+    steps: tuple[int, int],
+) -> Iterator[Attempt]:
+    """Polyhedra with six facets on the sides of the box; once the request is met, all facets may move.
+
+    Parameters
+    ----------
+    problems
+        With the volume as only condition, with all, and with all but the sphericity.
+    start
+        Number of the start; there are as many as :data:`FEW_FACES`, and nothing comes after them.
+    rng
+        Chooses the other half-spaces.
+    steps
+        Of the free and of the bound descent.
+    """
+    if start >= len(FEW_FACES):
+        return
+    few = FEW_FACES[start] if 0 < ALIKE * FEW_FACES[start] < n_faces else n_faces
+    planes = boxed_planes(target, few, rng)
+    if planes is None:
+        return
+    free, full, rest = (problem._replace(held=SIDES) for problem in problems)
+    best: Attempt | None = None
+    for found in _in_box(target, free, full, rest, planes, steps):
+        best = found if found.better_than(best) else best
+        if few == n_faces:
+            yield found
+    if best is None or not best.exact:
+        return
+    if best.n_facets < n_faces:
+        begun = best
+        for problem in (full, problems[1]):
+            for found in _grown(target, problem, begun, n_faces, steps[1]):
+                best = found if found.better_than(best) or len(best.offsets) < n_faces else best
+                yield found
+            if best.n_facets == n_faces:
+                break
+    if len(best.offsets) == n_faces:
+        yield from onward(problems[1], best, steps[1])
+
+
+def _in_box(
+    target: Target,
+    free: Problem,
+    full: Problem,
+    rest: Problem,
+    planes: tuple[FloatArray, FloatArray],
+    steps: tuple[int, int],
+) -> Iterator[Attempt]:
+    """All conditions at once, else the sphericity from below."""
+    met = False
+    for found in course(target, free, full, planes, *steps):
+        met |= found.exact
+        if found.exact:
+            yield found
+    if not met and full.asked[SPHERICITY]:
+        yield from compromise(target, full, rest, planes, steps[1], only_rounder=True)
+
+
+def _grown(target: Target, full: Problem, begun: Attempt, n_faces: int, steps: int) -> Iterator[Attempt]:
+    """The real facets of a polyhedron and further ones, up to `n_faces`; nothing where a held one is lost."""
+    real = facet_areas(HalfSpaces(begun.normals, begun.offsets)) >= SMALLEST_FACET
+    if real[: full.held].all():
+        normals, offsets = begun.normals[real], begun.offsets[real]
+        point = measured(full, normals, offsets, tangents_of(normals), NOWHERE)
+        yield from with_more_facets(target, full, attempt(full, point), n_faces, steps)
 
 
 def boxed_planes(

@@ -10,6 +10,8 @@ from regolith_studio.coarsening.exact.problem import Problem
 from regolith_studio.coarsening.target import RayTable, Target
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.descriptors.comparison import relative_errors
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.half_spaces import HalfSpaces
 
 CONDITION_KEYS = ("volume", "sphericity", "min_diameter", "max_diameter", "aspect_ratio")
 """Descriptors in the order of :mod:`regolith_studio.coarsening.exact.problem`."""
@@ -110,31 +112,37 @@ def reason_for(
     if "sphericity" in missed and (bound := sphericity_reason(wanted, n_faces)) is not None:
         return bound
     rough = worst == "sphericity" and found[worst] > wanted
-    own = own_facets(target, n_faces)
     advice = ROUGH_ADVICE if rough else ADVICE
-    if own is not None:
-        advice = f"the particle is convex and has {own} facets itself, which meet them."
     return (
         f"No polyhedron with {n_faces} faces was found that meets all descriptors:"
         f" {_reported(worst, request).replace('_', ' ')} is off by {100 * missed[worst]:.2g} %; {advice}"
     )
 
 
-def own_facets(target: Target, below: int) -> int | None:
-    """Facets of a particle that is a convex polyhedron with fewer than `below` of them; else ``None``."""
+def own_planes(target: Target, below: int) -> HalfSpaces | None:
+    """Half-spaces of a particle that is a convex polyhedron with fewer than `below` facets; else ``None``."""
     descriptors, hull = target.descriptors, target.mesh.hull
     if descriptors["volume"] < (1.0 - FLAT) * descriptors["convex_hull_volume"]:
         return None
     areas = hull.face_areas
     sound = areas > FLAT
     normals = hull.face_area_vectors[sound] / areas[sound, None]
-    offsets = np.einsum("ij,ij->i", normals, hull.triangles[sound, 0])
-    planes = np.column_stack([normals, offsets])
-    count = 0
-    while len(planes) and count < below:
-        planes = planes[np.abs(planes - planes[0]).max(axis=1) > COPLANAR]
-        count += 1
-    return count if count < below else None
+    planes = np.column_stack([normals, np.einsum("ij,ij->i", normals, hull.triangles[sound, 0])])
+    left = planes[np.argsort(-areas[sound], kind="stable")]
+    kept: list[FloatArray] = []
+    while len(left) and len(kept) < below:
+        kept.append(left[0])
+        left = left[np.abs(left - left[0]).max(axis=1) > COPLANAR]
+    own = np.array(kept)
+    return HalfSpaces(own[:, :3], own[:, 3]) if len(own) < below else None
+
+
+def own_reason(n_own: int, n_faces: int) -> str:
+    """One sentence about a convex particle with fewer facets than it shall have."""
+    return (
+        f"The result has {n_own} facets instead of {n_faces}: the particle is convex and has {n_own} facets"
+        " itself, and no other polyhedron was found that meets all descriptors."
+    )
 
 
 def facets_reason(n_real: int, n_faces: int) -> str:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -9,19 +10,27 @@ from regolith_studio.coarsening.bounds import sphericity_reason
 from regolith_studio.coarsening.core.box_search import DENSE_ANGLE, FINE_ANGLE, SAMPLE_ANGLE
 from regolith_studio.coarsening.core.cuts import SMALLEST_FACET
 from regolith_studio.coarsening.evaluation import LossFunction
-from regolith_studio.coarsening.exact.boxed import SIDES, boxed_planes
+from regolith_studio.coarsening.exact.boxed import FEW_FACES, boxed
 from regolith_studio.coarsening.exact.compromise import compromise, with_facets_back
-from regolith_studio.coarsening.exact.course import Attempt, course, densely_checked, onward, start_planes
+from regolith_studio.coarsening.exact.course import Attempt, course, densely_checked, start_planes
 from regolith_studio.coarsening.exact.growth import grown, numbers_to_grow_from, with_waiting
 from regolith_studio.coarsening.exact.problem import SPHERICITY, Problem, needs_box
 from regolith_studio.coarsening.exact.record import AS_GOOD_AS_MET, Record
-from regolith_studio.coarsening.exact.request import CONDITION_KEYS, EXACT, Request, reason_for
+from regolith_studio.coarsening.exact.request import (
+    CONDITION_KEYS,
+    EXACT,
+    Request,
+    own_planes,
+    own_reason,
+    reason_for,
+)
 from regolith_studio.coarsening.polyhedra import facet_areas
 from regolith_studio.coarsening.progress import MethodStep
 from regolith_studio.coarsening.result import MethodResult
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
+from regolith_studio.descriptors.comparison import relative_errors
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray
@@ -46,8 +55,6 @@ ROUND_STARTS = 2
 """Starts from which polyhedra as round as can be are sought where the particle is rounder than the first."""
 OUT_OF_REACH = 4e-3
 """Where they miss the sphericity by more (in logarithms, added up), no further start is tried."""
-BOXED_STARTS = 3
-"""Starts with half-spaces on the sides of the particle's box, where others meet no request."""
 STARTS_FOR_FACETS = 3
 """Further starts where all conditions are met, but a half-space bounds no facet."""
 
@@ -115,7 +122,7 @@ class Search:
     def compromises(self) -> Iterator[MethodStep]:
         """A step for each polyhedron with less loss, where no start could meet all conditions together."""
         best = self._found()
-        if not self._round_asked or self._record.met or self._misses:
+        if not self._round_asked or self._record.met or self._misses or self._itself is not None:
             return
         few_planes = [
             with_waiting(*start_planes(self._target, few, self._rng), self._n_faces)
@@ -133,13 +140,27 @@ class Search:
         GeometryError
             If no start bounds a polyhedron; so does :meth:`compromises`.
         """
+        counts = {"starts": float(self._tried), "exact": float(self._record.met)}
+        if not self._record.met and self._itself is not None:
+            said = own_reason(self._itself.n_faces, self._n_faces)
+            own, history = self._itself.half_spaces, tuple(self._record.history)
+            return MethodResult(own, history, said, counts, polyhedron=self._itself)
         outcome = self._record.outcome or self._found()
         planes = real_planes(with_facets_back(self._target, self._full, outcome))
         solid = ConvexPolyhedron.from_half_spaces(planes)
         found = describe(solid, LOSS_KEYS)
         reason = reason_for(self._target, self._request, self._n_faces, len(planes), found)
-        counts = {"starts": float(self._tried), "exact": float(self._record.met)}
         return MethodResult(planes, tuple(self._record.history), reason, counts, polyhedron=solid)
+
+    @cached_property
+    def _itself(self) -> ConvexPolyhedron | None:
+        """The particle, where it is a convex polyhedron with fewer facets, and so meets all conditions."""
+        planes = own_planes(self._target, self._n_faces)
+        if planes is None:
+            return None
+        solid = ConvexPolyhedron.from_half_spaces(planes)
+        errors = relative_errors(self._target.descriptors, describe(solid, LOSS_KEYS))
+        return solid if max(errors.values()) <= EXACT else None
 
     def _solved(self) -> Iterator[Attempt]:
         """From few facets or from all at once, in turns; nothing where the sphericity is above its bound."""
@@ -154,21 +175,10 @@ class Search:
         return course(self._target, self._free, self._full, self._planes, *self._steps)
 
     def _boxed(self) -> Iterator[Attempt]:
-        """With six half-spaces on the sides of the particle's box; then all of them may move."""
-        planes = boxed_planes(self._target, self._n_faces, self._rng)
-        if planes is None or self._tried > BOXED_STARTS or not needs_box(self._full):
-            return
-        free, full, rest = (each._replace(held=SIDES) for each in (self._free, self._full, self._rest))
-        best: Attempt | None = None
-        for found in course(self._target, free, full, planes, *self._steps):
-            best = found if found.better_than(best) else best
-            yield found
-        if best is None or (not best.exact and self._round_asked):
-            for found in compromise(self._target, full, rest, planes, self._level.bound_steps, True):
-                best = found if found.better_than(best) else best
-                yield found
-        if best is not None and best.exact:
-            yield from onward(self._full, best, self._level.bound_steps)
+        """With six half-spaces on the sides of the particle's box, where a condition is about the box."""
+        if needs_box(self._full):
+            problems = self._free, self._full, self._rest
+            yield from boxed(self._target, problems, self._n_faces, self._tried - 1, self._rng, self._steps)
 
     def _as_round_as_can_be(self) -> Iterator[MethodStep]:
         """The way to the sphericity from below; it is noted by how much it is missed."""
@@ -195,7 +205,7 @@ class Search:
         """Whether the sphericity is missed by so much that other starts would miss it too."""
         best = self._record.best
         nearly_met = best is not None and best.worst < AS_GOOD_AS_MET
-        enough = self._hopeless or self._tried >= BOXED_STARTS
+        enough = self._hopeless or self._tried >= len(FEW_FACES)
         return enough and sum(self._misses) > OUT_OF_REACH and not nearly_met
 
     @property

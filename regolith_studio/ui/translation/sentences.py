@@ -31,8 +31,8 @@ SENTENCES = (
         " a convex shape with the other descriptors has less surface, so a weight of 0 would free it."
     ),
     mark(
-        "No polyhedron with {faces} faces was found that meets all descriptors: {name} is off by {error} %;"
-        " the particle is convex and has {facets} facets itself, which meet them."
+        "The result has {real} facets instead of {faces}: the particle is convex and has {facets} facets"
+        " itself, and no other polyhedron was found that meets all descriptors."
     ),
     mark(
         "The result has {real} facets instead of {faces}: no place was found where the other half-spaces"
