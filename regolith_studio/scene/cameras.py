@@ -5,7 +5,7 @@ only the view that moved, and keeps the clipping range of the other's surface.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Any
 
@@ -127,6 +127,18 @@ def turned(pose: CameraPose, direction: str) -> CameraPose:
     distance = float(np.linalg.norm(np.asarray(pose.position) - focus))
     towards = np.asarray(view.towards_eye) / np.linalg.norm(view.towards_eye)
     return CameraPose(_vector(focus + distance * towards), pose.focal_point, view.up, pose.parallel_scale)
+
+
+def refitted(pose: CameraPose, before: float, after: float) -> CameraPose:
+    """The pose that shows as much along the shorter side of a picture as one of another shape showed.
+
+    Parameters
+    ----------
+    before, after
+        Width over height of the two pictures.
+    """
+    share = min(1.0, max(before, 1e-3)) / min(1.0, max(after, 1e-3))
+    return replace(pose, parallel_scale=pose.parallel_scale * share)
 
 
 def _vector(values: FloatArray) -> Vector:

@@ -4,7 +4,15 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from regolith_studio.scene.cameras import DIRECTIONS, CameraPose, apply_pose, framing_pose, pose_of, turned
+from regolith_studio.scene.cameras import (
+    DIRECTIONS,
+    CameraPose,
+    apply_pose,
+    framing_pose,
+    pose_of,
+    refitted,
+    turned,
+)
 from regolith_studio.scene.motions import orbited, panned, rolled, zoomed
 
 POSE = CameraPose((0.0, -4.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 2.0)
@@ -80,3 +88,12 @@ def test_that_zooming_by_two_halves_the_scale():
 
 def test_that_rolling_by_a_right_angle_lays_up_on_its_side():
     assert np.abs(rolled(POSE, np.pi / 2).view_up) == pytest.approx([1.0, 0.0, 0.0], abs=1e-12)
+
+
+@pytest.mark.parametrize("before", [0.3, 1.0, 2.5])
+@pytest.mark.parametrize("after", [0.4, 1.0, 3.0])
+def test_that_a_pose_for_another_shape_of_the_picture_frames_the_same_points(before, after):
+    points = np.random.default_rng(0).normal(size=(40, 3))
+    made = refitted(framing_pose(points, "left", before), before, after)
+    assert made.parallel_scale == pytest.approx(framing_pose(points, "left", after).parallel_scale)
+    assert made.position == framing_pose(points, "left", after).position

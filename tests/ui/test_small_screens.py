@@ -106,4 +106,27 @@ def test_that_an_enlarged_view_shows_the_particle_as_large_as_it_can(shown, pref
     usual = framed(views["particle"])
     for name in ("particle", "fit", "polyhedron"):
         window.menus.by_name["explore.enlarge"].trigger()
+        settled(window)
         assert framed(views[name]) == pytest.approx(usual, rel=0.02)
+
+
+def test_that_bodies_are_framed_again_when_the_window_or_a_border_is_moved(shown, preferences, settled, wait):
+    session = Session(InlineRunner(), Choices(method="quadric"))
+    window = shown(MainWindow(session, preferences, "image"))
+    session.open_sample()
+    window.resize(1920, 1080)
+    settled(window)
+    views = window.page.triptych.views
+    window.menus.by_name["explore.reset"].trigger()
+    usual = framed(views["particle"])
+    for width, height in ((960, 540), (1280, 800), (1920, 1080)):
+        window.resize(width, height)
+        wait(lambda width=width: window.width() == width)
+        settled(window)
+        assert [framed(view) for view in views.values()] == pytest.approx([usual] * 3, rel=0.02)
+    turned = views["fit"].pose
+    window.page.triptych.setSizes([200, 200, 700])
+    settled(window)
+    assert views["particle"].widget.width() < views["polyhedron"].widget.width() / 2
+    assert [framed(view) for view in views.values()] == pytest.approx([usual] * 3, rel=0.02)
+    assert {view.pose.position for view in views.values()} == {turned.position}

@@ -1,5 +1,7 @@
 """Both backends keep the same promise; the live one only where there is a display."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from PySide6.QtCore import QPoint, QPointF, Qt
@@ -107,6 +109,32 @@ def test_that_the_right_button_shifts_and_the_wheel_zooms(make):
     )
     QApplication.sendEvent(target, event)
     assert view.pose.parallel_scale < 40.0
+
+
+def resized(view, width, height):
+    view.widget.resize(width, height)
+    QApplication.processEvents()
+    assert (view.widget.width(), view.widget.height()) == (width, height)
+
+
+def test_that_a_view_that_is_resized_frames_its_body_again(make):
+    view = make()
+    view.set_pose(framing_pose(EGG.vertices, "front", 200 / 160))
+    for width, height in ((120, 300), (400, 150), (90, 90), (200, 160)):
+        resized(view, width, height)
+        assert alike(view.pose, framing_pose(EGG.vertices, "front", width / height))
+
+
+def test_that_a_view_that_is_resized_stays_as_the_user_turned_it(make):
+    view = make()
+    view.draw(lambda plotter: surfaces.show_particle(plotter, EGG))
+    view.set_pose(framing_pose(EGG.vertices, "front", 200 / 160))
+    drag(view, (100, 80), (150, 80))
+    turned_by_hand = view.pose
+    resized(view, 80, 160)
+    assert alike(view.pose, replace(turned_by_hand, parallel_scale=2 * turned_by_hand.parallel_scale))
+    resized(view, 300, 160)
+    assert alike(view.pose, turned_by_hand)
 
 
 def test_that_a_pose_that_is_set_tells_nobody(make):

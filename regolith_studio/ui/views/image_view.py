@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pyvista as pv
 from PySide6.QtCore import QEvent, QRect, Qt
-from PySide6.QtGui import QImage, QMouseEvent, QPainter, QPaintEvent, QWheelEvent
+from PySide6.QtGui import QImage, QMouseEvent, QPainter, QPaintEvent, QResizeEvent, QWheelEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from regolith_studio.scene import annotations, cameras, stage
@@ -14,6 +14,7 @@ from regolith_studio.scene.cameras import CameraPose
 from regolith_studio.scene.palette import LIGHT, Surroundings
 from regolith_studio.ui.views.camera_mouse import CameraMouse
 from regolith_studio.ui.views.protocol import Picture
+from regolith_studio.ui.views.refitting import Refitting
 
 
 class ImageView(QWidget):
@@ -28,6 +29,7 @@ class ImageView(QWidget):
         self._image = QImage()
         self._stale = True
         self._moved: list[Callable[[CameraPose], None]] = []
+        self._refitting = Refitting(self)
         self.mouse = CameraMouse(lambda: self.pose, self._move, self)
         self.setMouseTracking(True)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
@@ -48,6 +50,7 @@ class ImageView(QWidget):
 
     def set_pose(self, pose: CameraPose) -> None:
         cameras.apply_pose(self._plotter, pose)
+        self._refitting.placed()
         self._ask()
 
     def when_moved(self, callback: Callable[[CameraPose], None]) -> None:
@@ -86,6 +89,11 @@ class ImageView(QWidget):
         painter = QPainter(self)
         painter.drawImage(QRect(0, 0, self.width(), self.height()), self._image)
         painter.end()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        if self._plotter is not None:
+            self._refitting.resized()
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         self.mouse.press(event)

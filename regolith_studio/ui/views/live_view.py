@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 from PySide6.QtCore import QEvent, QMessageLogContext, QtMsgType, qInstallMessageHandler
-from PySide6.QtGui import QKeyEvent, QMouseEvent, QWheelEvent
+from PySide6.QtGui import QKeyEvent, QMouseEvent, QResizeEvent, QWheelEvent
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 from pyvistaqt import QtInteractor
 
@@ -15,6 +15,7 @@ from regolith_studio.scene.cameras import CameraPose
 from regolith_studio.scene.palette import LIGHT, Surroundings
 from regolith_studio.ui.views.camera_mouse import CameraMouse
 from regolith_studio.ui.views.protocol import Picture
+from regolith_studio.ui.views.refitting import Refitting
 
 
 class _Canvas(QtInteractor):
@@ -84,6 +85,7 @@ class LiveView(QWidget):
         stage.set_stage(self._canvas, surroundings)
         self._scale_bar = annotations.ScaleBar(self._canvas, surroundings)
         self._moved: list[Callable[[CameraPose], None]] = []
+        self._refitting = Refitting(self)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(self._canvas)
@@ -103,6 +105,7 @@ class LiveView(QWidget):
 
     def set_pose(self, pose: CameraPose) -> None:
         cameras.apply_pose(self._canvas, pose)
+        self._refitting.placed()
         self._canvas.update()
 
     def when_moved(self, callback: Callable[[CameraPose], None]) -> None:
@@ -135,6 +138,11 @@ class LiveView(QWidget):
             self._canvas.mouse = None
             self._canvas.close()
             self._canvas = None
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        if self._canvas is not None:
+            self._refitting.resized()
 
     def _move(self, pose: CameraPose) -> None:
         self.set_pose(pose)

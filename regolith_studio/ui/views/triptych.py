@@ -170,7 +170,6 @@ class Triptych(QSplitter):
         alone = all(frame.isHidden() for other, frame in self.frames.items() if other != name)
         for other, frame in self.frames.items():
             frame.setVisible(alone or other == name)
-        self._frame_anew()
 
     def enlarge_next(self) -> None:
         """One view after the other, then all."""
@@ -182,12 +181,6 @@ class Triptych(QSplitter):
         else:
             self.frames[seen[0]].hide()
             self.frames[NAMES[NAMES.index(seen[0]) + 1]].show()
-            self._frame_anew()
-
-    def _frame_anew(self) -> None:
-        """Show the bodies whole in the room that the views have from now on."""
-        self.refresh()  # the splitter would give it a moment later
-        self.reset_cameras()
 
     @property
     def shapes(self) -> tuple[Shape, ...]:
