@@ -77,7 +77,7 @@ def test_that_a_wish_made_while_a_result_is_shown_is_done_once(bench):
     assert shown == [1, 2]
 
 
-def test_that_an_error_while_showing_does_not_end_the_following(bench, drag, told):
+def test_that_an_error_while_showing_does_not_end_the_following(bench, told):
     following = Following(bench, "Work", "hand")
     following.want(Job(lambda: None, (1,)), lambda _: 1 / 0, told.append)
     following.want(Job(lambda: None, (2,)), told.append, told.append)

@@ -159,7 +159,8 @@ def test_that_a_dragged_bar_changes_the_field_and_a_button_draws_it_anew(page):
     assert field.drawn.values.std() == pytest.approx(spread)
 
 
-def test_that_letters_and_formulas_grow_and_the_theme_changes(page):
+def test_that_letters_and_formulas_grow_and_the_theme_changes(page, wait):
+    wait(lambda: page.annealing.rule.sizeHint().height() > page.annealing.rule.fontMetrics().height())
     before, high = page.annealing.sentence.fontMetrics().height(), page.annealing.rule.sizeHint().height()
     page.commands()["larger"]()
     page.commands()["larger"]()

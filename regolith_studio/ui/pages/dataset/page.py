@@ -54,10 +54,11 @@ class DatasetPage(PageWidget):
     def assemble(self) -> Iterator[None]:
         self.representatives, self.sizes = RepresentativesPanel(), SizesPanel()
         self.folder, self.targets, self.library = FolderPanel(), TargetsPanel(), LibraryPanel(self._context)
+        yield
         self.quality, self.distribution = QualityPlot(), SizesPlot()
         self.gallery, self.losses, self.exports = RepresentativesGallery(), LossesLabel(), ExportsList()
         yield
-        self._place()
+        yield from self._place()
         self._connect()
         yield
         self._context.wiring.refresh("particles", self._show_particles, holds=True)
@@ -242,8 +243,7 @@ class DatasetPage(PageWidget):
         self._survey = found
         self.quality.show_curve(found.curve)
         if found.population.omitted:
-            name, reason = found.population.omitted[0]
-            more = len(found.population.omitted) - 1
+            (name, reason), more = found.population.omitted[0], len(found.population.omitted) - 1
             named = tr("{name} and {count} more", name=name, count=more) if more else name
             self._context.toast.problem(f"{tr('Left out: {names}.', names=named)} {reason}")
         self._choose(int(self.representatives.count.value()))
@@ -381,18 +381,18 @@ class DatasetPage(PageWidget):
             told.connect(self._leave_wish)
         self.folder.name.textChanged.connect(lambda _: self._leave_wish())
 
-    def _place(self) -> None:
+    def _place(self) -> Iterator[None]:
         left = scrolled_column((self.representatives, self.sizes, self.folder, self.targets))
         upper = side_by_side((self.quality, self.distribution), (600, 460), stretch=0)
         upper.setObjectName("dataset_upper")
-        self._lower = tabs(
-            "dataset_lower", [(self.losses, tr("What formats lose")), (self.exports, tr("Exported"))]
-        )
-        self._shapes = tabs(
-            "dataset_shapes", [(self.gallery, tr("Representatives")), (self.library, tr("Library"))]
-        )
+        yield
+        told = [(self.losses, tr("What formats lose")), (self.exports, tr("Exported"))]
+        seen = [(self.gallery, tr("Representatives")), (self.library, tr("Library"))]
+        self._lower, self._shapes = tabs("dataset_lower", told), tabs("dataset_shapes", seen)
+        yield
         middle = stacked((upper, self._shapes, self._lower), (330, 330, 150), stretch=1)
         middle.setObjectName("dataset_middle")
+        yield
         whole = side_by_side((left, padded(middle, 0, 4, 4, 4)), (320, 1200), stretch=1)
         whole.setObjectName("dataset_whole")
         layout = QHBoxLayout(self)

@@ -75,7 +75,7 @@ class ModelPage(PageWidget):
         yield
         self.judgement = JudgementPanel()
         yield
-        self._place()
+        yield from self._place()
         self._connect()
         yield
         wiring.refresh("particles", self._show_sources)
@@ -340,14 +340,17 @@ class ModelPage(PageWidget):
         except RegolithError as error:
             self._context.toast.problem(str(error))
 
-    def _place(self) -> None:
+    def _place(self) -> Iterator[None]:
         shown = [(self.gallery, tr("Gallery")), (self.distributions, tr("Distributions"))]
         below = tabs("model_tabs", [*shown, (self.judgement, tr("Judgement"))])
+        yield
         middle = stacked([self.live, below], [380, 420], stretch=1)
         middle.setObjectName("model_rows")
+        yield
         parts = [scrolled_column([self.source, self.drawing]), padded(middle, 2, 10, 10, 8)]
         columns = side_by_side(parts, [310, 900], stretch=1)
         columns.setObjectName("model_columns")
+        yield
         layout = QHBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(columns)

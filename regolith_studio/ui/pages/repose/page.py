@@ -70,12 +70,10 @@ class ReposePage(PageWidget):
         self.engines = EnginePanel()
         yield
         self.studies = StudyDesk(self._context, self.study, self.setup, self._show_study_run)
-        self._later = QTimer(self)
-        self._later.setSingleShot(True)
-        self._later.setInterval(PREVIEW_DELAY)
+        self._later = QTimer(self, singleShot=True, interval=PREVIEW_DELAY)
         self._later.timeout.connect(self._preview)
         yield
-        self._place()
+        yield from self._place()
         yield
         self._connect()
         yield
@@ -231,14 +229,11 @@ class ReposePage(PageWidget):
             self.setup.tell([], str(error))
             return
         if order.case.n_particles > MOST_PREVIEWED:
-            self.setup.tell(
-                [
-                    tr(
-                        "More than {count:,} particles are for other programs: export the dataset.",
-                        count=MOST_PREVIEWED,
-                    )
-                ]
+            words = tr(
+                "More than {count:,} particles are for other programs: export the dataset.",
+                count=MOST_PREVIEWED,
             )
+            self.setup.tell([words])
             return
 
         def show(drawn: tuple[Prepared, Pile]) -> None:
@@ -357,13 +352,14 @@ class ReposePage(PageWidget):
 
     # --- layout --------------------------------------------------------------------------------
 
-    def _place(self) -> None:
+    def _place(self) -> Iterator[None]:
         sections = QWidget()
         row = QHBoxLayout(sections)
         row.setContentsMargins(0, 0, 0, 0)
         row.addWidget(self.x_z)
         row.addWidget(self.y_z)
         measured = stacked([sections, padded(self.verdict, 10, 0, 10, 4)], [300, 40], stretch=0)
+        yield
         pages = [
             (measured, tr("Sections")),
             (self.runs, tr("Runs")),
@@ -371,13 +367,15 @@ class ReposePage(PageWidget):
             (self.engines, tr("Engines")),
         ]
         below = tabs("repose_tabs", pages)
+        yield
         pictures = stacked([self.player, below], [480, 340], stretch=0)
         pictures.setObjectName("repose_pictures")
+        yield
         controls = scrolled_column([self.setup])
-        columns = side_by_side(
-            [padded(controls, 6, 0, 0, 0), padded(pictures, 0, 10, 0, 0)], [350, 1180], stretch=1
-        )
+        parts = [padded(controls, 6, 0, 0, 0), padded(pictures, 0, 10, 0, 0)]
+        columns = side_by_side(parts, [350, 1180], stretch=1)
         columns.setObjectName("repose_columns")
+        yield
         layout = QHBoxLayout(self)
         layout.setContentsMargins(0, 0, 8, 8)
         layout.addWidget(columns)
