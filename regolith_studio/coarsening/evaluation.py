@@ -18,6 +18,7 @@ from regolith_studio.coarsening.core.evaluate import (
     loss_of,
     weighted_loss,
 )
+from regolith_studio.coarsening.core.overlap import crossings_of
 from regolith_studio.coarsening.loss import loss
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import JACCARD, LossWeights
@@ -67,20 +68,24 @@ class LossFunction:
         measured = NO_BOX
         if everything or any(weights[key] for key in BOX_KEYS):
             measured = BOX_ON_FACETS if on_facets else LEAST_BOX
-        self._what = measured, everything or bool(weights[JACCARD])
         rays = target.rays
-        self._rays = rays.directions, rays.first, rays.distance, rays.sign, rays.weight
+        self._crossings = np.empty((5, 0))
+        if everything or weights[JACCARD]:
+            self._crossings = crossings_of(rays.directions, rays.first, rays.distance, rays.sign)
         self._wanted = np.array([target.descriptors[key] for key in LOSS_KEYS])
         self._alphas = np.array([weights[key] for key in (*LOSS_KEYS, JACCARD)])
+        self._facts = np.array([*self._wanted, *self._alphas, rays.weight, measured])
 
     def __call__(self, normals: FloatArray, offsets: FloatArray) -> Evaluation | None:
         """Errors and loss, or ``None`` where the half-spaces bound no proper polyhedron."""
-        status, values = evaluate(np.array(normals), np.array(offsets), *self._rays, *self._what)
+        status, values = evaluate(
+            normals, offsets, self._crossings, float(self._facts[-2]), int(self._facts[-1])
+        )
         return self._judged(values) if is_proper(status, values) else None
 
     def value(self, normals: FloatArray, offsets: FloatArray) -> float:
         """The loss alone, infinite where the half-spaces bound no proper polyhedron: quicker."""
-        return loss_of(normals, offsets, *self._rays, *self._what, self._wanted, self._alphas)
+        return loss_of(normals, offsets, self._crossings, self._facts)
 
     def of(self, values: FloatArray) -> float:
         """The loss of values as from :func:`regolith_studio.coarsening.core.evaluate.evaluate`."""

@@ -22,7 +22,7 @@ F = TypeVar("F", bound=Callable[..., object])
 OPTIONS: Any = {"cache": True, "nogil": True, "error_model": "numpy", "fastmath": False}
 
 _PACKAGE = Path(__file__).resolve().parents[1]
-_MARKS = (b"@kernel", b"@leaf", b"@inlined")
+_MARKS = (b"@kernel", b"@leaf", b"@inlined", b"lower_builtin")
 
 
 def kernel(function: F) -> F:

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.compiled import kernel, leaf
+from regolith_studio.geometry.eights import WIDTH, WORD, first_bit, load, positive, splat, store
 from regolith_studio.geometry.vectors import Vector, cross, dot, row
 
 REACH = 40.0
@@ -19,6 +20,8 @@ PlaceArray = NDArray[np.uint32]
 """Numbers of places and planes: unsigned, so that compiled code need not ask for negative ones."""
 HEIGHT = 3
 DEAD, FREE = 0, 1
+NUMBER = 0
+"""Row of the lists in the end: which vertex lives in a place."""
 
 
 class Work(NamedTuple):
@@ -66,16 +69,21 @@ def intersect(normals: FloatArray, offsets: FloatArray) -> tuple[int, FloatArray
         Planes of each vertex, shape (v, 3).
     """
     n = len(offsets)
-    capacity = 4 * (n + 4) + 8
-    work = Work(
-        np.empty((4, capacity + 1)),
-        np.empty((capacity + 1, 3), np.uint32),
-        np.empty((n + 4, n + 4), np.uint32),
-        np.empty((2, capacity), np.uint32),
-    )
     vertices, triples = np.empty((2 * n, 3)), np.empty((2 * n, 3), np.int64)
-    status, count = cut_out(normals, offsets, REACH * offsets.max(), work, vertices, triples)
+    status, count = cut_out(normals, offsets, REACH * offsets.max(), work_for(n), vertices, triples)
     return status, vertices[:count], triples[:count]
+
+
+@kernel
+def work_for(n: int) -> Work:
+    """Memory for n planes."""
+    places = (4 * (n + 4) + 16) // WIDTH * WIDTH
+    return Work(
+        np.empty((4, places)),
+        np.empty((places, 3), np.uint32),
+        np.empty((n + 4, n + 4), np.uint32),
+        np.empty((2, places), np.uint32),
+    )
 
 
 @leaf
@@ -89,10 +97,12 @@ def cut_out(
 ) -> tuple[int, int]:
     """Fill vertices (2 n, 3) and triples (2 n, 3); the status, and how many there are."""
     place, planes, owner, lists = work
-    n, nobody = len(offsets), np.uintp(place.shape[1] - 1)
-    used, n_free = begun(work, n, reach), np.uintp(0)
+    n = len(offsets)
+    used, n_free = begun(work, n, reach), np.uintp(place.shape[1] - 5)
     for j in range(n):
         n_dead = above_plane(place, used, row(normals, j), offsets[j], lists)
+        if n_free < 3 * n_dead:
+            return DEGENERATE, 0
         for i in range(n_dead):
             v = np.uintp(lists[DEAD, i])
             for k in range(3):
@@ -100,14 +110,9 @@ def cut_out(
                 u = np.uintp(owner[b, a])
                 if not place[HEIGHT, u] <= 0.0:
                     continue
-                if n_free > 0:
-                    n_free -= np.uintp(1)
-                    w = np.uintp(lists[FREE, n_free])
-                elif used < nobody:
-                    w = np.uintp(used)
-                    used += 1
-                else:
-                    return DEGENERATE, 0
+                n_free -= np.uintp(1)
+                w = np.uintp(lists[FREE, n_free])
+                used = max(used, int(w) + 1)
                 t = place[HEIGHT, u] / (place[HEIGHT, u] - place[HEIGHT, v])
                 for c in range(3):
                     place[c, w] = place[c, u] + t * (place[c, v] - place[c, u])
@@ -125,14 +130,18 @@ def cut_out(
 @leaf
 def above_plane(place: FloatArray, used: int, normal: Vector, offset: float, lists: PlaceArray) -> int:
     """Heights of all vertices above a plane; those above 0 are listed as dead, and counted."""
-    for v in range(used):
-        place[HEIGHT, v] = (
-            normal[0] * place[0, v] + normal[1] * place[1, v] + normal[2] * place[2, v] - offset
-        )
-    count = np.uintp(0)
-    for v in range(used):
-        lists[DEAD, count] = v
-        count += np.uintp(place[HEIGHT, v] > 0.0)
+    size, count = place.shape[1], np.uintp(0)
+    x, y, z, far = splat(normal[0]), splat(normal[1]), splat(normal[2]), splat(offset)
+    for first in range(0, used, WORD):
+        bits = 0
+        for at in range(first, min(used, first + WORD), WIDTH):
+            height = x * load(place, at) + y * load(place, size + at) + z * load(place, 2 * size + at) - far
+            store(place, HEIGHT * size + at, height)
+            bits |= positive(height) << (at - first)
+        while bits != 0:
+            lists[DEAD, count] = first + first_bit(bits)
+            bits &= bits - 1
+            count += np.uintp(1)
     return count  # type: ignore[return-value]
 
 
@@ -140,14 +149,18 @@ def above_plane(place: FloatArray, used: int, normal: Vector, offset: float, lis
 def begun(work: Work, n: int, reach: float) -> int:
     """The first tetrahedron, with planes n .. n + 3 at distance `reach`; its four vertices.
 
-    The last place belongs to nobody and counts as dead.
+    The last place belongs to nobody and counts as dead; the others are free, the first on top.
     """
-    place, planes, owner, _ = work
-    nobody = place.shape[1] - 1
-    place[0, nobody] = place[HEIGHT, nobody] = np.nan
+    place, planes, owner, lists = work
+    places = place.shape[1]
+    for at in range(0, places, WIDTH):
+        store(place, at, splat(np.nan))
+        store(place, HEIGHT * places + at, splat(np.nan))
     for a in range(n + 4):
         for b in range(n + 4):
-            owner[a, b] = nobody
+            owner[a, b] = places - 1
+    for i in range(places - 5):
+        lists[FREE, i] = places - 2 - i
     far = reach * np.sqrt(3.0)
     for v in range(4):
         for c in range(3):
@@ -179,13 +192,14 @@ def collected(
                 return DEGENERATE, 0
             triples[count, k] = a
         refine(normals, offsets, planes, place, v, vertices, count)
+        work.lists[NUMBER, v] = count
         count += 1
     for i in range(n):
-        owner[0, i] = 1
+        owner[n, i] = 1
     for v in range(count):
         for k in range(3):
-            facets += owner[0, triples[v, k]]
-            owner[0, triples[v, k]] = 0
+            facets += owner[n, triples[v, k]]
+            owner[n, triples[v, k]] = 0
     return (FINE, count) if count == 2 * facets - 4 else (DEGENERATE, 0)
 
 

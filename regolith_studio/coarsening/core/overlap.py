@@ -3,14 +3,14 @@
 import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.compiled import kernel
+from regolith_studio.geometry.compiled import kernel, leaf
+from regolith_studio.geometry.eights import least, load, most, splat, total
 from regolith_studio.geometry.exits import exits
-from regolith_studio.geometry.inlined import inlined
 
-__all__ = ["exits", "jaccard", "shared_by_planes", "shared_charge", "shared_volume"]
+__all__ = ["crossings_of", "exits", "jaccard", "shared_by_planes", "shared_charge", "shared_volume"]
 
-RAYS = 256
-"""Rays that are worked out side by side."""
+SIDE_BY_SIDE = 16
+"""Crossings that are worked out together."""
 
 
 @kernel
@@ -38,63 +38,50 @@ def shared_volume(
 
 
 @kernel
-def shared_by_planes(
-    normals: FloatArray,
-    offsets: FloatArray,
-    directions: FloatArray,
-    first: IntArray,
-    distance: FloatArray,
-    sign: FloatArray,
-    weight: float,
-) -> float:
+def crossings_of(
+    directions: FloatArray, first: IntArray, distance: FloatArray, sign: FloatArray
+) -> FloatArray:
+    """Every crossing with its ray, for :func:`shared_by_planes`: direction, distance and sign, shape (5, m).
+
+    The last are at distance 0, so that m is a multiple of sixteen.
+    """
+    m = len(distance)
+    crossings = np.zeros((5, (m + SIDE_BY_SIDE - 1) // SIDE_BY_SIDE * SIDE_BY_SIDE))
+    for k in range(len(directions)):
+        for j in range(first[k], first[k + 1]):
+            for c in range(3):
+                crossings[c, j] = directions[k, c]
+            crossings[3, j], crossings[4, j] = distance[j], sign[j]
+    return crossings
+
+
+@leaf
+def shared_by_planes(dual: FloatArray, crossings: FloatArray, weight: float) -> float:
     """:func:`shared_volume` of half-spaces, where nobody asks which plane a ray meets; other last bits.
 
     Parameters
     ----------
-    normals, offsets
-        Half-spaces <n_i, x> <= h_i with h_i > 0, shapes (n, 3) and (n,).
-    directions
-        Of the rays, unit vectors, shape (k, 3).
+    dual
+        n_i / h_i of half-spaces <n_i, x> <= h_i with h_i > 0, shape (n, 3).
+    crossings
+        Of the particle, as from :func:`crossings_of`.
+    weight
+        Of each ray.
     """
-    n = len(offsets)
-    dual = np.zeros((n + 3, 3))
-    for i in range(n):
-        for c in range(3):
-            dual[i, c] = normals[i, c] / offsets[i]
-    x, y, z, most, sums = np.empty(RAYS), np.empty(RAYS), np.empty(RAYS), np.empty(RAYS), np.zeros(RAYS)
-    total = 0.0
-    for start in range(0, len(directions), RAYS):
-        rays = min(RAYS, len(directions) - start)
-        for j in range(rays):
-            x[j], y[j], z[j] = directions[start + j, 0], directions[start + j, 1], directions[start + j, 2]
-            most[j] = 0.0
-        for i in range(0, n, 4):
-            a0, a1, a2, b0, b1, b2 = _two_rows(dual, i)
-            c0, c1, c2, d0, d1, d2 = _two_rows(dual, i + 2)
-            for j in range(rays):
-                here = max(x[j] * a0 + y[j] * a1 + z[j] * a2, x[j] * b0 + y[j] * b1 + z[j] * b2)
-                there = max(x[j] * c0 + y[j] * c1 + z[j] * c2, x[j] * d0 + y[j] * d1 + z[j] * d2)
-                most[j] = max(most[j], max(here, there))
-        from_here = first[start]
-        single = 0
-        for j in range(rays):
-            single += first[start + j + 1] - first[start + j] == 1
-        if single == rays:
-            for j in range(rays):
-                t = min(distance[from_here + j], 1.0 / most[j])
-                sums[j] += sign[from_here + j] * t * t * t
-        else:
-            for j in range(rays):
-                for k in range(first[start + j], first[start + j + 1]):
-                    t = min(distance[k], 1.0 / most[j])
-                    total += sign[k] * t * t * t
-    return float((total + sums.sum()) * weight / 3.0)
-
-
-@inlined
-def _two_rows(rows: FloatArray, i: int) -> tuple[float, float, float, float, float, float]:
-    """Rows i and i + 1 of an array of shape (n, 3)."""
-    return rows[i, 0], rows[i, 1], rows[i, 2], rows[i + 1, 0], rows[i + 1, 1], rows[i + 1, 2]
+    m, one = crossings.shape[1], splat(1.0)
+    sums = splat(0.0)
+    for at in range(0, m, SIDE_BY_SIDE):
+        x, y, z = load(crossings, at), load(crossings, m + at), load(crossings, 2 * m + at)
+        u, v, w = load(crossings, at + 8), load(crossings, m + at + 8), load(crossings, 2 * m + at + 8)
+        near, far = splat(0.0), splat(0.0)
+        for i in range(len(dual)):
+            a, b, c = splat(dual[i, 0]), splat(dual[i, 1]), splat(dual[i, 2])
+            near, far = most(x * a + y * b + z * c, near), most(u * a + v * b + w * c, far)
+        t = least(load(crossings, 3 * m + at), one / near)
+        r = least(load(crossings, 3 * m + at + 8), one / far)
+        sums = sums + load(crossings, 4 * m + at) * (t * t * t)
+        sums = sums + load(crossings, 4 * m + at + 8) * (r * r * r)
+    return total(sums) * weight / 3.0
 
 
 @kernel

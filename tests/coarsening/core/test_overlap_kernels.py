@@ -5,7 +5,13 @@ import pytest
 
 from regolith_studio.coarsening.core.cuts import with_all_facets
 from regolith_studio.coarsening.core.intersection import intersect
-from regolith_studio.coarsening.core.overlap import exits, shared_by_planes, shared_charge, shared_volume
+from regolith_studio.coarsening.core.overlap import (
+    crossings_of,
+    exits,
+    shared_by_planes,
+    shared_charge,
+    shared_volume,
+)
 from regolith_studio.coarsening.core.planes import gradient_of, levers_of, moved, tangents_of
 from regolith_studio.coarsening.core.rays import bundle_of, cast
 from regolith_studio.coarsening.target import Target
@@ -57,12 +63,14 @@ def test_that_the_shared_volume_does_not_need_the_planes_that_rays_meet(
     offsets, directions = rng.uniform(0.4, 0.7, n_faces), fibonacci_directions(2_100)
     mesh = target.mesh.moved(shift=(shift, 0.1, 0.0))
     crossings = cast(mesh.vertices, mesh.faces, bundle_of(directions))
-    radius = 1.0 / np.maximum((directions @ (normals / offsets[:, None]).T).max(axis=1), 1e-300)
+    dual = normals / offsets[:, None]
+    radius = 1.0 / np.maximum((directions @ dual.T).max(axis=1), 1e-300)
     expected = shared_volume(*crossings, 1e-3, radius)
+    table = crossings_of(directions, *crossings)
     for function in (shared_by_planes, shared_by_planes.py_func):  # type: ignore[attr-defined]
         if function is shared_by_planes or n_faces == 4:
             with np.errstate(divide="ignore"):
-                found = function(normals, offsets, directions, *crossings, 1e-3)
+                found = function(dual, table, 1e-3)
             assert found == pytest.approx(expected, rel=1e-12)
 
 

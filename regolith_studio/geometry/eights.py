@@ -1,0 +1,185 @@
+"""Eight floats side by side: what the processor works out in one go, as a number type of kernels.
+
+Compilers find such vectors in plain loops only where arrays cannot overlap and counts are known. Here a
+kernel says what it means: it loads eight neighbouring floats of an array, calculates with them as with one
+number and stores them. On processors with narrower registers the compiler takes several. Rounding is that of
+single floats, operation by operation, everywhere.
+
+Outside compiled code an Eight is an array of shape (8,), so that ``kernel.py_func`` works as it stands.
+"""
+
+import operator
+from collections.abc import Callable
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+
+from regolith_studio.geometry.arrays import FloatArray
+
+numba: Any = import_module("numba.extending")
+types: Any = import_module("numba").types
+ir: Any = import_module("llvmlite.ir")
+
+WIDTH = 8
+WORD = 7 * WIDTH
+"""Bits that are collected in one integer: seven Eights, so that none is the sign."""
+Eight = FloatArray
+
+
+def load(array: FloatArray, at: int) -> Eight:
+    """The eight floats from place `at` of a C-contiguous array on, rows one after the other."""
+    return np.array(array.reshape(-1)[at : at + WIDTH])
+
+
+def store(array: FloatArray, at: int, eight: Eight) -> None:
+    """Write eight floats from place `at` on."""
+    array.reshape(-1)[at : at + WIDTH] = eight
+
+
+def splat(x: float) -> Eight:
+    """Eight times the same."""
+    return np.full(WIDTH, float(x))
+
+
+def least(one: Eight, two: Eight) -> Eight:
+    """The lesser of each pair; where one is NaN, `two`."""
+    return np.where(one < two, one, two)
+
+
+def most(one: Eight, two: Eight) -> Eight:
+    """The greater of each pair; where one is NaN, `two`."""
+    return np.where(one > two, one, two)
+
+
+def pick(one: Eight, two: Eight, then: Eight, other: Eight) -> Eight:
+    """``then`` where one < two, else ``other``."""
+    return np.where(one < two, then, other)
+
+
+def positive(eight: Eight) -> int:
+    """Bit k is set where float k is above 0; NaN is not."""
+    return int(sum(1 << k for k in range(WIDTH) if eight[k] > 0.0))
+
+
+def smallest(eight: Eight) -> float:
+    """The least of the eight; none may be NaN."""
+    return float(np.min(eight))
+
+
+def total(eight: Eight) -> float:
+    """Their sum: halves are added until one is left."""
+    four = eight[:4] + eight[4:]
+    return float((four[0] + four[2]) + (four[1] + four[3]))
+
+
+def first_bit(word: int) -> int:
+    """Place of the lowest bit that is set; there must be one."""
+    return (int(word) & -int(word)).bit_length() - 1
+
+
+class EightType(types.Type):  # type: ignore[misc]
+    """Numba's type of an Eight."""
+
+    def __init__(self) -> None:
+        super().__init__(name="Eight")
+
+
+EIGHT = EightType()
+_FLOATS, _INDEX = ir.VectorType(ir.DoubleType(), WIDTH), ir.IntType(32)
+_NOTHING, _FIRST = ir.Constant(_FLOATS, ir.Undefined), ir.Constant(_INDEX, 0)
+
+
+@numba.register_model(EightType)
+class _Model(numba.models.PrimitiveModel):  # type: ignore[misc]
+    """A vector register."""
+
+    def __init__(self, manager: Any, kind: Any) -> None:
+        super().__init__(manager, kind, _FLOATS)
+
+
+def _place(context: Any, builder: Any, kind: Any, array: Any, at: Any) -> Any:
+    """Pointer to eight floats of an array."""
+    data = context.make_array(kind)(context, builder, array).data
+    floats = builder.bitcast(data, ir.DoubleType().as_pointer())
+    return builder.bitcast(builder.gep(floats, [at]), _FLOATS.as_pointer())
+
+
+def _shuffled(builder: Any, eight: Any, places: list[int]) -> Any:
+    """Float `places[k]` in place k."""
+    return builder.shuffle_vector(eight, _NOTHING, ir.Constant(ir.VectorType(_INDEX, WIDTH), places))
+
+
+def _chosen(builder: Any, sign: str, one: Any, two: Any) -> Any:
+    """``one`` where it compares to ``two`` as the sign says, else ``two``."""
+    return builder.select(builder.fcmp_ordered(sign, one, two), one, two)
+
+
+def _folded(builder: Any, eight: Any, fold: Callable[[Any, Any], Any]) -> Any:
+    """The first float after halves are folded until one is left."""
+    for by in (4, 2, 1):
+        eight = fold(eight, _shuffled(builder, eight, [(k + by) % WIDTH for k in range(WIDTH)]))
+    return builder.extract_element(eight, _FIRST)
+
+
+def _bits(builder: Any, eight: Any) -> Any:
+    """One bit for each float that is above 0."""
+    above = builder.fcmp_ordered(">", eight, ir.Constant(_FLOATS, [0.0] * WIDTH))
+    return builder.zext(builder.bitcast(above, ir.IntType(WIDTH)), ir.IntType(64))
+
+
+_FLOAT, _WORD = types.float64, types.int64
+_Row = tuple[Callable[..., Any], tuple[Any, ...], Any, Callable[..., Any]]
+_TABLE: tuple[_Row, ...] = (
+    (load, (types.Array, types.Integer), EIGHT, lambda b, place: b.load(place, align=8)),
+    (store, (types.Array, types.Integer, EIGHT), types.none, lambda b, to, x: b.store(x, to, align=8)),
+    (splat, (_FLOAT,), EIGHT, lambda b, x: _shuffled(b, b.insert_element(_NOTHING, x, _FIRST), [0] * WIDTH)),
+    (operator.add, (EIGHT, EIGHT), EIGHT, lambda b, x, y: b.fadd(x, y)),
+    (operator.sub, (EIGHT, EIGHT), EIGHT, lambda b, x, y: b.fsub(x, y)),
+    (operator.mul, (EIGHT, EIGHT), EIGHT, lambda b, x, y: b.fmul(x, y)),
+    (operator.truediv, (EIGHT, EIGHT), EIGHT, lambda b, x, y: b.fdiv(x, y)),
+    (least, (EIGHT, EIGHT), EIGHT, lambda b, x, y: _chosen(b, "<", x, y)),
+    (most, (EIGHT, EIGHT), EIGHT, lambda b, x, y: _chosen(b, ">", x, y)),
+    (pick, (EIGHT,) * 4, EIGHT, lambda b, x, y, u, v: b.select(b.fcmp_ordered("<", x, y), u, v)),
+    (positive, (EIGHT,), _WORD, _bits),
+    (smallest, (EIGHT,), _FLOAT, lambda b, x: _folded(b, x, lambda y, z: _chosen(b, "<", y, z))),
+    (total, (EIGHT,), _FLOAT, lambda b, x: _folded(b, x, b.fadd)),
+    (first_bit, (_WORD,), _WORD, lambda b, x: b.cttz(x, ir.Constant(ir.IntType(1), 1))),
+)
+"""Function, arguments, result, and what a builder puts in its place; array and place come as a pointer."""
+
+
+def _typer_of(wanted: tuple[Any, ...], result: Any) -> Callable[..., Any]:
+    """What numba asks whether a function takes certain arguments; it wants to know how many."""
+
+    def fits(*given: Any) -> Any:
+        fit = (
+            isinstance(g, w) if isinstance(w, type) else g == w for g, w in zip(given, wanted, strict=True)
+        )
+        return result if all(fit) else None
+
+    return (
+        lambda a: fits(a),
+        lambda a, b: fits(a, b),
+        lambda a, b, c: fits(a, b, c),
+        lambda a, b, c, d: fits(a, b, c, d),
+    )[len(wanted) - 1]
+
+
+def _taught(
+    function: Callable[..., Any], wanted: tuple[Any, ...], result: Any, emitted: Callable[..., Any]
+) -> None:
+    """Tell numba the type of a function and its code."""
+
+    def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        if wanted[0] is types.Array:
+            values = (_place(context, builder, signature.args[0], *values[:2]), *values[2:])
+        value = emitted(builder, *values)
+        return context.get_dummy_value() if result is types.none else value
+
+    numba.type_callable(function)(lambda _context: _typer_of(wanted, result))
+    numba.lower_builtin(function, *wanted)(code)
+
+
+for _row in _TABLE:
+    _taught(*_row)

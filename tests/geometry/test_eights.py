@@ -1,0 +1,97 @@
+"""Eight floats side by side: compiled code against numpy and the rules of single floats."""
+
+import numpy as np
+import pytest
+
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.compiled import kernel
+from regolith_studio.geometry.eights import (
+    WORD,
+    first_bit,
+    least,
+    load,
+    most,
+    pick,
+    positive,
+    smallest,
+    splat,
+    store,
+    total,
+)
+
+
+@kernel
+def everything(given: FloatArray, out: FloatArray) -> tuple[int, float, float]:
+    """Every function once."""
+    one, two = load(given, 0), load(given, 8)
+    store(out, 0, one + two)
+    store(out, 8, one - two)
+    store(out, 16, one * two)
+    store(out, 24, one / two)
+    store(out, 32, least(one, two))
+    store(out, 40, most(one, two))
+    store(out, 48, pick(one, two, splat(1.5), two))
+    return positive(one - two), smallest(one), total(two)
+
+
+def test_that_compiled_eights_are_arrays_of_eight() -> None:
+    given = np.random.default_rng(0).normal(size=(2, 8))
+    one, two = given
+    out = np.empty((7, 8))
+    bits, low, added = everything(given, out)
+    assert np.array_equal(
+        out,
+        [
+            one + two,
+            one - two,
+            one * two,
+            one / two,
+            np.minimum(one, two),
+            np.maximum(one, two),
+            np.where(one < two, 1.5, two),
+        ],
+    )
+    assert bits == int(np.packbits(one > two, bitorder="little")[0])
+    assert low == one.min()
+    assert added == pytest.approx(two.sum(), rel=1e-12)
+
+
+def test_that_compiled_eights_are_their_python_reference() -> None:
+    given = np.random.default_rng(1).normal(size=16)
+    one, two = np.empty(56), np.empty(56)
+    assert everything(given, one) == everything.py_func(given, two)
+    assert np.array_equal(one, two)
+
+
+def test_that_no_bit_stands_for_what_is_not_a_number() -> None:
+    given = np.array([np.nan, 1.0, -1.0, 0.0, -0.0, np.inf, -np.inf, 1e-300, *np.zeros(8)])
+    given[8:] = 0.0
+    bits, _, _ = everything(given, np.empty(56))
+    assert bits == (1 << 1) | (1 << 5) | (1 << 7)
+
+
+@kernel
+def bit_of(word: int) -> int:
+    """The lowest bit."""
+    return first_bit(word)
+
+
+@pytest.mark.parametrize("word", [1, 6, 1 << (WORD - 1), (1 << WORD) - (1 << 40)])
+def test_that_the_first_bit_is_the_power_of_two_that_divides(word: int) -> None:
+    place = bit_of(word)
+    assert word % 2**place == 0
+    assert word % 2 ** (place + 1) != 0
+    assert first_bit(word) == place
+
+
+@kernel
+def shifted(array: FloatArray, at: int) -> FloatArray:
+    """Eight floats of a row, counted from the beginning of the array."""
+    out = np.empty(8)
+    store(out, 0, load(array, at))
+    return out
+
+
+def test_that_places_count_along_rows() -> None:
+    array = np.arange(60.0).reshape(5, 12)
+    assert np.array_equal(shifted(array, 17), np.arange(17.0, 25.0))
