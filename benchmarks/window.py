@@ -1,9 +1,10 @@
-"""What the window takes: ``python -m benchmarks.window moves|cycles|samples|cancel|blocks``.
+"""What the window takes: ``python -m benchmarks.window moves|cycles|samples|cancel|blocks|sliders|rest``.
 
 ``moves`` drags all sliders of the page *Explore*, ``cycles`` makes and draws polyhedra by the quick method,
 ``samples`` opens drawn particles and then the shipped ones again; all three print the megabytes at each look
 and their slope with its standard error. ``cancel`` stops each kind of work and prints how long the window did
-not answer, ``blocks`` goes through all pages and prints what kept it from answering for more than 50 ms.
+not answer, ``blocks`` goes through all pages and prints what kept it from answering for more than 50 ms;
+``sliders`` times the way from a move to the painted view, ``rest`` what a window takes that nobody touches.
 ``--views live`` needs a display.
 """
 
@@ -14,21 +15,25 @@ from benchmarks.window_blocks import blocks
 from benchmarks.window_cancel import stops
 from benchmarks.window_driving import opened
 from benchmarks.window_growth import coarsened_and_drawn, samples_opened, slider_moves
+from benchmarks.window_response import responses, rest
 
 GROWING = {"moves": slider_moves, "cycles": coarsened_and_drawn, "samples": samples_opened}
+LISTING = {"cancel": stops, "blocks": blocks, "sliders": responses}
 
 
 def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.window", description=__doc__.splitlines()[0])
-    parser.add_argument("what", choices=["moves", "cycles", "samples", "cancel", "blocks"])
+    parser.add_argument("what", choices=[*GROWING, *LISTING, "rest"])
     parser.add_argument("--views", choices=["image", "live"], default="image")
     parser.add_argument("--count", type=int, default=1000)
     options = parser.parse_args()
     with opened(options.views) as window:
-        if options.what in ("cancel", "blocks"):
-            for line in (stops if options.what == "cancel" else blocks)(window):
+        if options.what in LISTING:
+            for line in LISTING[options.what](window):
                 print(line, flush=True)
+        elif options.what == "rest":
+            print(rest(window))
         else:
             _grow(window, options.what, options.count)
 

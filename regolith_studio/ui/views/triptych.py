@@ -115,8 +115,8 @@ class Triptych(QSplitter):
         self.comparison.set_shapes(self._shapes, FIT)
 
     def show_polyhedron(self, results: Results) -> None:
-        """Show the newest polyhedron of the coarsening."""
-        found = results.coarsened or results.coarsening_progress
+        """Show the newest polyhedron, also while another one is being made: else a drag would show none."""
+        found = results.best
         if found is None or found.polyhedron is None:
             return
         solid, centre = found.polyhedron, np.asarray(found.centre, dtype=np.float64)

@@ -1,0 +1,26 @@
+"""A slider that never rests: what has been made meanwhile is seen."""
+
+from itertools import cycle
+
+import pytest
+
+from regolith_studio.ui.app import open_window
+
+
+@pytest.mark.parametrize("method", ["quadric", "exact"])
+def test_that_polyhedra_are_seen_while_a_slider_never_rests(shown, preferences, wait, method):
+    window = shown(open_window(views="image", preferences=preferences))
+    session, frame = window.session, window.page.triptych.frames["polyhedron"]
+    wait(lambda: session.results.coarsened is not None and not session.tasks, 120.0)
+    session.choose(method=method, level=2)
+    seen, places = set(), cycle([*range(12, 40), *range(40, 12, -1)])
+
+    def has_moved_on():
+        session.choose("n_faces", n_faces=next(places))
+        seen.add(frame.title)
+        return len(seen) >= 5
+
+    wait(has_moved_on)
+    session.choose("n_faces", n_faces=24)
+    wait(lambda: session.results.coarsened is not None and not session.tasks)
+    wait(lambda: str(session.results.coarsened.n_faces) in frame.title)
