@@ -2113,6 +2113,11 @@
    <translation>Ordner für Abbildungen und Tabellen</translation>
   </message>
   <message>
+   <location filename="ui/dialogs/folder.py" />
+   <source>Folder, may be new:</source>
+   <translation>Ordner, auch ein neuer:</translation>
+  </message>
+  <message>
    <location filename="ui/pages/repose/__init__.py" />
    <source>Folder of r&amp;uns …</source>
    <translation>Ordner der &amp;Läufe …</translation>

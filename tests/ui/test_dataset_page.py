@@ -21,6 +21,7 @@ from regolith_studio.session.recipe import Recipe, read_recipe
 from regolith_studio.session.recipe_dataset import STANDING, Exports, Representatives
 from regolith_studio.session.session import Session
 from regolith_studio.ui.commands import Commands
+from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.dataset import PAGE
 from regolith_studio.ui.theme import DARK, LIGHT
@@ -77,7 +78,7 @@ def slide(panel, value):
 
 
 def test_that_a_new_user_gets_to_a_rocky_script_and_a_yade_run(chosen, wait, tmp_path, monkeypatch) -> None:
-    monkeypatch.setattr(QFileDialog, "getExistingDirectory", lambda *_: str(tmp_path))
+    monkeypatch.setattr(FolderDialog, "ask", lambda *_: str(tmp_path))
     chosen.folder.name.setText("my regolith/1")
     QTest.mouseClick(chosen.folder.build, Qt.MouseButton.LeftButton)
     folder = tmp_path / "my_regolith_1"
@@ -161,7 +162,7 @@ def test_that_settings_of_an_earlier_version_are_understood(page) -> None:
 
 
 def test_that_a_dataset_is_replaced_only_when_asked(chosen, tmp_path, wait, monkeypatch) -> None:
-    monkeypatch.setattr(QFileDialog, "getExistingDirectory", lambda *_: str(tmp_path))
+    monkeypatch.setattr(FolderDialog, "ask", lambda *_: str(tmp_path))
     chosen.build()
     wait(lambda: (tmp_path / "regolith" / "dataset.json").exists())
     before = (tmp_path / "regolith" / "dataset.json").read_bytes()

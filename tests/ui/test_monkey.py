@@ -57,6 +57,7 @@ ANSWERS = {
     "getOpenFileNames": ([], ""),
     "getSaveFileName": ("", ""),
     "getExistingDirectory": "",
+    "exec": 0,
 }
 """Of dialogs with a loop of their own: they would wait for somebody."""
 PATIENCE = 200

@@ -20,6 +20,7 @@ from regolith_studio.jobs.runners.inline import InlineRunner
 from regolith_studio.session.session import Session
 from regolith_studio.studies.repose import runs_from
 from regolith_studio.ui.commands import Commands
+from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.repose import PAGE
 from regolith_studio.ui.pages.repose.section_plot import grain_words
@@ -130,7 +131,7 @@ def test_that_positions_are_measured_and_a_dragged_cut_changes_the_angle(page, t
     assert page._measured.settings.cut_top == pytest.approx(0.3, abs=0.002)
     assert page.setup.evaluation.value()["cut_top"] == pytest.approx(0.3, abs=0.002)
     out = tmp_path / "out"
-    monkeypatch.setattr(QFileDialog, "getExistingDirectory", lambda *_: str(out))
+    monkeypatch.setattr(FolderDialog, "ask", lambda *_: str(out))
     page.export_run()
     assert json.loads((out / "repose.json").read_text("utf-8"))["angle_deg"] == page._measured.angle
     assert (out / "sections.svg").exists()

@@ -12,7 +12,7 @@ from regolith_studio.ui.app import open_window
 from regolith_studio.ui.pages.studies.rows_bar import RowsBar
 
 SECONDS = 170.0
-ASKED = "regolith_studio.ui.pages.studies.page.QFileDialog.getExistingDirectory"
+ASKED = "regolith_studio.ui.dialogs.folder.FolderDialog.ask"
 
 
 def paper_names():

@@ -21,6 +21,7 @@ from regolith_studio.errors import InputError
 from regolith_studio.jobs.hiring import TLS_NAMES, Hiring
 from regolith_studio.jobs.runners.process_pool import cores
 from regolith_studio.jobs.runners.scheduler_address import SchedulerAddress
+from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.labels import remark
 
@@ -61,7 +62,7 @@ class PathField(QWidget):
 
     def _ask(self) -> None:
         if self._folder:
-            name = QFileDialog.getExistingDirectory(self, self._title, self.text.text())
+            name = FolderDialog.ask(self, self._title, self.text.text())
         else:
             name, _ = QFileDialog.getOpenFileName(self, self._title, self.text.text(), self._filter)
         if name:

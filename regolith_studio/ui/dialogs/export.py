@@ -8,7 +8,6 @@ from PySide6.QtWidgets import (
     QCheckBox,
     QDialog,
     QDialogButtonBox,
-    QFileDialog,
     QFormLayout,
     QHBoxLayout,
     QLabel,
@@ -25,6 +24,7 @@ from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.jobs.building import DatasetOptions
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.tasks import Task
+from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.fineness import fineness_words
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import remark, rich_symbol
@@ -165,7 +165,7 @@ class ExportDialog(QDialog):
         self.go.setEnabled(not sentence)
 
     def _browse(self) -> None:
-        chosen = QFileDialog.getExistingDirectory(self, tr("Folder of the dataset"), self.folder.text())
+        chosen = FolderDialog.ask(self, tr("Folder of the dataset"), self.folder.text())
         if chosen:
             self.folder.setText(chosen)
 

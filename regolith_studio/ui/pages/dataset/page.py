@@ -19,6 +19,7 @@ from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.exporting import export_dataset_folder
 from regolith_studio.jobs.representing import ChosenParticles, Survey, choose_one, survey
 from regolith_studio.session.recipe_dataset import OPENED, STANDING, Standing
+from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.layout import padded, scrolled_column, side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.dataset.controls import FolderPanel, RepresentativesPanel, SizesPanel
@@ -122,9 +123,7 @@ class DatasetPage(PageWidget):
         if self._chosen is None:
             self._context.toast.problem(tr("There are no representatives yet: press Find first."))
             return
-        name = QFileDialog.getExistingDirectory(
-            self, tr("Build the dataset in this folder"), self._place_before()
-        )
+        name = FolderDialog.ask(self, tr("Build the dataset in this folder"), self._place_before())
         if not name:
             return
         folder = Path(name) / self.folder.folder_name()
@@ -193,7 +192,7 @@ class DatasetPage(PageWidget):
         if self._folder is None:
             self._context.toast.problem(tr("There is no dataset to export: build or open one first."))
             return
-        name = QFileDialog.getExistingDirectory(self, tr("Export into this folder"), self._place_before())
+        name = FolderDialog.ask(self, tr("Export into this folder"), self._place_before())
         if name:
             self.export_to(Path(name))
 

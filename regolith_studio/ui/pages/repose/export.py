@@ -11,6 +11,7 @@ from regolith_studio.errors import RegolithError
 from regolith_studio.readers.positions import read_positions
 from regolith_studio.session.outputs.staging import json_bytes, staged_folder
 from regolith_studio.studies.repose_figures import write_section_figure
+from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.toast import Toast
 
@@ -22,7 +23,7 @@ UNITS = ("m", "cm", "mm", "um")
 
 def export_measurement(parent: QWidget, toast: Toast, pile: Pile, measured: ReposeMeasurement) -> None:
     """Ask for a folder and write ``repose.json``, ``sections.png`` and ``sections.svg``."""
-    name = QFileDialog.getExistingDirectory(parent, tr("Export figure and JSON"))
+    name = FolderDialog.ask(parent, tr("Export figure and JSON"))
     if not name:
         return
     try:

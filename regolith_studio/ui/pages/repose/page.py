@@ -21,6 +21,7 @@ from regolith_studio.errors import RegolithError
 from regolith_studio.jobs.building import DatasetOptions, build_dataset_folder
 from regolith_studio.jobs.events import Failed, Job
 from regolith_studio.jobs.repose import ReposeRun, preview_repose, remeasure, simulate_repose
+from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.layout import padded, scrolled_column, side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.repose.engine_panel import EnginePanel
@@ -192,7 +193,7 @@ class ReposePage(PageWidget):
 
     def choose_folder(self) -> None:
         """Ask where runs are kept."""
-        if name := QFileDialog.getExistingDirectory(self, tr("Folder of runs"), str(self._folder)):
+        if name := FolderDialog.ask(self, tr("Folder of runs"), str(self._folder)):
             self.set_runs_folder(Path(name))
 
     def set_runs_folder(self, folder: Path) -> None:

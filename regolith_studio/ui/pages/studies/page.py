@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QFileDialog, QTabWidget, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QTabWidget, QVBoxLayout, QWidget
 
 from regolith_studio.errors import RegolithError
 from regolith_studio.jobs.events import Job, Progress, Started, Steps
@@ -16,6 +16,7 @@ from regolith_studio.session.plan import Kind
 from regolith_studio.session.solids import draw_solids, solid_study
 from regolith_studio.session.variations import chosen_rows
 from regolith_studio.studies.variations import VARIATIONS
+from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.layout import side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.studies.desk import VariationDesk
@@ -144,7 +145,7 @@ class StudiesPage(PageWidget):
             self._context.toast.problem(tr("Compute a study first."))
             return
         start = str(self._context.recall("folder", str(Path.home())))
-        name = QFileDialog.getExistingDirectory(self, tr("Folder of figures and tables"), start)
+        name = FolderDialog.ask(self, tr("Folder of figures and tables"), start)
         if not name:
             return
         self._context.remember("folder", name)

@@ -1,0 +1,65 @@
+"""Asking for a folder to write into: a new one can be named, and nothing else gets the files."""
+
+import pytest
+from PySide6.QtCore import Qt, QTimer
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication, QLineEdit, QMessageBox
+
+from regolith_studio.ui.dialogs.folder import FolderDialog
+
+
+@pytest.fixture
+def answered(app, tmp_path):  # noqa: ARG001  # the dialog needs one
+    """What comes of typing a name into the dialog, and what is said against it."""
+
+    def run(typed):
+        said, begun = [], []
+
+        def look():
+            dialog = QApplication.activeModalWidget()
+            if isinstance(dialog, QMessageBox):
+                said.append(dialog.text())
+                dialog.accept()
+            elif isinstance(dialog, FolderDialog) and not begun:
+                line = dialog.findChild(QLineEdit, "fileNameEdit")
+                line.setText(typed)
+                begun.append(dialog)
+                QTimer.singleShot(0, line, lambda: QTest.keyClick(line, Qt.Key.Key_Return))
+            elif dialog is not None and said:
+                dialog.reject()
+
+        timer = QTimer(interval=20)
+        timer.timeout.connect(look)
+        timer.start()
+        chosen = FolderDialog.ask(None, "Folder of figures", str(tmp_path))
+        timer.stop()
+        return chosen, said
+
+    return run
+
+
+@pytest.mark.parametrize("name", ["figures", "two/deep"])
+def test_that_a_new_folder_is_made_by_its_name(answered, tmp_path, name):
+    chosen, said = answered(str(tmp_path / name))
+    assert (chosen, said) == (str(tmp_path / name), [])
+    assert (tmp_path / name).is_dir()
+
+
+def test_that_a_name_alone_is_a_folder_in_the_one_that_is_shown(answered, tmp_path):
+    assert answered("figures") == (str(tmp_path / "figures"), [])
+    assert (tmp_path / "figures").is_dir()
+
+
+def test_that_a_folder_that_is_there_is_taken_as_it_is(answered, tmp_path):
+    (tmp_path / "old").mkdir()
+    (tmp_path / "old" / "kept.txt").write_text("mine")
+    assert answered(str(tmp_path / "old")) == (str(tmp_path / "old"), [])
+    assert (tmp_path / "old" / "kept.txt").read_text() == "mine"
+
+
+def test_that_a_folder_that_cannot_be_is_refused_with_a_sentence(answered, tmp_path):
+    (tmp_path / "file").write_text("not a folder")
+    chosen, said = answered(str(tmp_path / "file" / "below"))
+    assert chosen == ""
+    assert len(said) == 1
+    assert (tmp_path / "file").read_text() == "not a folder"
