@@ -13,6 +13,7 @@ from regolith_studio.coarsening.evaluation import LossFunction
 from regolith_studio.coarsening.exact.boxed import FEW_FACES, boxed
 from regolith_studio.coarsening.exact.compromise import compromise, with_facets_back
 from regolith_studio.coarsening.exact.course import Attempt, course, densely_checked, start_planes
+from regolith_studio.coarsening.exact.evening import COST, evened, has_small_facets
 from regolith_studio.coarsening.exact.growth import grown, numbers_to_grow_from, with_waiting
 from regolith_studio.coarsening.exact.problem import SPHERICITY, Problem, needs_box
 from regolith_studio.coarsening.exact.record import AS_GOOD_AS_MET, Record
@@ -40,15 +41,16 @@ from regolith_studio.geometry.half_spaces import HalfSpaces
 
 @dataclass(frozen=True)
 class Level:
-    """Effort: starts, polyhedra with few facets at each to grow many from, steps of both descents."""
+    """Effort: starts, polyhedra with few facets at each to grow many from, steps of each descent."""
 
     starts: int
     few_starts: int
     free_steps: int
     bound_steps: int
+    even_steps: int
 
 
-LEVELS = {"fast": Level(1, 2, 12, 16), "best": Level(3, 3, 20, 40)}
+LEVELS = {"fast": Level(1, 2, 12, 16, 14), "best": Level(3, 3, 20, 40, 60)}
 COMPROMISES = (12, 20)
 """Facets to start from, besides all, where conditions cannot be met together."""
 ROUND_STARTS = 2
@@ -145,12 +147,22 @@ class Search:
             said = own_reason(self._itself.n_faces, self._n_faces)
             own, history = self._itself.half_spaces, tuple(self._record.history)
             return MethodResult(own, history, said, counts, polyhedron=self._itself)
-        outcome = self._record.outcome or self._found()
+        outcome = self._evened() or self._record.outcome or self._found()
         planes = real_planes(with_facets_back(self._target, self._full, outcome))
         solid = ConvexPolyhedron.from_half_spaces(planes)
         found = describe(solid, LOSS_KEYS)
         reason = reason_for(self._target, self._request, self._n_faces, len(planes), found)
         return MethodResult(planes, tuple(self._record.history), reason, counts, polyhedron=solid)
+
+    def _evened(self) -> Attempt | None:
+        """The best with larger small facets, where it meets all conditions and they can be had."""
+        best = self._record.best
+        if best is None or not best.exact or not has_small_facets(best.normals, best.offsets):
+            return None
+        even = evened(self._full, best, self._level.even_steps)
+        even = confirmed(self._request, self._checks, even)
+        dear = even.jaccard_distance > best.jaccard_distance + COST
+        return even if even.exact and even.n_facets >= best.n_facets and not dear else None
 
     @cached_property
     def _itself(self) -> ConvexPolyhedron | None:

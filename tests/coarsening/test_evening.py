@@ -1,0 +1,79 @@
+"""Small facets are made larger: the derivative of facet areas, and that nothing is lost by it."""
+
+import numpy as np
+import pytest
+from scipy.spatial import ConvexHull, HalfspaceIntersection
+
+from benchmarks.independent import measured
+from regolith_studio.coarsening.coarsen import coarsen
+from regolith_studio.coarsening.core.intersection import edges_of, intersect
+from regolith_studio.coarsening.core.measures import facets_of
+from regolith_studio.coarsening.core.planes import gradient_of, levers_of, moved, tangents_of
+from regolith_studio.coarsening.exact import search
+from regolith_studio.coarsening.exact.evening import facet_charge, has_small_facets
+from regolith_studio.coarsening.target import Target
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.directions import fibonacci_directions, icosphere
+from regolith_studio.geometry.mesh import Mesh
+
+
+def areas_by_scipy(normals: FloatArray, offsets: FloatArray) -> FloatArray:
+    """Facet areas from triangles of scipy's hull of the corners."""
+    corners = HalfspaceIntersection(np.c_[normals, -offsets], np.zeros(3)).intersections
+    hull = ConvexHull(corners)
+    areas = np.zeros(len(offsets))
+    for triangle, plane in zip(hull.simplices, hull.equations, strict=True):
+        p, q, r = corners[triangle]
+        areas[np.argmax(normals @ plane[:3])] += np.linalg.norm(np.cross(q - p, r - p)) / 2
+    return areas
+
+
+def pebble(seed: int) -> Mesh:
+    ball, rng = icosphere(4), np.random.default_rng(seed)
+    waves = np.sin(ball.vertices @ rng.normal(size=(3, 6)) * 2.5 + rng.uniform(0, 6, 6)) @ rng.normal(size=6)
+    return Mesh(ball.vertices * np.exp(0.14 * waves)[:, None] * [1.4, 1.0, 0.8], ball.faces)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_that_facet_areas_change_as_differences_by_scipy(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    normals = fibonacci_directions(14) + 0.2 * rng.normal(size=(14, 3))
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    offsets = rng.uniform(0.9, 1.1, 14)
+    gains, step = rng.normal(size=14), 1e-6 * rng.normal(size=42)
+    _, vertices, triples = intersect(normals, offsets)
+    edges = edges_of(triples, 14)
+    area, centroid = facets_of(normals, offsets, vertices, edges)
+    frames, levers = tangents_of(normals), levers_of(area, 0.08)
+    np.testing.assert_allclose(area, areas_by_scipy(normals, offsets), atol=1e-9)
+    charge = facet_charge(normals, vertices, edges, centroid, gains)
+    change = gains @ (
+        areas_by_scipy(*moved(normals, centroid, offsets, frames, levers, step))
+        - areas_by_scipy(*moved(normals, centroid, offsets, frames, levers, -step))
+    )
+    assert 2.0 * gradient_of(charge, frames, levers) @ step == pytest.approx(change, rel=1e-4)
+    np.testing.assert_allclose(
+        charge, facet_charge.py_func(normals, vertices, edges, centroid, gains), rtol=1e-12, atol=1e-12
+    )
+
+
+@pytest.mark.parametrize("n_faces", [35, 50])
+def test_that_small_facets_grow_and_nothing_is_lost(n_faces: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    small = {True: [], False: []}
+    for seed in range(3):
+        target = Target.of(pebble(seed))
+        found = {}
+        for evens in (True, False):
+            monkeypatch.setattr(search, "has_small_facets", has_small_facets if evens else lambda *_: False)
+            found[evens] = coarsen(target, n_faces)
+            planes = target.in_unit_frame(found[evens].half_spaces)
+            areas = areas_by_scipy(planes.normals, planes.offsets)
+            small[evens].append(float(np.mean(areas < 0.01 * areas.mean())))
+        even = found[True]
+        assert (even.n_faces, even.reason) == (n_faces, None)
+        assert even.jaccard_distance <= found[False].jaccard_distance + 2e-3
+        planes = target.in_unit_frame(even.half_spaces)
+        values = measured(planes.normals, planes.offsets, 2.0)
+        for key in ("volume", "sphericity", "min_diameter", "max_diameter"):
+            assert values[key] == pytest.approx(target.descriptors[key], rel=1e-6)
+    assert sum(small[True]) < 0.7 * sum(small[False]) or sum(small[False]) == 0.0
