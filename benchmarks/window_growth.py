@@ -5,8 +5,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from scipy.stats import linregress
-
 from benchmarks.window_driving import resident, settle, spin, until
 
 DRAWN, LOOKED_AT = 60, 6
@@ -37,6 +35,8 @@ class Growth:
     @property
     def slope(self) -> tuple[float, float]:
         """Megabytes over as many acts as the target names, and the standard error of that."""
+        from scipy.stats import linregress  # not before the memory is measured
+
         line = linregress(self.acts, self.megabytes)
         return float(line.slope) * self.target[1], float(line.stderr) * self.target[1]
 
