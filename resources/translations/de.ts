@@ -7425,6 +7425,16 @@
   </message>
   <message>
    <location filename="ui/pages/studies/rows_bar.py" />
+   <source>Losses can be compared at equal numbers of facets only; choose the number beside Facets n.</source>
+   <translation>Verluste lassen sich nur bei gleich vielen Facetten vergleichen; die Zahl wird neben Facetten n gewählt.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/studies/rows_bar.py" />
+   <source>compared at {count} facets each, not at an error</source>
+   <translation>verglichen bei je {count} Facetten, nicht bei einem Fehler</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/studies/rows_bar.py" />
    <source>trimesh's heuristic (paper)</source>
    <translation>Heuristik von trimesh (Artikel)</translation>
   </message>

@@ -79,6 +79,19 @@ def test_that_one_loss_always_stays(shown):
     assert bar.names() == paper_names()
 
 
+def test_that_studies_say_how_many_facets_they_take_where_polyhedra_stop_at_an_error(window, settled):
+    page = window.go("studies")
+    window.session.choose(n_faces=24)
+    settled(window)
+    assert page.bar.remark.text() == ""
+    window.session.choose(stop_at="error")
+    settled(window)
+    assert page.bar.remark.text() == "compared at 24 facets each, not at an error"
+    window.session.choose(stop_at="faces")
+    settled(window)
+    assert page.bar.remark.text() == ""
+
+
 def test_that_errors_against_faces_are_drawn_told_and_saved(window, wait, settled, tmp_path, monkeypatch):
     page = window.go("studies")
     page.tabs.setCurrentIndex(1)

@@ -63,11 +63,12 @@ class VariationDesk:
         if not particles:
             self._context.toast.problem(tr("No particle is open; open a mesh first."))
             return
-        options = {"rows": rows, "box_metric": self._bar.box.value()}
+        title = VARIATIONS[key].title
+        options = {"rows": rows, "box_metric": self._bar.box.value(), "title": title}
         job = Job(study_coarsening, (particles, choices.order), options)
         self._made[key] = choices
         take = partial(self._take, key)
-        self._context.start(VARIATIONS[key].title, job, partial(self._end, key), partial=take, lane=key)
+        self._context.start(title, job, partial(self._end, key), partial=take, lane=key)
 
     def _take(self, key: str, study: CoarseningStudy) -> None:
         """Keep a study so far; it is drawn at the next beat."""
@@ -90,6 +91,7 @@ class VariationDesk:
             self._refresh()
 
     def _refresh(self) -> None:
+        self._bar.show_facets(self._session.choices)
         for key, panel in self._panels.items():
             lane = f"{self._context.key}:{key}"
             panel.frame.show_task(next((task for task in self._session.tasks if task.lane == lane), None))

@@ -7,6 +7,7 @@ from PySide6.QtCore import Signal
 from PySide6.QtGui import QAction, QMouseEvent
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QMenu, QToolButton, QWidget
 
+from regolith_studio.session.choices import Choices
 from regolith_studio.session.variations import loss_names
 from regolith_studio.studies.loss_rows import ALONE, PAPER_ROWS
 from regolith_studio.ui.translation import mark, tr
@@ -19,6 +20,8 @@ BOX_TIP = mark(
     "Diameters and aspect ratio come from this box. The heuristic of the paper's program is no minimum; "
     "it is here to compare numbers."
 )
+
+EQUAL_TIP = mark("Losses can be compared at equal numbers of facets only; choose the number beside Facets n.")
 
 
 class RowsBar(QWidget):
@@ -39,6 +42,9 @@ class RowsBar(QWidget):
         self.box = ChoiceBox("study_box", tr("Bounding box of the diameters"), BOXES)
         self.box.setMinimumContentsLength(max(len(tr(each)) for each in BOXES.values()))
         self.box.setToolTip(tr(BOX_TIP))
+        self.remark = QLabel()
+        self.remark.setObjectName("study_facets_remark")
+        self.remark.setToolTip(tr(EQUAL_TIP))
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 4)
         row.setSpacing(8)
@@ -47,7 +53,8 @@ class RowsBar(QWidget):
         row.addSpacing(16)
         row.addWidget(QLabel(tr("Bounding box")))
         row.addWidget(self.box)
-        row.addStretch(1)
+        row.addSpacing(16)
+        row.addWidget(self.remark, 1)
         self.box.currentIndexChanged.connect(lambda _index: self.valueChanged.emit())
         self.set_names(PAPER_ROWS)
 
@@ -63,6 +70,12 @@ class RowsBar(QWidget):
                 if (name in known) is wanted:
                     action.setChecked(wanted)
         self._tell()
+
+    def show_facets(self, choices: Choices) -> None:
+        """Say how many facets studies take where polyhedra stop at an error."""
+        stops = choices.stop_at == "error"
+        words = tr("compared at {count} facets each, not at an error", count=choices.face_count)
+        self.remark.setText(words if stops else "")
 
     def _menu(self) -> QMenu:
         menu = _StayingMenu(self)
