@@ -21,6 +21,7 @@ from regolith_studio.geometry.box_curve import (
 )
 from regolith_studio.geometry.box_widths import SpanTable
 from regolith_studio.geometry.compiled import leaf
+from regolith_studio.geometry.eights import WIDTH, least, load, most, pick, splat, store
 from regolith_studio.geometry.inlined import inlined
 from regolith_studio.geometry.vectors import Vector, cross, dot, mixed
 
@@ -96,24 +97,22 @@ def curves_between(lanes: FloatArray, count: int) -> None:
         other, last = three(lanes, NORMALS + 6, k), three(lanes, NORMALS + 9, k)
         s00, s01, s10, s11 = dot(one, other), dot(one, last), dot(two, other), dot(two, last)
         p00, p01, p10, p11 = s00 >= 0.0, s01 >= 0.0, s10 >= 0.0, s11 >= 0.0
-        t_low, t_high, s_low, s_high = (
-            s00 / (s00 - s01),
-            s10 / (s10 - s11),
-            s00 / (s00 - s10),
-            s01 / (s01 - s11),
-        )
         both, second = (p00 == p11) & (p00 != p01) & (p00 != p10), lanes[SECOND * LANES + k] == 1.0
         around = ((s00 * s11 - s01 * s10) / (s00 + s11 - s01 - s10) >= 0.0) == p00
         lanes[BROKEN * LANES + k] = 1.0 if both & (not second) else 0.0
         on_low, on_high = (p00 != p01) & (not (both & second)), p10 != p11
+        at_side, over = s00 if on_low | (not on_high) else s10, s10 if not (on_low | on_high) else s11
+        at_side = at_side / (at_side - (s01 if on_low else over))
         from_s, from_t = (
-            0.0 if on_low else (1.0 if on_high else s_low),
-            t_low if on_low else (t_high if on_high else 0.0),
+            0.0 if on_low else (1.0 if on_high else at_side),
+            at_side if on_low | on_high else 0.0,
         )
         on_high, on_low = (p01 != p11) & (not (both & (around == second))), p00 != p10
+        at_side = s01 if on_high else (s00 if on_low else s10)
+        at_side = at_side / (at_side - (s11 if on_high | (not on_low) else s10))
         to_s, to_t = (
-            s_high if on_high else (s_low if on_low else 1.0),
-            1.0 if on_high else (0.0 if on_low else t_high),
+            at_side if on_high | on_low else 1.0,
+            1.0 if on_high else (0.0 if on_low else at_side),
         )
         a_from, a_to = (
             unit(mixed(one, 1.0 - from_s, two, from_s)),
@@ -218,28 +217,19 @@ def look_along(lanes: FloatArray, count: int, points: FloatArray) -> None:
         put(lanes, AXES, k, a)
         put(lanes, AXES + 3, k, b)
         put(lanes, AXES + 6, k, cross(a, b))
-    n = points.shape[1]
     for axis in range(3):
         start = (AXES + 3 * axis) * LANES
-        for k in range(count):
-            lanes[ENDS * LANES + k] = np.inf
-            lanes[(ENDS + 1) * LANES + k] = -np.inf
-        for i in range(0, n, 2):
-            j = min(i + 1, n - 1)
-            x, y, z, number = points[0, i], points[1, i], points[2, i], float(i)
-            u, v, w, other = points[0, j], points[1, j], points[2, j], float(j)
-            for k in range(count):
-                one, two, last = lanes[start + k], lanes[start + LANES + k], lanes[start + 2 * LANES + k]
-                low, high = lanes[ENDS * LANES + k], lanes[(ENDS + 1) * LANES + k]
-                here, there = x * one + y * two + z * last, u * one + v * two + w * last
-                at = number if here < low else lanes[(ENDS + 2) * LANES + k]
-                low = min(low, here)
-                lanes[(ENDS + 2) * LANES + k] = other if there < low else at
-                lanes[ENDS * LANES + k] = min(low, there)
-                at = number if here > high else lanes[(ENDS + 3) * LANES + k]
-                high = max(high, here)
-                lanes[(ENDS + 3) * LANES + k] = other if there > high else at
-                lanes[(ENDS + 1) * LANES + k] = max(high, there)
+        for at in range(0, count, WIDTH):
+            x, y = load(lanes, start + at), load(lanes, start + LANES + at)
+            z, low, high = load(lanes, start + 2 * LANES + at), splat(np.inf), splat(-np.inf)
+            bottoms = tops = splat(0.0)
+            for i in range(points.shape[1]):
+                here = splat(points[0, i]) * x + splat(points[1, i]) * y + splat(points[2, i]) * z
+                now = splat(float(i))
+                bottoms, tops = pick(here, low, now, bottoms), pick(high, here, now, tops)
+                low, high = least(here, low), most(here, high)
+            store(lanes, (ENDS + 2) * LANES + at, bottoms)
+            store(lanes, (ENDS + 3) * LANES + at, tops)
         for k in range(count):
             bottom, top = int(lanes[(ENDS + 2) * LANES + k]), int(lanes[(ENDS + 3) * LANES + k])
             for c in range(3):

@@ -31,6 +31,7 @@ from regolith_studio.geometry.box_sieve import (
     Sieve,
     add_pair,
     empty_sieve,
+    records_of,
     whole_curves,
     work_off,
 )
@@ -52,6 +53,8 @@ SIDEWAYS = 1e-9
 MANY_FACETS, FIRST_FACETS = 100, 16
 """Of solids with more facets, edges are first ruled out one by one, after so many facets were looked at, and
 once more after all facets that are left."""
+FEW_EDGES = 150
+"""With more edges, pairs are first ruled out one by one."""
 MANY_EDGES, LEAST_SLACK, MOST_SLACK = 8000, 1e-7, 1e-3
 """With more edges left, boxes smaller by a share of 1e-6 to 1e-3 are given up: see `minimum_box`."""
 
@@ -123,7 +126,7 @@ def least_box(facets: Facets, known: float) -> Found:
     if n > MANY_FACETS:
         worth = worth_asking(facets, arcs, table, found.record[0] * (1.0 + margin))
         facets, arcs = Facets(points, normals, facets.edges[worth]), arcs[worth]
-    _on_curves(facets, arcs, table, work, margin, found, empty_sieve())
+    _on_curves(facets, arcs, records_of(facets, arcs), table, work, margin, found, empty_sieve())
     return found
 
 
@@ -131,6 +134,7 @@ def least_box(facets: Facets, known: float) -> Found:
 def _on_curves(
     facets: Facets,
     arcs: FloatArray,
+    records: FloatArray,
     table: SpanTable,
     work: Work,
     margin: float,
@@ -148,33 +152,64 @@ def _on_curves(
         _along_all(work.normals, row(normals, edges[i, 3]), dots[1])
         for g in range(len(normals)):
             side[g] = (dots[0, g] >= 0.0) + (dots[1, g] >= 0.0)
-        for k in range(i, len(edges)):
-            if side[edges[k, 2]] == side[edges[k, 3]] != 1 or (k == i and dots[0, edges[i, 3]] >= 0.0):
-                continue
-            limit = found.record[0] * (1.0 + margin)
-            sides = arcs[i, 6] * arcs[k, 6]
-            if sides * least_width >= limit or sides * least_third(arcs, table, i, k) >= limit:
-                continue
-            add_pair(facets, arcs, i, k, False, sieve)
+        k = i + 1 if dots[0, edges[i, 3]] >= 0.0 else i
+        while k < len(edges):
+            last = min(len(edges), k + LANES - sieve.filled[PAIRS])
+            limit = found.record[0] * (1.0 + margin) / arcs[i, 6]
+            _put_down(edges, arcs, table, side, i, k, last, limit, least_width, sieve)
+            k = last
             while sieve.filled[PAIRS] == LANES:
-                _sift(facets, arcs, table, margin, found, sieve)
+                _sift(records, points, table, margin, found, sieve)
     while sieve.filled[PAIRS] > 0:
-        _sift(facets, arcs, table, margin, found, sieve)
+        _sift(records, points, table, margin, found, sieve)
     work_off(points, table, margin, found, sieve)
 
 
 @leaf
+def _put_down(
+    edges: IntArray,
+    arcs: FloatArray,
+    table: SpanTable,
+    side: IntArray,
+    i: int,
+    first: int,
+    last: int,
+    limit: float,
+    least_width: float,
+    sieve: Sieve,
+) -> None:
+    """Put down the pairs of edge i with edges `first` to `last` that have orthogonal normals.
+
+    Of solids with many edges those are left out that no box below the limit, a volume over the width at
+    edge i, could be flush with.
+    """
+    pairs, at = sieve.pairs, np.uintp(sieve.filled[PAIRS])
+    for k in range(first, last):
+        one, other = side[np.uintp(edges[k, 2])], side[np.uintp(edges[k, 3])]
+        pairs[0, at], pairs[1, at], pairs[2, at] = i, k, 0
+        at += np.uintp((one != other) | (one == 1))
+    if len(edges) > FEW_EDGES:
+        put_down, at = at, np.uintp(sieve.filled[PAIRS])
+        for j in range(at, put_down):
+            k = pairs[1, j]
+            pairs[1, at] = k
+            width = arcs[k, 6]
+            at += np.uintp(width * least_width < limit and width * least_third(arcs, table, i, k) < limit)
+    sieve.filled[PAIRS] = at
+
+
+@leaf
 def _sift(
-    facets: Facets, arcs: FloatArray, table: SpanTable, margin: float, found: Found, sieve: Sieve
+    records: FloatArray, points: FloatArray, table: SpanTable, margin: float, found: Found, sieve: Sieve
 ) -> None:
     """Take the curves out of the lanes; second curves of the same pairs take their place."""
-    whole_curves(table, found.record[0] * (1.0 + margin), sieve)
+    whole_curves(records, table, found.record[0] * (1.0 + margin), sieve)
     if sieve.filled[0] > MOST_WAITING - LANES:
-        work_off(facets.points, table, margin, found, sieve)
+        work_off(points, table, margin, found, sieve)
     broken = sieve.filled[PAIRS]
     sieve.filled[PAIRS] = 0
     for at in range(broken):
-        add_pair(facets, arcs, sieve.pairs[at, 0], sieve.pairs[at, 1], True, sieve)
+        add_pair(sieve.pairs[0, at], sieve.pairs[1, at], True, sieve)
 
 
 @leaf

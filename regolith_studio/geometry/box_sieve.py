@@ -44,10 +44,18 @@ from regolith_studio.geometry.compiled import kernel, leaf
 
 MOST_WAITING = 512
 """Pieces that wait; when it is so many, they are worked off."""
-HALVINGS, DEEPEST = 2, 4
+HALVINGS, DEEPEST = 2, 5
 """How often a curve is halved before vertices are looked at, and cut before a piece is searched by itself."""
 PAIRS = 2
 """Place in the numbers of what is filled."""
+OF_AN_EDGE = 13
+ROWS_OF_AN_EDGE = (
+    *((NORMALS + k, NORMALS + 6 + k) for k in range(6)),
+    *((EDGES + k, EDGES + 3 + k) for k in range(3)),
+    *((ACROSS + k, ACROSS + 3 + k) for k in range(3)),
+    (FEET, FEET + 1),
+)
+"""Where the lanes hold what is recorded of the first and of the second edge."""
 
 
 class Sieve(NamedTuple):
@@ -58,7 +66,7 @@ class Sieve(NamedTuple):
     lanes
         Of :mod:`regolith_studio.geometry.box_lanes`.
     pairs
-        Edges of the curve in each lane, shape (LANES, 2).
+        Edges of the curve in each lane, and whether it is their second, shape (3, LANES).
     waiting
         Two stacks of pieces, to be halved and to be cut where bounds meet: the rows of a curve, and how
         often it was cut.
@@ -82,7 +90,7 @@ def empty_sieve() -> Sieve:
     most = MOST_WAITING + (DEEPEST + 2) * LANES
     return Sieve(
         np.zeros(ROWS * LANES),
-        np.empty((LANES, 2), np.int64),
+        np.empty((3, LANES), np.int64),
         np.empty((2, most, OF_A_CURVE + 1)),
         np.zeros(3, np.int64),
         np.empty((2, LANES)),
@@ -90,29 +98,45 @@ def empty_sieve() -> Sieve:
     )
 
 
-@leaf
-def add_pair(facets: Facets, arcs: FloatArray, i: int, k: int, second: bool, sieve: Sieve) -> None:
-    """Put a pair of edges into the next lane, for its first or second curve."""
-    lanes, edges, normals = sieve.lanes, facets.edges, facets.normals
-    at = sieve.filled[PAIRS]
-    sieve.pairs[at, 0], sieve.pairs[at, 1] = i, k
-    lanes[SECOND * LANES + at] = 1.0 if second else 0.0
-    for side in range(2):
-        e = i if side == 0 else k
-        one, two = edges[e, 2], edges[e, 3]
-        lanes[(FEET + side) * LANES + at] = edges[e, 0]
+@kernel
+def records_of(facets: Facets, arcs: FloatArray) -> FloatArray:
+    """What lanes hold of each edge: normals of its facets, direction, span and a vertex, shape (13, e)."""
+    records = np.empty((OF_AN_EDGE, len(facets.edges)))
+    for e in range(len(facets.edges)):
+        one, two = facets.edges[e, 2], facets.edges[e, 3]
         for c in range(3):
-            lanes[(NORMALS + 6 * side + c) * LANES + at] = normals[one, c]
-            lanes[(NORMALS + 6 * side + 3 + c) * LANES + at] = normals[two, c]
-            lanes[(EDGES + 3 * side + c) * LANES + at] = arcs[e, c]
-            lanes[(ACROSS + 3 * side + c) * LANES + at] = arcs[e, 3 + c]
+            records[c, e], records[3 + c, e] = facets.normals[one, c], facets.normals[two, c]
+            records[6 + c, e], records[9 + c, e] = arcs[e, c], arcs[e, 3 + c]
+        records[12, e] = facets.edges[e, 0]
+    return records
+
+
+@leaf
+def add_pair(i: int, k: int, second: bool, sieve: Sieve) -> None:
+    """Put a pair of edges down for the next lane, for its first or second curve."""
+    at = sieve.filled[PAIRS]
+    sieve.pairs[0, at], sieve.pairs[1, at], sieve.pairs[2, at] = i, k, second
     sieve.filled[PAIRS] += 1
 
 
 @leaf
-def whole_curves(table: SpanTable, limit: float, sieve: Sieve) -> None:
-    """Let the curves in the lanes wait that are not ruled out whole; pairs with a second curve stay."""
+def take_pairs(records: FloatArray, sieve: Sieve) -> None:
+    """Fill the lanes with the pairs that are put down."""
+    lanes, pairs, count = sieve.lanes, sieve.pairs, sieve.filled[PAIRS]
+    for side in range(2):
+        for row in range(OF_AN_EDGE):
+            to = ROWS_OF_AN_EDGE[row][side] * LANES
+            for k in range(count):
+                lanes[to + k] = records[row, pairs[side, k]]
+    for k in range(count):
+        lanes[SECOND * LANES + k] = float(pairs[2, k])
+
+
+@leaf
+def whole_curves(records: FloatArray, table: SpanTable, limit: float, sieve: Sieve) -> None:
+    """Let the curves of the pairs wait that are not ruled out whole; pairs with a second curve stay."""
     lanes, waiting, count = sieve.lanes, sieve.waiting, sieve.filled[PAIRS]
+    take_pairs(records, sieve)
     curves_between(lanes, count)
     for k in range(count):
         lanes[X * LANES + k] = 0.0
@@ -125,7 +149,7 @@ def whole_curves(table: SpanTable, limit: float, sieve: Sieve) -> None:
     broken = 0
     for k in range(count):
         if lanes[BROKEN * LANES + k] > 0.0:
-            sieve.pairs[broken, 0], sieve.pairs[broken, 1] = sieve.pairs[k, 0], sieve.pairs[k, 1]
+            sieve.pairs[0, broken], sieve.pairs[1, broken] = sieve.pairs[0, k], sieve.pairs[1, k]
             broken += 1
         if lanes[RULED_OUT * LANES + k] == 0.0 and lanes[LOW * LANES + k] < lanes[HIGH * LANES + k]:
             for row in range(OF_A_CURVE):

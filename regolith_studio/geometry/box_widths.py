@@ -6,14 +6,24 @@ import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.compiled import kernel, leaf
+from regolith_studio.geometry.eights import (
+    WIDTH,
+    Eight,
+    count_up,
+    least,
+    load,
+    most,
+    pick,
+    smallest,
+    splat,
+    store,
+)
 from regolith_studio.geometry.inlined import inlined
 from regolith_studio.geometry.vectors import Vector
 
 FEWEST_CELLS, MOST_CELLS = 20, 64
 """Directions are told apart by a grid of so many cells along the edge of a cube: as many as the square root
 of the number of vertices."""
-BLOCK = 256
-"""Directions that are looked along side by side."""
 
 
 class SpanTable(NamedTuple):
@@ -33,10 +43,27 @@ class SpanTable(NamedTuple):
 
 @leaf
 def ends_along(points: FloatArray, direction: Vector) -> tuple[int, int]:
-    """The vertices farthest along and against `direction`; points of shape (3, n)."""
+    """The vertices farthest along and against `direction`, of equal ones the first; points of shape (3, n).
+
+    Where there are eight, the last eight may overlap those before: they bring no other ends.
+    """
     x, y, z = direction
-    low, high, bottom, top = np.inf, -np.inf, 0, 0
-    for i in range(points.shape[1]):
+    low, high, bottom, top, n = np.inf, -np.inf, 0, 0, points.shape[1]
+    if n >= WIDTH:
+        u, v, w = splat(x), splat(y), splat(z)
+        lows, highs, numbers = splat(np.inf), splat(-np.inf), count_up()
+        bottoms, tops = numbers, numbers
+        for first in range(0, n, WIDTH):
+            at = min(first, n - WIDTH)
+            here = load(points, at) * u + load(points, n + at) * v + load(points, 2 * n + at) * w
+            now = numbers + splat(float(at))
+            bottoms, tops = pick(here, lows, now, bottoms), pick(highs, here, now, tops)
+            lows, highs = least(here, lows), most(here, highs)
+        lowest, highest = splat(smallest(lows)), splat(-smallest(splat(0.0) - highs))
+        nobody = splat(np.inf)
+        first_top = smallest(pick(highs, highest, nobody, tops))
+        return int(first_top), int(smallest(pick(lowest, lows, nobody, bottoms)))
+    for i in range(n):
         here = points[0, i] * x + points[1, i] * y + points[2, i] * z
         if here < low:
             low, bottom = here, i
@@ -54,33 +81,37 @@ def between(points: FloatArray, one: int, two: int) -> Vector:
 @kernel
 def ends_along_each(points: FloatArray, directions: FloatArray) -> IntArray:
     """:func:`ends_along` for all directions, shape (3, m), several at once: shape (2, m), top and bottom."""
-    m, n = directions.shape[1], points.shape[1]
-    ends = np.empty((2, m), np.int64)
-    one, two, three = np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)
-    low, high, bottom, top = np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)
-    for start in range(0, m, BLOCK):
-        count = min(BLOCK, m - start)
-        for k in range(count):
-            one[k], two[k], three[k] = (
-                directions[0, start + k],
-                directions[1, start + k],
-                directions[2, start + k],
+    m = directions.shape[1]
+    ends, found = np.empty((2, m), np.int64), np.empty((2, WIDTH))
+    if m < WIDTH:
+        for k in range(m):
+            ends[0, k], ends[1, k] = ends_along(
+                points, (directions[0, k], directions[1, k], directions[2, k])
             )
-            low[k], high[k], bottom[k], top[k] = np.inf, -np.inf, 0.0, 0.0
-        for i in range(0, n, 2):
-            j = min(i + 1, n - 1)
-            x, y, z, number = points[0, i], points[1, i], points[2, i], float(i)
-            u, v, w, other = points[0, j], points[1, j], points[2, j], float(j)
-            for k in range(count):
-                here = x * one[k] + y * two[k] + z * three[k]
-                there = u * one[k] + v * two[k] + w * three[k]
-                at, least = number if here < low[k] else bottom[k], min(low[k], here)
-                bottom[k], low[k] = other if there < least else at, min(least, there)
-                at, most = number if here > high[k] else top[k], max(high[k], here)
-                top[k], high[k] = other if there > most else at, max(most, there)
-        for k in range(count):
-            ends[0, start + k], ends[1, start + k] = int(top[k]), int(bottom[k])
+        return ends
+    for first in range(0, m, WIDTH):
+        at = min(first, m - WIDTH)
+        x, y, z = load(directions, at), load(directions, m + at), load(directions, 2 * m + at)
+        farthest(points, x, y, z, found)
+        for k in range(WIDTH):
+            ends[0, at + k], ends[1, at + k] = int(found[0, k]), int(found[1, k])
     return ends
+
+
+@leaf
+def farthest(points: FloatArray, x: Eight, y: Eight, z: Eight, found: FloatArray) -> None:
+    """:func:`ends_along` for eight directions: numbers of the vertices, tops and bottoms, shape (2, 8)."""
+    lows, highs = splat(np.inf), splat(-np.inf)
+    bottoms = tops = splat(0.0)
+    for i in range(points.shape[1]):
+        here, now = (
+            splat(points[0, i]) * x + splat(points[1, i]) * y + splat(points[2, i]) * z,
+            splat(float(i)),
+        )
+        bottoms, tops = pick(here, lows, now, bottoms), pick(highs, here, now, tops)
+        lows, highs = least(here, lows), most(here, highs)
+    store(found, 0, tops)
+    store(found, WIDTH, bottoms)
 
 
 @kernel

@@ -42,6 +42,11 @@ def splat(x: float) -> Eight:
     return np.full(WIDTH, float(x))
 
 
+def count_up() -> Eight:
+    """0, 1, 2 and so on."""
+    return np.arange(float(WIDTH))
+
+
 def least(one: Eight, two: Eight) -> Eight:
     """The lesser of each pair; where one is NaN, `two`."""
     return np.where(one < two, one, two)
@@ -134,6 +139,7 @@ _TABLE: tuple[_Row, ...] = (
     (load, (types.Array, types.Integer), EIGHT, lambda b, place: b.load(place, align=8)),
     (store, (types.Array, types.Integer, EIGHT), types.none, lambda b, to, x: b.store(x, to, align=8)),
     (splat, (_FLOAT,), EIGHT, lambda b, x: _shuffled(b, b.insert_element(_NOTHING, x, _FIRST), [0] * WIDTH)),
+    (count_up, (), EIGHT, lambda _: ir.Constant(_FLOATS, [float(k) for k in range(WIDTH)])),
     (operator.add, (EIGHT, EIGHT), EIGHT, lambda b, x, y: b.fadd(x, y)),
     (operator.sub, (EIGHT, EIGHT), EIGHT, lambda b, x, y: b.fsub(x, y)),
     (operator.mul, (EIGHT, EIGHT), EIGHT, lambda b, x, y: b.fmul(x, y)),
@@ -156,14 +162,16 @@ def _typer_of(wanted: tuple[Any, ...], result: Any) -> Callable[..., Any]:
         fit = (
             isinstance(g, w) if isinstance(w, type) else g == w for g, w in zip(given, wanted, strict=True)
         )
-        return result if all(fit) else None
+        in_rows = all(each.layout == "C" for each in given if isinstance(each, types.Array))
+        return result if all(fit) and in_rows else None
 
     return (
+        lambda: fits(),
         lambda a: fits(a),
         lambda a, b: fits(a, b),
         lambda a, b, c: fits(a, b, c),
         lambda a, b, c, d: fits(a, b, c, d),
-    )[len(wanted) - 1]
+    )[len(wanted)]
 
 
 def _taught(
@@ -172,7 +180,7 @@ def _taught(
     """Tell numba the type of a function and its code."""
 
     def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        if wanted[0] is types.Array:
+        if types.Array in wanted:
             values = (_place(context, builder, signature.args[0], *values[:2]), *values[2:])
         value = emitted(builder, *values)
         return context.get_dummy_value() if result is types.none else value

@@ -32,7 +32,16 @@ from regolith_studio.geometry.box_lanes import (
 )
 from regolith_studio.geometry.box_record import nothing_below
 from regolith_studio.geometry.box_search import minimum_box
-from regolith_studio.geometry.box_sieve import PAIRS, Sieve, add_pair, empty_sieve, whole_curves, work_off
+from regolith_studio.geometry.box_sieve import (
+    PAIRS,
+    Sieve,
+    add_pair,
+    empty_sieve,
+    records_of,
+    take_pairs,
+    whole_curves,
+    work_off,
+)
 from regolith_studio.geometry.box_widths import span_near, span_table
 from regolith_studio.geometry.hull_graph import hull_graph
 from tests.geometry.solids import random_polyhedron
@@ -52,7 +61,8 @@ def full_lanes(solid: Facets, seed: int = 0) -> tuple[Sieve, FloatArray]:
         products = solid.normals[solid.edges[i, 2:]] @ solid.normals[solid.edges[k, 2:]].T >= 0.0
         if i != k and products.any() and not products.all() and (products[0] != products[1]).any():
             broken = products[0, 0] == products[1, 1] and products[0, 1] == products[1, 0]
-            add_pair(solid, arcs, i, k, bool(broken and rng.random() < 0.5), sieve)
+            add_pair(i, k, bool(broken and rng.random() < 0.5), sieve)
+    take_pairs(records_of(solid, arcs), sieve)
     curves_between(sieve.lanes, LANES)
     return sieve, sieve.lanes.reshape(-1, LANES)
 
@@ -159,18 +169,18 @@ def test_that_what_waits_holds_the_least_box_and_working_it_off_finds_it(seed: i
     axes = minimum_box(np.array(hull.vertices), hull.faces)
     least = float(np.prod(np.ptp(axes @ hull.vertices.T, axis=1)))
     arcs, table, sieve = arcs_of(solid), span_table(solid.points), empty_sieve()
-    found = nothing_below(1.02 * least)
+    found, records = nothing_below(1.02 * least), records_of(solid, arcs)
     for i in range(len(arcs)):
         for k in range(i, len(arcs)):
             products = solid.normals[solid.edges[i, 2:]] @ solid.normals[solid.edges[k, 2:]].T >= 0.0
             if products.all() or not products.any():
                 continue
-            add_pair(solid, arcs, i, k, False, sieve)
+            add_pair(i, k, False, sieve)
             if sieve.filled[PAIRS] == LANES:
-                whole_curves(table, float(found.record[0]), sieve)
+                whole_curves(records, table, float(found.record[0]), sieve)
                 sieve.filled[PAIRS] = 0
                 work_off(solid.points, table, 0.0, found, sieve)
-    whole_curves(table, float(found.record[0]), sieve)
+    whole_curves(records, table, float(found.record[0]), sieve)
     work_off(solid.points, table, 0.0, found, sieve)
     assert sieve.filled[:2].tolist() == [0, 0]
     assert found.record[0] == pytest.approx(least, rel=1e-8)
