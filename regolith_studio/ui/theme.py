@@ -190,10 +190,14 @@ QFrame[role="sidebar"] QToolButton:checked {{ background: {theme.selected}; colo
 *[role="remark"] {{ color: {theme.muted}; }}
 *[role="warning"] {{ color: {theme.doubtful}; }}
 QFrame[role="card"] {{ background: {theme.base}; border: 1px solid {theme.border}; border-radius: 5px; }}
+QFrame[role="card"][focused="true"] {{ border-color: {theme.accent}; }}
 QFrame[role="toast"] {{ background: {theme.raised}; border: 1px solid {theme.bad}; border-radius: 6px; }}
 QFrame[role="toast"][mood="note"] {{ border-color: {theme.accent}; }}
 QTableView {{ border: 1px solid {theme.border}; border-radius: 5px; gridline-color: transparent;
     selection-background-color: {theme.selected}; selection-color: {theme.text}; }}
+QTableView:focus {{ border-color: {theme.accent}; }}
+QTableCornerButton::section {{ background: {theme.window}; border: none;
+    border-bottom: 1px solid {theme.border}; }}
 QHeaderView::section {{ background: {theme.window}; color: {theme.muted}; border: none;
     border-bottom: 1px solid {theme.border}; padding: 4px 3px; }}
 QTabWidget::pane {{ border: 1px solid {theme.border}; border-radius: 5px; background: {theme.base};
@@ -202,7 +206,9 @@ QTabBar::tab {{ padding: 5px 11px; color: {theme.muted}; border: 1px solid trans
     border-top-left-radius: 5px; border-top-right-radius: 5px; }}
 QTabBar::tab:selected {{ color: {theme.text}; background: {theme.base}; border-color: {theme.border}; }}
 QTabBar::tab:hover {{ color: {theme.text}; }}
-QTabBar::tab:focus {{ color: {theme.accent}; }}
+QTabBar::tab:focus {{ color: {theme.accent}; border-color: {theme.accent}; }}
+QToolButton[role="fold"] {{ border: 1px solid transparent; border-radius: 4px; padding: 1px 3px; }}
+QToolButton[role="fold"]:focus {{ border-color: {theme.accent}; }}
 QScrollArea {{ border: none; }}
 QCheckBox::indicator {{ width: 1.05em; height: 1.05em; border: 1px solid {theme.muted}; border-radius: 3px;
     background: {theme.base}; }}

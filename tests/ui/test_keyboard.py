@@ -1,5 +1,6 @@
 """The window without a mouse: Tab reaches every control of every page, and each has a name."""
 
+import numpy as np
 import pytest
 from PySide6.QtCore import Qt, QTimer
 from PySide6.QtTest import QTest
@@ -15,6 +16,7 @@ from PySide6.QtWidgets import (
     QLineEdit,
     QPlainTextEdit,
     QScrollBar,
+    QTableView,
 )
 
 from regolith_studio.jobs.runners.inline import InlineRunner
@@ -24,6 +26,7 @@ from regolith_studio.ui.app import open_window
 from regolith_studio.ui.dialogs.unit import UnitDialog
 from regolith_studio.ui.main_window import MainWindow
 from regolith_studio.ui.pages import pages
+from regolith_studio.ui.views.camera_mouse import WHEEL_ZOOM
 
 KINDS = (
     *(QAbstractButton, QComboBox, QAbstractSpinBox, QAbstractSlider),
@@ -81,6 +84,28 @@ def test_that_every_control_of_every_page_is_named_and_reached_by_tab(window, se
                 assert each in reached, (
                     f"{page.key}: {type(each).__name__} {each.objectName()} is not reached"
                 )
+
+
+def test_that_a_view_shows_that_it_has_the_keys_and_turns_with_them(window, settled):
+    frames = window.page.triptych.frames
+    view = frames["fit"].view
+    view.widget.setFocus(Qt.FocusReason.TabFocusReason)
+    assert [name for name, frame in frames.items() if frame.property("focused")] == ["fit"]
+    before = np.subtract(view.pose.position, view.pose.focal_point)
+    QTest.keyClick(view.widget, Qt.Key.Key_Right)
+    turned = np.subtract(view.pose.position, view.pose.focal_point)
+    assert np.linalg.norm(turned) == pytest.approx(np.linalg.norm(before))
+    assert np.degrees(np.arccos(turned @ before / (before @ before))) > 1.0
+    for other in frames.values():
+        assert other.view.pose == view.pose, "linked cameras turn together"
+    QTest.keyClick(view.widget, Qt.Key.Key_Left)
+    assert np.subtract(view.pose.position, view.pose.focal_point) == pytest.approx(before, rel=1e-9, abs=1e-9)
+    wide = view.pose.parallel_scale
+    QTest.keyClick(view.widget, Qt.Key.Key_Plus)
+    assert view.pose.parallel_scale == pytest.approx(wide / WHEEL_ZOOM)
+    window.findChild(QTableView, "particle_table").setFocus()
+    assert not any(frame.property("focused") for frame in frames.values())
+    settled(window)
 
 
 DIALOGS = (

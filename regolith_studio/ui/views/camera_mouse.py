@@ -1,4 +1,4 @@
-"""Mouse and wheel on a view: turn with the left button, shift with the middle or right one, zoom.
+"""Mouse, wheel and keys on a view: turn with the left button, shift with the middle or right one, zoom.
 
 What can be taken hold of in the picture, such as the line of a wipe, comes before the camera.
 """
@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Protocol
 
 from PySide6.QtCore import QPointF, Qt
-from PySide6.QtGui import QMouseEvent, QWheelEvent
+from PySide6.QtGui import QKeyEvent, QMouseEvent, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
 from regolith_studio.scene.cameras import CameraPose
@@ -16,6 +16,20 @@ from regolith_studio.scene.sight import Sight
 
 WHEEL_ZOOM = 1.12
 """Factor of one notch of the wheel."""
+KEY_STEP = 0.02
+"""What an arrow key moves, as a share of the picture's height."""
+ARROWS = {
+    Qt.Key.Key_Left: (-KEY_STEP, 0.0),
+    Qt.Key.Key_Right: (KEY_STEP, 0.0),
+    Qt.Key.Key_Down: (0.0, -KEY_STEP),
+    Qt.Key.Key_Up: (0.0, KEY_STEP),
+}
+"""To the right and upwards, as if dragged."""
+ZOOMS = {
+    Qt.Key.Key_Plus: WHEEL_ZOOM,
+    Qt.Key.Key_Equal: WHEEL_ZOOM,
+    Qt.Key.Key_Minus: 1.0 / WHEEL_ZOOM,
+}
 
 
 class Grip(Protocol):
@@ -93,6 +107,18 @@ class CameraMouse:
         notches = event.angleDelta().y() / 120.0
         if notches:
             self._move(zoomed(self._pose(), WHEEL_ZOOM**notches))
+        event.accept()
+
+    def key(self, event: QKeyEvent) -> None:
+        """Do with arrow keys, plus and minus what dragging and the wheel do; other keys are for others."""
+        key, keys = Qt.Key(event.key()), event.modifiers()
+        if key in ARROWS:
+            self._move(self._moved(Qt.MouseButton.LeftButton, keys, *ARROWS[key]))
+        elif key in ZOOMS and not keys & Qt.KeyboardModifier.ControlModifier:
+            self._move(zoomed(self._pose(), ZOOMS[key]))
+        else:
+            event.ignore()
+            return
         event.accept()
 
     def leave(self) -> None:

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pyvista as pv
 from PySide6.QtCore import QEvent, QRect, Qt
-from PySide6.QtGui import QImage, QMouseEvent, QPainter, QPaintEvent, QResizeEvent, QWheelEvent
+from PySide6.QtGui import QImage, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QResizeEvent, QWheelEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from regolith_studio.scene import annotations, cameras, stage
@@ -32,6 +32,7 @@ class ImageView(QWidget):
         self._refitting = Refitting(self)
         self.mouse = CameraMouse(lambda: self.pose, self._move, self)
         self.setMouseTracking(True)
+        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
 
@@ -109,6 +110,9 @@ class ImageView(QWidget):
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         self.mouse.wheel(event)
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        self.mouse.key(event)
 
     def _move(self, pose: CameraPose) -> None:
         self.set_pose(pose)

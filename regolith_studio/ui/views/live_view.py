@@ -52,7 +52,10 @@ class _Canvas(QtInteractor):
             self.mouse.leave()
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
-        event.ignore()
+        if self.mouse:
+            self.mouse.key(event)
+        else:
+            event.ignore()
 
     def keyReleaseEvent(self, event: QKeyEvent) -> None:
         event.ignore()

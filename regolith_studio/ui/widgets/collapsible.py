@@ -14,6 +14,7 @@ class Collapsible(QWidget):
         self.button.setText(title)
         self.button.setCheckable(True)
         self.button.setAutoRaise(True)
+        self.button.setProperty("role", "fold")
         self.button.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
         self.button.setAccessibleName(title)
         layout = QVBoxLayout(self)
