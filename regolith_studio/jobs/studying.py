@@ -83,6 +83,7 @@ def study_coarsening(
     order: CoarseningOrder,
     workers: int | Crew = 1,
     answers: Answers | None = None,
+    title: str = "RMSRE against loss weights",
     **options: Any,
 ) -> Steps:
     """Fig. 8 for `particles`; partial results and the result are ``CoarseningStudy``.
@@ -95,10 +96,12 @@ def study_coarsening(
         Processes at a time; 0 for one a core.
     answers
         Keeps what is known of each particle, so that the study can be taken up again.
+    title
+        In lists of tasks: studies of other rows have other names.
     options
         Further ones of :func:`~regolith_studio.studies.coarsening.coarsening_study`: rows, box_metric.
     """
-    yield Started("RMSRE against loss weights", len(particles))
+    yield Started(title, len(particles))
     if answers is not None:
         answers.about("coarsening", (order, sorted(options.items())), fingerprint(particles))
     with hired(workers) as crew:

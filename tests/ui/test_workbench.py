@@ -6,7 +6,7 @@ import threading
 import pytest
 from PySide6.QtCore import Qt, QTimer
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication, QMessageBox, QPushButton, QSplitter, QWidget
+from PySide6.QtWidgets import QApplication, QMessageBox, QPushButton, QScrollArea, QSplitter, QWidget
 
 from regolith_studio.jobs.events import Job, Progress
 from regolith_studio.session.preferences import Preferences
@@ -15,7 +15,7 @@ from regolith_studio.session.tasks import Task
 from regolith_studio.ui.app import open_window
 from regolith_studio.ui.dialogs.closing import worth_asking
 from regolith_studio.ui.dialogs.command_palette import CommandPalette
-from regolith_studio.ui.panels.task_list import time_left
+from regolith_studio.ui.panels.task_list import TaskListPanel, time_left
 from regolith_studio.ui.projects import autosave_path, stale_autosaves
 from regolith_studio.ui.shortcuts import plain
 from regolith_studio.ui.tour import TOUR_SEEN, Tour, start_tour, steps
@@ -263,8 +263,20 @@ def test_that_closing_asks_while_a_study_runs(window):
 def test_that_short_work_is_not_asked_about():
     lanes = ("fit", "surface", "descriptors", "coarsening", "load", "inspect", "warm-up", "lecture:annealing")
     lanes += ("sample:faults", "scan:preview", "repose:preview", "dataset:library", "model:compare")
+    lanes += ("model:live", "lecture:field")
     assert worth_asking([Task(n, lane, "x") for n, lane in enumerate(lanes)], []) == []
     assert len(worth_asking([Task(1, "export", "Building the dataset")], ["A run is not saved."])) == 2
+    twins = [Task(1, "export", "Building the dataset"), Task(2, "dataset:build", "Building the dataset")]
+    assert len(worth_asking(twins, [])) == 1
+
+
+def test_that_rows_of_many_tasks_keep_their_height(shown, wait):
+    panel = shown(TaskListPanel())
+    panel.resize(700, 90)
+    panel.show_tasks([Task(number, f"lane {number}", "Counting grains", 1, 9) for number in range(8)])
+    buttons = [panel.findChild(QPushButton, f"stop_task_{number}") for number in range(8)]
+    wait(lambda: panel.findChild(QScrollArea).verticalScrollBar().maximum() > 0)
+    wait(lambda: all(button.height() >= button.sizeHint().height() for button in buttons))
 
 
 def test_that_what_is_done_can_be_copied_as_command_and_as_python(window):

@@ -8,16 +8,16 @@ from regolith_studio.session.plan import LIVE
 from regolith_studio.session.tasks import Task
 from regolith_studio.ui.translation import tr
 
-LESSONS = ("lecture:annealing", "lecture:degrees")
-LOOKS = ("sample:faults", "scan:preview", "repose:preview", "dataset:library", "model:compare")
+LESSONS = ("lecture:annealing", "lecture:degrees", "lecture:field")
+LOOKS = ("sample:faults", "scan:preview", "repose:preview", "dataset:library", "model:compare", "model:live")
 SHORT = {*(str(kind) for kind in LIVE), "load", "inspect", "warm-up", *LESSONS, *LOOKS}
 """Lanes whose work is repeated by itself when the file, or the page, is opened again."""
 
 
 def worth_asking(tasks: Sequence[Task], busy: Sequence[str]) -> list[str]:
-    """What closing would stop, a sentence each."""
-    asked = [task for task in tasks if task.lane not in SHORT]
-    return [tr("{task} is running.", task=tr(task.title)) for task in asked] + list(busy)
+    """What closing would stop, a sentence each; none is said twice."""
+    titles = dict.fromkeys(tr(task.title) for task in tasks if task.lane not in SHORT)
+    return [*(tr("{task} is running.", task=title) for title in titles), *busy]
 
 
 def may_close(parent: QWidget, reasons: Sequence[str]) -> bool:

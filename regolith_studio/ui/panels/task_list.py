@@ -3,8 +3,17 @@
 import time
 from collections.abc import Sequence
 
-from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QGridLayout, QLabel, QProgressBar, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtWidgets import (
+    QFrame,
+    QGridLayout,
+    QLabel,
+    QProgressBar,
+    QPushButton,
+    QScrollArea,
+    QVBoxLayout,
+    QWidget,
+)
 
 from regolith_studio.session.tasks import Task
 from regolith_studio.ui.translation import tr
@@ -68,7 +77,7 @@ class _Row:
 
 
 class TaskListPanel(QWidget):
-    """Rows come and go with the tasks."""
+    """Rows come and go with the tasks; where there is no room for all of them they are scrolled."""
 
     cancelRequested = Signal(int)  # noqa: N815
     pauseRequested = Signal(int, bool)  # noqa: N815
@@ -81,10 +90,21 @@ class TaskListPanel(QWidget):
         self._grid = QGridLayout()
         self._grid.setColumnStretch(0, 2)
         self._grid.setColumnStretch(1, 1)
+        inside = QWidget()
+        column = QVBoxLayout(inside)
+        column.addWidget(self.idle)
+        column.addLayout(self._grid)
+        column.addStretch(1)
+        area = QScrollArea()
+        area.setFrameShape(QFrame.Shape.NoFrame)
+        area.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        area.setWidgetResizable(True)
+        area.setWidget(inside)
+        for part in (area.viewport(), inside):
+            part.setAutoFillBackground(False)
         layout = QVBoxLayout(self)
-        layout.addWidget(self.idle)
-        layout.addLayout(self._grid)
-        layout.addStretch(1)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(area)
 
     def show_tasks(self, tasks: Sequence[Task]) -> None:
         """List these instead."""
