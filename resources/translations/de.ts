@@ -6037,8 +6037,8 @@
   </message>
   <message>
    <location filename="ui/pages/model/distributions.py" />
-   <source>Wasserstein distance {apart:.1%} of the mean, Kolmogorov-Smirnov distance {gap:.2f}; means {measured:.4g} measured, {drawn:.4g} drawn</source>
-   <translation>Wasserstein-Distanz {apart:.1%} des Mittels, Kolmogorow-Smirnow-Distanz {gap:.2f}; Mittel {measured:.4g} gemessen, {drawn:.4g} gezogen</translation>
+   <source>Wasserstein distance {apart:.1%} of the mean, Kolmogorov-Smirnov distance {gap:.2f}; means {measured} measured, {drawn} drawn</source>
+   <translation>Wasserstein-Distanz {apart:.1%} des Mittels, Kolmogorow-Smirnow-Distanz {gap:.2f}; Mittel {measured} gemessen, {drawn} gezogen</translation>
   </message>
   <message>
    <source>Watch it work</source>

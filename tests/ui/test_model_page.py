@@ -9,6 +9,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QFileDialog, QWidget
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
+from regolith_studio.descriptors.distributions import Distribution
 from regolith_studio.harmonics.coefficients import degrees
 from regolith_studio.jobs.runners.inline import InlineRunner
 from regolith_studio.model.models import MODELS
@@ -20,6 +21,7 @@ from regolith_studio.studies.population import KEYS
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.model import PAGE
+from regolith_studio.ui.pages.model.distributions import distance_words
 from regolith_studio.ui.pages.model.judgement import JudgementPanel
 from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.spectrum_editor import SpectrumEditor
@@ -295,3 +297,13 @@ def test_that_the_outcome_of_a_judgement_is_told_in_german(opened, speaking):
     assert wanted <= {"mindestens", "höchstens"}
     assert retold("Mixture of fields, split 2, draw 3") == "Mischung von Feldern, Teilung 2, Ziehung 3"
     assert retold("noise of sampling, split 30") == "Rauschen der Stichprobe, Teilung 30"
+
+
+def test_that_the_means_of_distributions_have_units_and_the_same_digits():
+    halves = np.full(2, 0.5)
+    words = distance_words(
+        Distribution(np.array([40.0, 42.56]), halves), Distribution(np.array([40.0, 41.8]), halves), "µm"
+    )
+    assert words.endswith("means 41.28 µm measured, 40.90 µm drawn")
+    ratios = Distribution(np.array([0.25, 0.75]), halves)
+    assert distance_words(ratios, ratios).endswith("means 0.5000 measured, 0.5000 drawn")

@@ -12,6 +12,7 @@ from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.choice_box import ChoiceBox
 from regolith_studio.ui.widgets.curve_plot import Curve, CurvePlot
 from regolith_studio.ui.widgets.labels import ElidedLabel, plain_symbol
+from regolith_studio.ui.widgets.number_text import short_number
 
 WEIGHTINGS = {
     "number": mark("Each particle counts the same"),
@@ -19,7 +20,7 @@ WEIGHTINGS = {
 }
 WAITING = mark("Draw particles: their distributions appear here, over those of the measured ones.")
 SHARE = mark("Share at or below [%]")
-_UNITS = {0: "", 1: " [µm]", 2: " [µm²]", 3: " [µm³]"}
+_UNITS = {0: "", 1: "µm", 2: "µm²", 3: "µm³"}
 
 
 class DistributionsPanel(QWidget):
@@ -60,8 +61,8 @@ class DistributionsPanel(QWidget):
 
     def _show(self) -> None:
         row = CATALOGUE[self.key.value()]
-        symbol = plain_symbol(row.symbol)
-        self.plot.set_labels(f"{tr(row.label)} {symbol}{_UNITS.get(row.dimension, '')}", tr(SHARE))
+        symbol, unit = plain_symbol(row.symbol), _UNITS.get(row.dimension, "")
+        self.plot.set_labels(f"{tr(row.label)} {symbol}{f' [{unit}]' if unit else ''}", tr(SHARE))
         if self._compared is None:
             self.plot.set_curves([])
             self.words.setText("")
@@ -73,11 +74,11 @@ class DistributionsPanel(QWidget):
             label = tr("{count:,} measured", count=len(measured.values))
             curves.insert(0, _stairs(label, theme.particle, measured))
         self.plot.set_curves(curves)
-        self.words.setText(distance_words(measured, drawn))
+        self.words.setText(distance_words(measured, drawn, unit))
 
 
-def distance_words(measured: Distribution | None, drawn: Distribution) -> str:
-    """How far apart two distributions are."""
+def distance_words(measured: Distribution | None, drawn: Distribution, unit: str = "") -> str:
+    """How far apart two distributions are, of values in `unit`."""
     if measured is None:
         return tr("The source holds no measured particles.")
     places = np.union1d(measured.values, drawn.values)
@@ -85,11 +86,11 @@ def distance_words(measured: Distribution | None, drawn: Distribution) -> str:
     apart = wasserstein_1(measured, drawn) / measured.mean
     return tr(
         "Wasserstein distance {apart:.1%} of the mean, Kolmogorov-Smirnov distance {gap:.2f}; "
-        "means {measured:.4g} measured, {drawn:.4g} drawn",
+        "means {measured} measured, {drawn} drawn",
         apart=apart,
         gap=ks,
-        measured=measured.mean,
-        drawn=drawn.mean,
+        measured=f"{short_number(measured.mean)} {unit}".rstrip(),
+        drawn=f"{short_number(drawn.mean)} {unit}".rstrip(),
     )
 
 
