@@ -122,6 +122,8 @@ def fit_shapes(origin: Origin, order: GenerateOrder, half: bool = False) -> Step
     with suppress(RegolithError):
         first = live_mesh(model, 0)
     examples = _measured_examples(sample, model.l_max) if sample else ()
+    if sample is not None:
+        _ = sample.equivalent_radii  # kept by the sample; the window asks for them
     return FittedShapes(source, model, n_fitted, examples, first)
 
 
