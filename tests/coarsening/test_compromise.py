@@ -115,3 +115,10 @@ def test_that_a_cube_cannot_have_twenty_facets_and_the_reason_says_that_it_has_s
     assert max(found.errors.values()) <= 1e-6
     assert found.jaccard_distance <= 1e-6
     assert coarsen(cube, 6).reason is None
+
+
+def test_that_a_ball_keeps_its_size_where_only_its_sphericity_is_asked_for() -> None:
+    found = coarsen(icosphere(3), 20, weights=LossWeights.of(sphericity=1.0))
+    assert found.errors["volume"] <= 1e-6
+    assert found.achieved["sphericity"] > 0.98 * greatest_sphericity(20)
+    assert found.jaccard_distance < 0.1

@@ -15,7 +15,7 @@ from regolith_studio.coarsening.exact.compromise import compromise, with_facets_
 from regolith_studio.coarsening.exact.course import Attempt, course, densely_checked, start_planes
 from regolith_studio.coarsening.exact.evening import COST, evened, has_small_facets
 from regolith_studio.coarsening.exact.growth import grown, numbers_to_grow_from, with_waiting
-from regolith_studio.coarsening.exact.problem import SPHERICITY, Problem, needs_box
+from regolith_studio.coarsening.exact.problem import SPHERICITY, VOLUME, Problem, needs_box
 from regolith_studio.coarsening.exact.record import AS_GOOD_AS_MET, Record
 from regolith_studio.coarsening.exact.request import (
     CONDITION_KEYS,
@@ -55,6 +55,8 @@ COMPROMISES = (12, 20)
 """Facets to start from, besides all, where conditions cannot be met together."""
 ROUND_STARTS = 2
 """Starts from which polyhedra as round as can be are sought where the particle is rounder than the first."""
+SIZED = np.arange(5) == VOLUME
+"""The volume is held while the sphericity is sought, asked for or not: less surface would shrink the body."""
 OUT_OF_REACH = 4e-3
 """Where they miss the sphericity by more (in logarithms, added up), no further start is tried."""
 STARTS_FOR_FACETS = 3
@@ -86,7 +88,8 @@ class Search:
         self._rng = np.random.default_rng(seed)
         self._free = request.problem(target.rays, SAMPLE_ANGLE, only_volume=True)
         self._full = request.problem(target.rays, SAMPLE_ANGLE)
-        self._rest = request.problem(target.rays, SAMPLE_ANGLE, sphericity=False)
+        rest = request.problem(target.rays, SAMPLE_ANGLE, sphericity=False)
+        self._rest = rest._replace(asked=rest.asked | SIZED)
         self._checks = tuple(request.problem(target.rays, angle) for angle in (FINE_ANGLE, DENSE_ANGLE))
         self._judge = LossFunction(target, weights, everything=True)
         self._round_asked = bool(request.asked[SPHERICITY])
