@@ -5,7 +5,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
-from PySide6.QtCore import QDateTime, QLocale, QLockFile, QObject, QTimer, Signal
+from PySide6.QtCore import QDateTime, QLockFile, QObject, QTimer, Signal
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
 from regolith_studio.errors import RegolithError
@@ -219,7 +219,7 @@ def stale_autosaves() -> list[Path]:
 def _told(path: Path) -> str:
     """When the state was kept."""
     moment = QDateTime.fromSecsSinceEpoch(int(path.stat().st_mtime))
-    return tr("It was kept at {moment}.", moment=QLocale().toString(moment, QLocale.FormatType.ShortFormat))
+    return tr("It was kept at {moment}.", moment=moment.toString("yyyy-MM-dd HH:mm"))
 
 
 def _remove(autosave: Path) -> None:

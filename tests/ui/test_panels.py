@@ -19,7 +19,7 @@ from regolith_studio.harmonics.radius_function import RULES
 from regolith_studio.harmonics.reference import REFERENCES
 from regolith_studio.harmonics.star_point import STAR_POINT_RULES
 from regolith_studio.session.choices import Choices
-from regolith_studio.session.results import ParticleEntry
+from regolith_studio.session.results import ParticleEntry, Results
 from regolith_studio.session.sample_table import health_word
 from regolith_studio.session.tasks import Task
 from regolith_studio.studies.lmax import LmaxStudy
@@ -27,6 +27,7 @@ from regolith_studio.ui.panels.coarsening import CoarseningPanel
 from regolith_studio.ui.panels.fit import FitPanel
 from regolith_studio.ui.panels.lmax_study import LmaxStudyPanel
 from regolith_studio.ui.panels.loss import LossPanel
+from regolith_studio.ui.panels.loss_curve import LossCurvePanel
 from regolith_studio.ui.panels.particle_list import ParticleListPanel
 from regolith_studio.ui.panels.tasks import IDLE, TasksPanel
 from regolith_studio.ui.widgets.bar_plot import BarPlot, BarSeries
@@ -258,3 +259,15 @@ def test_that_the_smallest_l_max_follows_the_error_that_is_allowed(shown):
     assert panel.answer.text() == "<b>6</b>"
     panel.tolerance.setValue(0.5)
     assert panel.answer.text() == "none of these"
+
+
+@pytest.mark.parametrize("steps", [1, 2, 100])
+def test_that_the_loss_has_no_steps_before_the_first(shown, wait, steps):
+    panel = shown(LossCurvePanel())
+    panel.resize(420, 240)
+    panel.show_results(Results(loss_history=tuple((step, 0.5 - step / 1000) for step in range(steps))))
+    view = panel.plot.canvas.getViewBox()
+    wait(lambda: view.viewRange()[0][1] >= steps - 1, 10.0)
+    first, last = view.viewRange()[0]
+    assert -0.5 <= first <= 0.0, "the first step can be seen, and nothing before it"
+    assert last < 1.2 * steps + 1.0

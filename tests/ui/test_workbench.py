@@ -1,7 +1,9 @@
 """What makes the window a workbench: palette, projects, recovery, tasks, log, tour, layout, closing."""
 
 import json
+import os
 import threading
+from datetime import datetime
 
 import pytest
 from PySide6.QtCore import Qt, QTimer
@@ -123,9 +125,11 @@ def test_that_a_crash_leaves_a_state_that_can_be_brought_back(window, wait):
     left = autosave_path().with_name("autosave-999999999.regolith")
     left.write_text(Project.of(window.session).model_dump_json())
     assert stale_autosaves() == [left]
+    os.utime(left, (moment := datetime(2026, 3, 9, 7, 5).astimezone().timestamp(), moment))
     window.session.choose(n_faces=40)
     window.projects.offer_recovery()
     box = window.findChild(QMessageBox, "recovery")
+    assert box.informativeText() == "It was kept at 2026-03-09 07:05."
     box.button(QMessageBox.StandardButton.Yes).click()
     assert window.session.choices.n_faces == 13
     window.projects._timer.setInterval(0)
