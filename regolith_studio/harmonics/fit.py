@@ -20,7 +20,7 @@ from regolith_studio.harmonics.visibility import hidden_surface_share
 
 HIDDEN_TOLERANCE = 0.01
 """Hidden share of the surface from which on a fit carries a warning."""
-OSCILLATION_TOLERANCE = 0.05
+RADIAL_TOLERANCE = 0.05
 """Root-mean-square radial error, as a share of the mean radius, from which on a fit carries a warning."""
 
 
@@ -85,14 +85,15 @@ class HarmonicFit:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """The notes, and a sentence with the number where the expansion swings about the radius."""
-        if not self.radial_error > OSCILLATION_TOLERANCE:
+        """The notes, and a sentence with the number where the expansion misses the radius."""
+        if not self.radial_error > RADIAL_TOLERANCE:
             return self.notes
         most = "" if self.largest_radial_error is None else f", at most {self.largest_radial_error:.0%}"
         return (
             *self.notes,
             f"The expansion up to l = {self.l_max} misses the radius by {self.radial_error:.1%} in the root "
-            f"mean square{most}: it oscillates, as it does on flat and elongated grains.",
+            f"mean square{most}; a higher l_max comes closer, and on flat or long grains so does an "
+            "ellipsoid as reference.",
         )
 
     def truncated(self, l_max: int) -> "HarmonicFit":

@@ -505,6 +505,11 @@
    <translation>A der Hülle / A ihres Ellipsoids (nach Kuo und Freeman)</translation>
   </message>
   <message>
+   <location filename="ui/pages/lecture/page.py" />
+   <source>A random field has no steps: drag its bars, or draw anew.</source>
+   <translation>Ein Zufallsfeld hat keine Schritte: Balken ziehen oder neu ziehen lassen.</translation>
+  </message>
+  <message>
    <location filename="ui/pages/scan/volume_dialog.py" />
    <source>A raw file says nothing about itself: how many voxels are in it, and of which type?</source>
    <translation>Eine Rohdatei sagt nichts über sich: Wie viele Voxel hat sie, und von welchem Typ?</translation>
@@ -1554,6 +1559,7 @@
    <translation>Ziehung läuft</translation>
   </message>
   <message>
+   <location filename="ui/pages/lecture/page.py" />
    <location filename="ui/pages/model/page.py" />
    <location filename="ui/pages/repose/page.py" />
    <source>Drawing particles</source>
@@ -2113,11 +2119,6 @@
    <translation>Ordner für Abbildungen und Tabellen</translation>
   </message>
   <message>
-   <location filename="ui/dialogs/folder.py" />
-   <source>Folder, may be new:</source>
-   <translation>Ordner, auch ein neuer:</translation>
-  </message>
-  <message>
    <location filename="ui/pages/repose/__init__.py" />
    <source>Folder of r&amp;uns …</source>
    <translation>Ordner der &amp;Läufe …</translation>
@@ -2146,6 +2147,11 @@
    <location filename="ui/pages/dataset/library.py" />
    <source>Folder …</source>
    <translation>Ordner …</translation>
+  </message>
+  <message>
+   <location filename="ui/dialogs/folder.py" />
+   <source>Folder, may be new:</source>
+   <translation>Ordner, auch ein neuer:</translation>
   </message>
   <message>
    <location filename="ui/dialogs/export.py" />
@@ -2953,6 +2959,11 @@
   </message>
   <message>
    <location filename="ui/pages/studies/rows_bar.py" />
+   <source>Losses can be compared at equal numbers of facets only; choose the number beside Facets n.</source>
+   <translation>Verluste lassen sich nur bei gleich vielen Facetten vergleichen; die Zahl wird neben Facetten n gewählt.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/studies/rows_bar.py" />
    <source>Losses of figures 7 and 8</source>
    <translation>Verluste der Bilder 7 und 8</translation>
   </message>
@@ -3361,11 +3372,6 @@
    <translation>Es fand sich kein Polyeder mit {faces} Facetten, das alle Deskriptoren trifft: {name} weicht um {error} % ab; mehr Facetten oder ein Gewicht von 0 gäben Raum.</translation>
   </message>
   <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>The result has {real} facets instead of {faces}: the particle is convex and has {facets} facets itself, and no other polyhedron was found that meets all descriptors.</source>
-   <translation>Das Ergebnis hat {real} statt {faces} Facetten: Das Partikel ist konvex und hat selbst {facets} Facetten, und es fand sich kein anderes Polyeder, das alle Deskriptoren trifft.</translation>
-  </message>
-  <message>
    <location filename="ui/pages/scan/steps.py" />
    <source>No volume is open.</source>
    <translation>Kein Volumen ist geöffnet.</translation>
@@ -3607,21 +3613,6 @@
    <translation>Öffnen Sie zuerst ein Partikel.</translation>
   </message>
   <message>
-   <location filename="ui/pages/lecture/page.py" />
-   <source>The series of a fit has no random numbers.</source>
-   <translation>Die Reihe einer Anpassung hat keine Zufallszahlen.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/page.py" />
-   <source>A random field has no steps: drag its bars, or draw anew.</source>
-   <translation>Ein Zufallsfeld hat keine Schritte: Balken ziehen oder neu ziehen lassen.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/page.py" />
-   <source>The lesson is still being computed.</source>
-   <translation>Die Lektion wird noch berechnet.</translation>
-  </message>
-  <message>
    <location filename="ui/pages/scan/page.py" />
    <location filename="ui/pages/scan/volume_dialog.py" />
    <source>Open a volume</source>
@@ -3787,7 +3778,7 @@
    <translation>PNG</translation>
   </message>
   <message>
-   <location filename="ui/page_stack.py" />
+   <location filename="ui/sidebar.py" />
    <source>Page {title}</source>
    <translation>Seite {title}</translation>
   </message>
@@ -5323,13 +5314,13 @@
   </message>
   <message>
    <location filename="ui/translation/sentences.py" />
-   <source>The expansion up to l = {degree} misses the radius by {error} in the root mean square, at most {most}: it oscillates, as it does on flat and elongated grains.</source>
-   <translation>Die Entwicklung bis l = {degree} verfehlt den Radius im quadratischen Mittel um {error}, höchstens um {most}: sie schwingt, wie sie es bei flachen und länglichen Körnern tut.</translation>
+   <source>The expansion up to l = {degree} misses the radius by {error} in the root mean square, at most {most}; a higher l_max comes closer, and on flat or long grains so does an ellipsoid as reference.</source>
+   <translation>Die Entwicklung bis l = {degree} verfehlt den Radius im quadratischen Mittel um {error}, höchstens um {most}; ein höheres l_max kommt näher, bei flachen oder länglichen Körnern auch ein Ellipsoid als Bezug.</translation>
   </message>
   <message>
    <location filename="ui/translation/sentences.py" />
-   <source>The expansion up to l = {degree} misses the radius by {error} in the root mean square: it oscillates, as it does on flat and elongated grains.</source>
-   <translation>Die Entwicklung bis l = {degree} verfehlt den Radius im quadratischen Mittel um {error}: sie schwingt, wie sie es bei flachen und länglichen Körnern tut.</translation>
+   <source>The expansion up to l = {degree} misses the radius by {error} in the root mean square; a higher l_max comes closer, and on flat or long grains so does an ellipsoid as reference.</source>
+   <translation>Die Entwicklung bis l = {degree} verfehlt den Radius im quadratischen Mittel um {error}; ein höheres l_max kommt näher, bei flachen oder länglichen Körnern auch ein Ellipsoid als Bezug.</translation>
   </message>
   <message>
    <location filename="ui/panels/coarsening.py" />
@@ -5425,6 +5416,11 @@
    <location filename="ui/dialogs/preferences.py" />
    <source>The language takes effect when the program starts again.</source>
    <translation>Die Sprache gilt ab dem nächsten Start des Programms.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/page.py" />
+   <source>The lesson is still being computed.</source>
+   <translation>Die Lektion wird noch berechnet.</translation>
   </message>
   <message>
    <location filename="ui/panels/loss_curve.py" />
@@ -5534,6 +5530,11 @@
    <translation>Das Ergebnis hat {real} statt {faces} Facetten: Es fand sich kein Ort, wo die übrigen Halbräume eine Facette begrenzen und alle Deskriptoren getroffen sind.</translation>
   </message>
   <message>
+   <location filename="ui/translation/sentences.py" />
+   <source>The result has {real} facets instead of {faces}: the particle is convex and has {facets} facets itself, and no other polyhedron was found that meets all descriptors.</source>
+   <translation>Das Ergebnis hat {real} statt {faces} Facetten: Das Partikel ist konvex und hat selbst {facets} Facetten, und es fand sich kein anderes Polyeder, das alle Deskriptoren trifft.</translation>
+  </message>
+  <message>
    <location filename="ui/dialogs/batch.py" />
    <source>The results are the same bytes whoever works, and a run that was stopped can go on.</source>
    <translation>Die Ergebnisse sind Byte für Byte dieselben, wer auch arbeitet, und ein abgebrochener Lauf lässt sich fortsetzen.</translation>
@@ -5551,6 +5552,11 @@
    <location filename="ui/commands.py" />
    <source>The script is on the clipboard.</source>
    <translation>Das Skript ist in der Zwischenablage.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/lecture/page.py" />
+   <source>The series of a fit has no random numbers.</source>
+   <translation>Die Reihe einer Anpassung hat keine Zufallszahlen.</translation>
   </message>
   <message>
    <location filename="ui/pages/dataset/plots.py" />
@@ -5662,11 +5668,6 @@
    <translation>Es gibt noch keinen vermessenen Schüttkegel zu exportieren.</translation>
   </message>
   <message>
-   <location filename="ui/pages/repose/player.py" />
-   <source>There is no run to play: make one, or choose one of the list.</source>
-   <translation>Es gibt keinen Lauf zum Abspielen: einen machen oder einen der Liste wählen.</translation>
-  </message>
-  <message>
    <location filename="ui/pages/model/page.py" />
    <source>There is no model to draw from: fit one first.</source>
    <translation>Es gibt kein Modell, aus dem zu ziehen wäre: passen Sie zuerst eines an.</translation>
@@ -5675,6 +5676,11 @@
    <location filename="ui/pages/model/page.py" />
    <source>There is no model to save: fit one first.</source>
    <translation>Es gibt kein Modell zu speichern: passen Sie zuerst eines an.</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/repose/player.py" />
+   <source>There is no run to play: make one, or choose one of the list.</source>
+   <translation>Es gibt keinen Lauf zum Abspielen: einen machen oder einen der Liste wählen.</translation>
   </message>
   <message>
    <location filename="ui/commands.py" />
@@ -6562,6 +6568,11 @@
    <translation>Koeffizienten</translation>
   </message>
   <message>
+   <location filename="ui/pages/studies/rows_bar.py" />
+   <source>compared at {count} facets each, not at an error</source>
+   <translation>verglichen bei je {count} Facetten, nicht bei einem Fehler</translation>
+  </message>
+  <message>
    <location filename="ui/pages/studies/variation_panel.py" />
    <location filename="ui/panels/coarsening_study.py" />
    <location filename="ui/panels/lmax_study.py" />
@@ -7425,16 +7436,6 @@
   </message>
   <message>
    <location filename="ui/pages/studies/rows_bar.py" />
-   <source>Losses can be compared at equal numbers of facets only; choose the number beside Facets n.</source>
-   <translation>Verluste lassen sich nur bei gleich vielen Facetten vergleichen; die Zahl wird neben Facetten n gewählt.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/rows_bar.py" />
-   <source>compared at {count} facets each, not at an error</source>
-   <translation>verglichen bei je {count} Facetten, nicht bei einem Fehler</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/rows_bar.py" />
    <source>trimesh's heuristic (paper)</source>
    <translation>Heuristik von trimesh (Artikel)</translation>
   </message>
@@ -7990,6 +7991,11 @@
    <location filename="ui/panels/coarsening_study.py" />
    <source>{row}, {column}: {value:.3g} % ({low:.3g} to {high:.3g}; {share:.0%} bootstrap interval)</source>
    <translation>{row}, {column}: {value:.3g} % ({low:.3g} bis {high:.3g}; {share:.0%}-Bootstrap-Bereich)</translation>
+  </message>
+  <message>
+   <location filename="ui/panels/coarsening_study.py" />
+   <source>{share:.0%} bootstrap intervals</source>
+   <translation>{share:.0%}-Bootstrap-Intervalle</translation>
   </message>
   <message>
    <location filename="ui/pages/sample/statistics.py" />

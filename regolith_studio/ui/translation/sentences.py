@@ -13,11 +13,11 @@ SENTENCES = (
     ),
     mark(
         "The expansion up to l = {degree} misses the radius by {error} in the root mean square, at most"
-        " {most}: it oscillates, as it does on flat and elongated grains."
+        " {most}; a higher l_max comes closer, and on flat or long grains so does an ellipsoid as reference."
     ),
     mark(
-        "The expansion up to l = {degree} misses the radius by {error} in the root mean square: it"
-        " oscillates, as it does on flat and elongated grains."
+        "The expansion up to l = {degree} misses the radius by {error} in the root mean square; a higher"
+        " l_max comes closer, and on flat or long grains so does an ellipsoid as reference."
     ),
     mark("The centre of mass lies outside the particle; the point with the least hidden volume is used."),
     mark("Sphericity {sphericity} needs at least {needed} faces; with {faces} the most is {most}."),
