@@ -41,9 +41,11 @@ class CoarseningStudyPanel(QWidget):
             self.frame.set_remark("")
             return
         self._study = study
-        self.table.set_values([retold(row.label) for row in study.rows], HEADERS, study.rmsre)
+        labels, ends = [retold(row.label) for row in study.rows], study.bands.tolist()
+        self.table.set_values(labels, HEADERS, study.rmsre, (ends[0], ends[1]))
         self._tell_bands()
         count = tr_count("RMSRE [%], 1 particle", "RMSRE [%], {count} particles", len(study.names))
+        count += ", " + tr("{share:.0%} bootstrap intervals", share=study.confidence)
         if study.box_metric != "exact":
             count += ", " + tr("box of {name}", name=study.box_metric)
         self.frame.set_remark(f"{count}; {tr('computed with other choices')}" if outdated else count)

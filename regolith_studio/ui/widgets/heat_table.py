@@ -20,6 +20,10 @@ from regolith_studio.ui.translation import tr
 
 _ROWS_SHARE = 0.33
 """Of the width, that the names of the rows take at most."""
+SPARE = 11
+"""Pixels between two rows."""
+Bands = tuple[Sequence[Sequence[float]], Sequence[Sequence[float]]]
+"""Lower and upper ends of the intervals of a table."""
 
 
 def percentage(share: float) -> str:
@@ -32,6 +36,11 @@ def percentage(share: float) -> str:
     return f"{percent:.2f}" if percent < 1.0 else f"{percent:.1f}"
 
 
+def _short(share: float) -> str:
+    """A share in per cent with two digits, for the end of an interval."""
+    return f"{100.0 * share:.0f}" if share >= 0.1 else percentage(share)
+
+
 class HeatTable(QWidget):
     """Shows shares as percentages, or a sentence where there are none yet."""
 
@@ -39,7 +48,8 @@ class HeatTable(QWidget):
         super().__init__(parent)
         self._theme = current_theme()
         self._values: tuple[tuple[float, ...], ...] = ()
-        self.table = numbers_table(tr("Table of errors"), spare=11)
+        self._bands: Bands | None = None
+        self.table = numbers_table(tr("Table of errors"), spare=SPARE)
         self._stack = QStackedLayout(self)
         self._stack.addWidget(remark_in_the_middle(placeholder))
         self._stack.addWidget(self.table)
@@ -49,10 +59,18 @@ class HeatTable(QWidget):
         return self._values
 
     def set_values(
-        self, rows: Sequence[str], columns: Sequence[str], values: Sequence[Sequence[float]]
+        self,
+        rows: Sequence[str],
+        columns: Sequence[str],
+        values: Sequence[Sequence[float]],
+        bands: Bands | None = None,
     ) -> None:
-        """Show other shares; no rows bring back the sentence."""
+        """Show other shares, below each the ends of its interval; no rows bring back the sentence."""
         self._values = tuple(tuple(float(value) for value in row) for row in values)
+        self._bands = bands
+        lines = 1 if bands is None else 2
+        height = lines * self.table.fontMetrics().height() + SPARE
+        self.table.verticalHeader().setDefaultSectionSize(height)
         self._stack.setCurrentIndex(1 if rows else 0)
         self.table.setRowCount(len(rows))
         self.table.setColumnCount(len(columns))
@@ -76,12 +94,19 @@ class HeatTable(QWidget):
         top = max((value for row in self._values for value in row if math.isfinite(value)), default=0.0)
         for at, row in enumerate(self._values):
             for column, value in enumerate(row):
-                self.table.setItem(
-                    at, column, self._cell(value, math.sqrt(value / top) if top > 0.0 else 0.0)
-                )
+                text = percentage(value) + self._band(at, column)
+                heat = math.sqrt(value / top) if top > 0.0 else 0.0
+                self.table.setItem(at, column, self._cell(text, heat))
 
-    def _cell(self, share: float, heat: float) -> QTableWidgetItem:
-        item = QTableWidgetItem(percentage(share))
+    def _band(self, row: int, column: int) -> str:
+        """A second line with the interval, where it has a width that can be read."""
+        if self._bands is None:
+            return ""
+        low, high = (_short(end[row][column]) for end in self._bands)
+        return "" if low == high else f"\n{low}–{high}"
+
+    def _cell(self, text: str, heat: float) -> QTableWidgetItem:
+        item = QTableWidgetItem(text)
         item.setTextAlignment(Qt.AlignmentFlag.AlignCenter)
         if math.isfinite(heat):
             colour = QColor(self._theme.polyhedron)

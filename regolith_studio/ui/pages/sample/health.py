@@ -107,7 +107,7 @@ class HealthPanel(QWidget):
         self.legend.setText(
             "&nbsp; ".join(
                 f'<span style="color:{COLOURS[kind]}">&#9632;</span>&nbsp;'
-                + html.escape(f"{tr(KINDS[kind])} ({count:,})").replace(" ", "&nbsp;")
+                + html.escape(f"{tr(KINDS[kind])} ({count:,})")
                 for kind, count in found
             )
             or tr("Nothing to show: no faults, and all of the surface is seen from the star point.")
@@ -141,8 +141,8 @@ class HealthPanel(QWidget):
         scrolled.setWidget(right)
         layout = QHBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(self.table, 1)
-        layout.addWidget(scrolled, 1)
+        layout.addWidget(self.table, 3)
+        layout.addWidget(scrolled, 2)
 
 
 def retold_health(entry: ParticleEntry) -> list[str]:
