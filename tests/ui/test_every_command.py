@@ -2,11 +2,13 @@
 
 import sys
 
+import pytest
 from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import QApplication, QDialog, QFileDialog, QInputDialog, QMessageBox
 
 from regolith_studio.jobs.events import Started, Stopped
 from regolith_studio.session.session import Session
+from regolith_studio.ui.app import open_window
 from regolith_studio.ui.main_window import MainWindow
 from regolith_studio.ui.tour import Tour
 
@@ -120,7 +122,7 @@ class Witness:
         QApplication.processEvents()
 
 
-def silent_commands(window, monkeypatch):
+def silent_commands(window, monkeypatch, unseen=(*NOTHING_TO_SEE, *WITH_PARTICLES)):
     """Names of the commands after which everything is as it was and nothing was said."""
     witness, silent = Witness(window, monkeypatch), []
     for name, action in window.menus.by_name.items():
@@ -136,7 +138,7 @@ def silent_commands(window, monkeypatch):
         action.trigger()
         QApplication.processEvents()
         noticed = witness.seen() != before or witness.picture() != picture
-        if not noticed and name not in (*NOTHING_TO_SEE, *WITH_PARTICLES) and not name.startswith("go."):
+        if not noticed and name not in unseen and not name.startswith("go."):
             silent.append(name)
         assert not witness.wrong, (name, witness.wrong)
         if action.isCheckable():
@@ -150,3 +152,25 @@ def test_that_every_command_answers_where_nothing_is_open(shown, preferences, mo
     window = shown(MainWindow(Session(HoldingRunner()), preferences, "image"))
     monkeypatch.setattr(window.session, "open_sample", lambda: None)
     assert silent_commands(window, monkeypatch) == []
+
+
+@pytest.mark.slow
+def test_that_every_command_answers_where_all_pages_are_full(shown, preferences, monkeypatch, wait, settled):
+    window = open_window(views="image", preferences=preferences)
+    shown(window)
+    wait(lambda: window.session.results.coarsened is not None and not window.session.tasks)
+    window.session.adopt([entry.particle for entry in window.session.particles[:4]])
+    window.session.choose(method="quadric", n_faces=12, level=2, l_max=4)
+    settled(window)
+    window.go("studies")
+    window.menus.by_name["studies.run_all"].trigger()
+    wait(lambda: window.session.results.coarsening_study is not None and not window.session.tasks)
+    model = window.go("model")
+    window.menus.by_name["model.fit_model"].trigger()
+    wait(lambda: model.drawing.draw.isEnabled() and not window.session.tasks)
+    window.session.choose(n_faces=14)
+    settled(window)
+    window.go("explore")
+    silent = silent_commands(window, monkeypatch, NOTHING_TO_SEE)
+    settled(window)
+    assert silent == []
