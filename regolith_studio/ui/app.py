@@ -57,7 +57,8 @@ def open_window(
         QTimer.singleShot(0, window, lambda: window.commands.open_paths(found, unit))
     _warm_up_later(session, runner)
     _give_back_at_rest(window)
-    Preparing(window.pages, runner)
+    preparing = Preparing(window.pages, runner)
+    window.wiring.hear("choices", lambda *_: preparing.put_off())
     return window
 
 

@@ -1,10 +1,10 @@
-"""Loads in the background what pages need: one when the mouse comes near its button, all when one is visited.
+"""Loads in the background what pages need: one when the mouse comes near its button, all after a visit.
 
 The one that the mouse comes near is also built, step by step between the events of the window. Not at the
 start: many a visit ends on the page where it began, and what the others need is memory.
 """
 
-from PySide6.QtCore import QObject
+from PySide6.QtCore import QObject, QTimer
 
 from regolith_studio.jobs.events import Event, Job, Progress, Started, Steps
 from regolith_studio.jobs.runners.protocol import Runner
@@ -12,6 +12,8 @@ from regolith_studio.ui.page import Page
 from regolith_studio.ui.page_stack import PageStack
 
 LANE = "preparing pages"
+PAUSE = 1500
+"""Milliseconds from a visit until the others are loaded: loading takes the interpreter from who paints."""
 
 
 class Preparing(QObject):
@@ -32,7 +34,9 @@ class Preparing(QObject):
         self._next = ""
         self._wanted: list[str] = []
         stack.approached.connect(self._want_soon)
-        stack.changed.connect(self._want_all)
+        self._later = QTimer(self, singleShot=True, interval=PAUSE)
+        self._later.timeout.connect(lambda: self.want(*stack.pages))
+        stack.changed.connect(lambda _key: self._later.start())
 
     def want(self, *keys: str) -> None:
         """Prepare these pages before all others that are waiting."""
@@ -41,6 +45,11 @@ class Preparing(QObject):
             self._wanted = wanted
             pages = tuple(self._stack.pages[key] for key in wanted)
             self._runner.submit(Job(prepared, (pages, self._ready)), self._hear, LANE)
+
+    def put_off(self) -> None:
+        """Wait anew before all pages are loaded, where that has not begun: somebody is at work."""
+        if self._later.isActive():
+            self._later.start()
 
     def _want_soon(self, key: str) -> None:
         self._next = key
@@ -55,9 +64,6 @@ class Preparing(QObject):
         if self._next in self._ready:
             self._stack.prepare(self._next)
             self._next = ""
-
-    def _want_all(self, _key: str) -> None:
-        self.want(*self._stack.pages)
 
 
 def prepared(pages: tuple[Page, ...], ready: set[str]) -> Steps:

@@ -1,5 +1,6 @@
 """Pages are prepared in the background: one when it may be wanted next, all when one has been visited."""
 
+import time
 from unittest.mock import Mock
 
 import pytest
@@ -11,7 +12,7 @@ from regolith_studio.jobs.runners.inline import InlineRunner
 from regolith_studio.ui.page import Page, PageWidget
 from regolith_studio.ui.page_stack import PageStack
 from regolith_studio.ui.pages import pages
-from regolith_studio.ui.preparing import Preparing
+from regolith_studio.ui.preparing import PAUSE, Preparing
 
 
 def build(_context):
@@ -49,12 +50,26 @@ def test_that_the_page_that_somebody_comes_near_is_built_but_not_shown(stack, wa
     assert stack.current == "a"
 
 
-def test_that_a_visit_prepares_the_others_once_and_none_that_is_built(stack, prepared):
+def test_that_a_visit_prepares_the_others_once_and_none_that_is_built(stack, prepared, wait):
     stack.go("b")
+    assert prepared == []  # the page that is visited is painted first
+    wait(lambda: prepared)
     assert prepared == ["c", "d"]
     stack.approached.emit("d")
     stack.go("a")
     assert prepared == ["c", "d"]
+
+
+def test_that_it_waits_while_somebody_is_at_work(stack, prepared, wait):
+    preparing = stack.findChild(Preparing)
+    preparing.put_off()
+    stack.go("b")
+    began = time.monotonic()
+    while time.monotonic() < began + 2.5 * PAUSE / 1000:
+        preparing.put_off()
+        QApplication.processEvents()
+    assert prepared == []
+    wait(lambda: prepared)
 
 
 @pytest.mark.usefixtures("app")
