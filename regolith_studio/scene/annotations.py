@@ -180,7 +180,7 @@ def show_colour_scale(
         fmt=f"{numbers}  ",
         vertical=True,
         width=0.045,
-        height=0.34,
+        height=0.26,
         position_x=0.92,
         position_y=0.04,
         label_font_size=11,
