@@ -7,7 +7,7 @@ with :func:`grouped` above it has each of those fields as an option of its own, 
 import functools
 import inspect
 from collections.abc import Callable, Iterator
-from dataclasses import fields, is_dataclass
+from dataclasses import MISSING, fields, is_dataclass
 from typing import Any, get_type_hints
 
 
@@ -17,7 +17,7 @@ def grouped(command: Callable[..., None]) -> Callable[..., None]:
     Raises
     ------
     ValueError
-        If two options have the same name, or an option of a group has no default.
+        If two options have the same name.
     """
     hints = get_type_hints(command, include_extras=True)
     given = inspect.signature(command).parameters.values()
@@ -42,7 +42,8 @@ def _options(name: str, hint: Any, default: Any) -> Iterator[inspect.Parameter]:
         return
     hints = get_type_hints(hint, include_extras=True)
     for each in fields(hint):
-        yield from _options(each.name, hints[each.name], each.default)
+        default = inspect.Parameter.empty if each.default is MISSING else each.default
+        yield from _options(each.name, hints[each.name], default)
 
 
 def _taken(group: Any, values: dict[str, Any]) -> Any:

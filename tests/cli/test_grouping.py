@@ -59,6 +59,19 @@ def test_that_the_help_is_that_of_a_command_with_the_options_one_by_one():
     assert run(measure, "--help").output == run(one_by_one, "--help").output
 
 
+def test_that_an_option_of_a_group_without_a_default_is_required():
+    @dataclass(frozen=True)
+    class Sizes:
+        number: Number
+
+    @grouped
+    def draw(*, sizes: Sizes) -> None:
+        typer.echo(sizes.number)
+
+    assert run(draw, "--number", "4").output == "4\n"
+    assert run(draw).exit_code == 2
+
+
 def test_that_a_wrong_value_of_a_group_is_bad_use():
     done = run(measure, "--number", "many", "a.stl")
     assert done.exit_code == 2

@@ -32,6 +32,7 @@ WEIGHT = 5e-3
 COST = 1e-3
 """By how much the Jaccard distance may rise."""
 SHORTEST = 1e-5
+"""Of a step, in units of the side of the cube of the particle's volume; shorter ones end the descent."""
 
 
 @dataclass(frozen=True)
