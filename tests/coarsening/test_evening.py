@@ -5,12 +5,14 @@ import pytest
 from scipy.spatial import ConvexHull, HalfspaceIntersection
 
 from benchmarks.independent import measured
-from regolith_studio.coarsening.coarsen import coarsen
+from regolith_studio.coarsening.coarsen import coarsen, coarsening_steps
 from regolith_studio.coarsening.core.intersection import edges_of, intersect
 from regolith_studio.coarsening.core.measures import facets_of
 from regolith_studio.coarsening.core.planes import gradient_of, levers_of, moved, tangents_of
 from regolith_studio.coarsening.exact import search
 from regolith_studio.coarsening.exact.evening import facet_charge, has_small_facets
+from regolith_studio.coarsening.progress import CoarseningProgress
+from regolith_studio.coarsening.result import Coarsened
 from regolith_studio.coarsening.target import Target
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.directions import fibonacci_directions, icosphere
@@ -77,3 +79,26 @@ def test_that_small_facets_grow_and_nothing_is_lost(n_faces: int, monkeypatch: p
         for key in ("volume", "sphericity", "min_diameter", "max_diameter"):
             assert values[key] == pytest.approx(target.descriptors[key], rel=1e-6)
     assert sum(small[True]) < 0.7 * sum(small[False]) or sum(small[False]) == 0.0
+
+
+def test_that_the_polyhedron_with_larger_facets_is_told_as_the_last_step(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    target = Target.of(pebble(2))
+    told, result = steps_of(target, 35)
+    monkeypatch.setattr(search, "has_small_facets", lambda *_: False)
+    plain, small = steps_of(target, 35)
+    assert len(told) == len(plain) + 1
+    assert result.loss_history[:-1] == small.loss_history
+    assert result.loss_history[-1] == pytest.approx(result.loss, abs=1e-3)
+    assert told[-1].polyhedron is not None
+    np.testing.assert_allclose(told[-1].polyhedron.half_spaces.offsets, result.half_spaces.offsets, rtol=1e-9)
+
+
+def steps_of(target: Target, n_faces: int) -> tuple[list[CoarseningProgress], Coarsened]:
+    steps, told = coarsening_steps(target, n_faces), []
+    while True:
+        try:
+            told.append(next(steps))
+        except StopIteration as end:
+            return told, end.value

@@ -11,6 +11,8 @@ from regolith_studio.geometry.half_spaces import HalfSpaces
 
 AS_GOOD_AS_MET = 1e-5
 """Polyhedra whose conditions hold to this come before those with less loss."""
+SAME = 1e-6
+"""Losses that differ by less are of one polyhedron, which boxes were searched for once more."""
 
 
 class Record:
@@ -62,3 +64,10 @@ class Record:
             if worth:
                 self.history.append(value)
                 yield MethodStep(step, self._steps, value, HalfSpaces(found.normals, found.offsets))
+
+    def ended(self, reported: HalfSpaces) -> Iterator[MethodStep]:
+        """Tell of what is reported, where it is not what was told last."""
+        value = self._judge.value(reported.normals, reported.offsets)
+        if not self.history or abs(value - self.history[-1]) > SAME:
+            self.history.append(value)
+            yield MethodStep(self._steps, self._steps, value, reported)

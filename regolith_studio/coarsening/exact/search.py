@@ -1,6 +1,6 @@
 """The course of the whole method: starts until one meets all conditions, and compromises if none does."""
 
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -137,8 +137,11 @@ class Search:
         for planes in (self._planes, (best.normals, best.offsets), *few_planes):
             yield from self._record.told(self._total, self._compromise(planes))
 
-    def result(self) -> MethodResult:
-        """The best polyhedron without half-spaces that bound nothing, and a reason where it is not as asked.
+    def ending(self) -> Generator[MethodStep, None, MethodResult]:
+        """A step for what is reported, where it is not what was told last, and the result.
+
+        That is the best polyhedron without half-spaces that bound nothing, and a reason where it is not as
+        asked.
 
         Raises
         ------
@@ -147,14 +150,15 @@ class Search:
         """
         counts = {"starts": float(self._tried), "exact": float(self._record.met)}
         if not self._record.met and self._itself is not None:
-            said = own_reason(self._itself.n_faces, self._n_faces)
-            own, history = self._itself.half_spaces, tuple(self._record.history)
-            return MethodResult(own, history, said, counts, polyhedron=self._itself)
-        outcome = self._evened() or self._record.outcome or self._found()
-        planes = real_planes(with_facets_back(self._target, self._full, outcome))
-        solid = ConvexPolyhedron.from_half_spaces(planes)
-        found = describe(solid, LOSS_KEYS)
-        reason = reason_for(self._target, self._request, self._n_faces, len(planes), found)
+            solid, planes = self._itself, self._itself.half_spaces
+            reason: str | None = own_reason(solid.n_faces, self._n_faces)
+        else:
+            outcome = self._evened() or self._record.outcome or self._found()
+            planes = real_planes(with_facets_back(self._target, self._full, outcome))
+            solid = ConvexPolyhedron.from_half_spaces(planes)
+            found = describe(solid, LOSS_KEYS)
+            reason = reason_for(self._target, self._request, self._n_faces, len(planes), found)
+        yield from self._record.ended(planes)
         return MethodResult(planes, tuple(self._record.history), reason, counts, polyhedron=solid)
 
     def _evened(self) -> Attempt | None:

@@ -61,11 +61,11 @@ class ExactMethod:
         seed: np.random.SeedSequence,
         settings: ExactSettings,
     ) -> Generator[MethodStep, None, MethodResult]:
-        """A step for each better polyhedron; the first is the start."""
+        """A step for each better polyhedron; the first is the start, the last what is reported."""
         search = Search(target, weights, n_faces, LEVELS[settings.level], settings.retries, seed)
         yield from search.from_starts()
         yield from search.compromises()
-        return search.result()
+        return (yield from search.ending())
 
 
 METHOD = ExactMethod()
