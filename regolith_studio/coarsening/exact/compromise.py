@@ -5,8 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from regolith_studio.coarsening.core.box_search import FINE_ANGLE
 from regolith_studio.coarsening.core.cuts import SMALLEST_FACET
 from regolith_studio.coarsening.core.planes import tangents_of
+from regolith_studio.coarsening.evaluation import LossFunction
 from regolith_studio.coarsening.exact.course import (
     CHUNK,
     LONG_POLISH,
@@ -31,7 +33,16 @@ from regolith_studio.coarsening.exact.descent import (
 from regolith_studio.coarsening.exact.growth import with_more_facets
 from regolith_studio.coarsening.exact.in_turn import met_in_turn
 from regolith_studio.coarsening.exact.polish import Polished, measured, verified
-from regolith_studio.coarsening.exact.problem import SPHERICITY, Problem, log_sphericity
+from regolith_studio.coarsening.exact.problem import (
+    LONGEST,
+    RATIO,
+    SHORTEST,
+    SPHERICITY,
+    VOLUME,
+    Problem,
+    Shape,
+    log_sphericity,
+)
 from regolith_studio.coarsening.polyhedra import facet_areas
 from regolith_studio.coarsening.target import Target
 from regolith_studio.geometry.arrays import FloatArray
@@ -40,6 +51,8 @@ from regolith_studio.geometry.half_spaces import HalfSpaces
 STEPS = 64
 STALLED = 0.02
 """Where a chunk of steps brings the sphericity nearer by less than this share, it ends."""
+FACETS_COST = 0.1
+"""By how much the loss may rise for facets that are put back."""
 
 
 def compromise(
@@ -71,6 +84,7 @@ def compromise(
     point = verified(rest, point, first_metric(rest, point.shape), LONG_POLISH, TOLERANCE, reach(point))
     apart = 0.0
     if point.worst > TOLERANCE:
+        rest, full = (each._replace(sample_angle=FINE_ANGLE) for each in (rest, full))
         nearest = None if only_rounder else met_in_turn(rest, planes)
         if nearest is None:
             return
@@ -126,30 +140,56 @@ def with_sphericity_held(full: Problem, state: State, bound_steps: int) -> Itera
         yield missing_by(residual, attempt(held, later.point))
 
 
-def with_facets_back(target: Target, full: Problem, found: Attempt) -> Attempt:
-    """A polyhedron that misses a condition with all its facets, at the descriptors that it has."""
+def with_facets_back(
+    target: Target, problems: tuple[Problem, ...], judge: LossFunction, found: Attempt
+) -> Attempt:
+    """A polyhedron that misses a condition with all its facets, at the descriptors that it has.
+
+    Each of the problems is tried until all facets are back; their searches for boxes are ever finer, since
+    one that is overlooked would change the descriptors. The sphericity goes free at last.
+    """
     if found.exact or found.n_facets == len(found.offsets):
         return found
+    most = judge.value(found.normals, found.offsets) + FACETS_COST
     areas = facet_areas(HalfSpaces(found.normals, found.offsets))
     real = areas >= SMALLEST_FACET
-    held, point = as_it_is(full, found.normals[real], found.offsets[real])
-    if point.worst > TOLERANCE:
-        return found
     best = found
-    for more in with_more_facets(target, held, attempt(held, point), len(found.offsets), 0):
-        if more.exact and more.n_facets > best.n_facets:
-            best = replace(more, worst=found.worst)
+    for problem in (*problems, without_sphericity(problems[-1])):
+        held, point = as_it_is(problem, found.normals[real], found.offsets[real])
+        if point.worst > TOLERANCE:
+            continue
+        for more in with_more_facets(target, held, attempt(held, point), len(found.offsets), 0):
+            worth = more.exact and more.n_facets > best.n_facets
+            if worth and judge.value(more.normals, more.offsets) <= most:
+                best = replace(more, worst=found.worst)
+        if best.n_facets == len(best.offsets):
+            break
     return best
+
+
+def without_sphericity(problem: Problem) -> Problem:
+    """All conditions but that."""
+    return problem._replace(asked=problem.asked & (np.arange(5) != SPHERICITY))
 
 
 def as_it_is(full: Problem, normals: FloatArray, offsets: FloatArray) -> tuple[Problem, Polished]:
     """The problem that asks for the descriptors that a polyhedron has, and the polyhedron."""
-    point = measured(full, normals, offsets, tangents_of(normals), NOWHERE)
-    wanted = full.wanted.copy()
-    if np.isfinite(point.worst):
-        wanted[full.asked] += point.conditions.residual
-    held = full._replace(wanted=wanted)
-    return held, measured(held, normals, offsets, tangents_of(normals), NOWHERE)
+    frames = tangents_of(normals)
+    point = measured(full, normals, offsets, frames, NOWHERE)
+    if not np.isfinite(point.worst):
+        return full, point
+    held = full._replace(wanted=values_of(full, point.shape))
+    return held, measured(held, normals, offsets, frames, NOWHERE)
+
+
+def values_of(problem: Problem, shape: Shape) -> FloatArray:
+    """Logarithms of a polyhedron's descriptors, with the least of its boxes; shape (5,)."""
+    values = problem.wanted.copy()
+    values[VOLUME], values[SPHERICITY] = np.log(shape.volume), log_sphericity(shape.volume, shape.surface)
+    if len(shape.boxes.extents):
+        low, high = np.log(shape.boxes.extents[0].min()), np.log(shape.boxes.extents[0].max())
+        values[SHORTEST], values[LONGEST], values[RATIO] = low, high, high - low
+    return values
 
 
 def missing_by(residual: float, found: Attempt) -> Attempt:

@@ -154,7 +154,7 @@ class Search:
             reason: str | None = own_reason(solid.n_faces, self._n_faces)
         else:
             outcome = self._evened() or self._record.outcome or self._found()
-            planes = real_planes(with_facets_back(self._target, self._full, outcome))
+            planes = real_planes(with_facets_back(self._target, self._checks, self._judge, outcome))
             solid = ConvexPolyhedron.from_half_spaces(planes)
             found = describe(solid, LOSS_KEYS)
             reason = reason_for(self._target, self._request, self._n_faces, len(planes), found)
