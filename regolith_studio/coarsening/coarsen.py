@@ -10,7 +10,7 @@ from regolith_studio.coarsening.bounds import attainable_errors
 from regolith_studio.coarsening.loss import loss
 from regolith_studio.coarsening.methods import METHODS, CoarseningMethod
 from regolith_studio.coarsening.polyhedra import polyhedron_of
-from regolith_studio.coarsening.progress import CoarseningProgress
+from regolith_studio.coarsening.progress import CoarseningProgress, MethodStep
 from regolith_studio.coarsening.result import Coarsened, MethodResult
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import LossWeights
@@ -60,10 +60,10 @@ def coarsen(
     GeometryError
         If the mesh is open, flat or encloses no volume.
     """
-    steps = coarsening_steps(mesh, n_faces, method, weights, seed, particle_index, settings)
+    _, run = _begun(mesh, n_faces, method, weights, seed, particle_index, settings)
     while True:
         try:
-            next(steps)
+            next(run)
         except StopIteration as end:
             result: Coarsened = end.value
             return result
@@ -79,21 +79,46 @@ def coarsening_steps(
     settings: Any = None,
 ) -> Generator[CoarseningProgress, None, Coarsened]:
     """As :func:`coarsen`, telling each step; the first step comes at once and has a polyhedron."""
+    target, run = _begun(mesh, n_faces, method, weights, seed, particle_index, settings)
+    while True:
+        try:
+            step = next(run)
+        except StopIteration as end:
+            result: Coarsened = end.value
+            return result
+        polyhedron = None
+        if step.half_spaces is not None:
+            polyhedron = polyhedron_of(target.in_particle_frame(step.half_spaces))
+        yield CoarseningProgress(step.step, step.steps, step.loss, polyhedron, target.centre)
+
+
+def _begun(
+    mesh: Mesh | Target,
+    n_faces: int,
+    method: str,
+    weights: LossWeights | None,
+    seed: int,
+    particle_index: int,
+    settings: Any,
+) -> tuple[Target, Generator[MethodStep, None, Coarsened]]:
+    """The target, and the method's steps with the measured result at their end."""
     chosen = _method(method)
     weights = LossWeights.from_preset(DEFAULT_PRESET) if weights is None else weights
     _check(n_faces, chosen, weights, seed)
     target = mesh if isinstance(mesh, Target) else Target.of(mesh)
     random = np.random.SeedSequence(seed, spawn_key=(particle_index,))
     run = chosen.run(target, n_faces, weights, random, settings_of(method, settings))
-    while True:
-        try:
-            step = next(run)
-        except StopIteration as end:
-            return _measured(target, end.value, method, n_faces, weights)
-        polyhedron = None
-        if step.half_spaces is not None:
-            polyhedron = polyhedron_of(target.in_particle_frame(step.half_spaces))
-        yield CoarseningProgress(step.step, step.steps, step.loss, polyhedron, target.centre)
+    return target, _to_the_end(run, target, method, n_faces, weights)
+
+
+def _to_the_end(
+    run: Generator[MethodStep, None, MethodResult],
+    target: Target,
+    method: str,
+    n_faces: int,
+    weights: LossWeights,
+) -> Generator[MethodStep, None, Coarsened]:
+    return _measured(target, (yield from run), method, n_faces, weights)
 
 
 def settings_of(method: str, settings: Any = None) -> Any:
@@ -139,7 +164,7 @@ def _measured(
     """Measure the result by the public descriptors, independently of the method."""
     unit = result.polyhedron or ConvexPolyhedron.from_half_spaces(result.half_spaces)
     polyhedron = unit.moved(rotation=target.axes.T, scale=target.scale)
-    achieved = describe(unit)
+    achieved = result.achieved or describe(unit)
     errors = relative_errors(target.descriptors, achieved)
     overlap = target.jaccard_distance(unit.half_spaces)
     return Coarsened(

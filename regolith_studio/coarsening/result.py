@@ -29,6 +29,8 @@ class MethodResult:
         Relative errors (and the Jaccard distance) of other readings of the result, by name.
     polyhedron
         By :meth:`ConvexPolyhedron.from_half_spaces`, where the method has made it already.
+    achieved
+        Of `polyhedron` by :func:`regolith_studio.descriptors.describe.describe`, where it has measured it.
     """
 
     half_spaces: HalfSpaces
@@ -37,6 +39,7 @@ class MethodResult:
     steps: Mapping[str, float] = field(default_factory=dict)
     variants: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     polyhedron: ConvexPolyhedron | None = None
+    achieved: Descriptors | None = None
 
 
 @dataclass(frozen=True)

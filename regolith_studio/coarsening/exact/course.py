@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -24,10 +25,12 @@ from regolith_studio.coarsening.exact.descent import (
 from regolith_studio.coarsening.exact.polish import Polished, measured, polished, verified
 from regolith_studio.coarsening.exact.problem import Problem
 from regolith_studio.coarsening.exact.starts import grouped_planes
-from regolith_studio.coarsening.polyhedra import polyhedron_of
+from regolith_studio.coarsening.polyhedra import facet_areas, polyhedron_of
 from regolith_studio.coarsening.target import Target
+from regolith_studio.descriptors.describe import Descriptors, describe
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.directions import fibonacci_directions
 from regolith_studio.geometry.half_spaces import HalfSpaces
 
@@ -64,6 +67,20 @@ class Attempt:
     worst: float
     n_facets: int
     values: FloatArray
+
+    @cached_property
+    def solid(self) -> ConvexPolyhedron:
+        """The polyhedron of all half-spaces whose facets are more than rounding."""
+        planes = HalfSpaces(self.normals, self.offsets)
+        real = facet_areas(planes) >= SMALLEST_FACET
+        return ConvexPolyhedron.from_half_spaces(
+            planes if real.all() else HalfSpaces(self.normals[real], self.offsets[real])
+        )
+
+    @cached_property
+    def descriptors(self) -> Descriptors:
+        """Public descriptors of `solid`."""
+        return describe(self.solid)
 
     @property
     def exact(self) -> bool:

@@ -8,7 +8,6 @@ import numpy as np
 
 from regolith_studio.coarsening.bounds import sphericity_reason
 from regolith_studio.coarsening.core.box_search import DENSE_ANGLE, FINE_ANGLE, SAMPLE_ANGLE
-from regolith_studio.coarsening.core.cuts import SMALLEST_FACET
 from regolith_studio.coarsening.evaluation import LossFunction
 from regolith_studio.coarsening.exact.boxed import FEW_FACES, boxed
 from regolith_studio.coarsening.exact.compromise import compromise, with_facets_back
@@ -25,7 +24,6 @@ from regolith_studio.coarsening.exact.request import (
     own_reason,
     reason_for,
 )
-from regolith_studio.coarsening.polyhedra import facet_areas
 from regolith_studio.coarsening.progress import MethodStep
 from regolith_studio.coarsening.result import MethodResult
 from regolith_studio.coarsening.target import Target
@@ -150,16 +148,16 @@ class Search:
         """
         counts = {"starts": float(self._tried), "exact": float(self._record.met)}
         if not self._record.met and self._itself is not None:
-            solid, planes = self._itself, self._itself.half_spaces
+            solid, found = self._itself, describe(self._itself)
             reason: str | None = own_reason(solid.n_faces, self._n_faces)
         else:
             outcome = self._evened() or self._record.outcome or self._found()
-            planes = real_planes(with_facets_back(self._target, self._checks, self._judge, outcome))
-            solid = ConvexPolyhedron.from_half_spaces(planes)
-            found = describe(solid, LOSS_KEYS)
-            reason = reason_for(self._target, self._request, self._n_faces, len(planes), found)
-        yield from self._record.ended(planes)
-        return MethodResult(planes, tuple(self._record.history), reason, counts, polyhedron=solid)
+            outcome = with_facets_back(self._target, self._checks, self._judge, outcome)
+            solid, found = outcome.solid, outcome.descriptors
+            reason = reason_for(self._target, self._request, self._n_faces, solid.n_faces, found)
+        yield from self._record.ended(solid.half_spaces)
+        history = tuple(self._record.history)
+        return MethodResult(solid.half_spaces, history, reason, counts, polyhedron=solid, achieved=found)
 
     def _evened(self) -> Attempt | None:
         """The best with larger small facets, where it meets all conditions and they can be had."""
@@ -253,17 +251,8 @@ def confirmed(request: Request, problems: tuple[Problem, ...], found: Attempt) -
         found = densely_checked(problem, found)
         if not found.exact:
             return found
-        solid = ConvexPolyhedron.from_half_spaces(real_planes(found))  # where boxes tie, the very same one
-        values = describe(solid, CONDITION_KEYS)
-        worst = max((abs(values[key] / wanted[key] - 1.0) for key in request.keys), default=0.0)
+        errors = (abs(found.descriptors[key] / wanted[key] - 1.0) for key in request.keys)
+        worst = max(errors, default=0.0)
         if worst <= EXACT / 2:  # so that the ratio of two diameters has no more than EXACT
             return found
     return replace(found, worst=worst)
-
-
-def real_planes(found: Attempt) -> HalfSpaces:
-    """Half-spaces whose facets are more than rounding."""
-    planes = HalfSpaces(found.normals, found.offsets)
-    areas = facet_areas(planes)
-    kept = areas >= SMALLEST_FACET
-    return planes if kept.all() else HalfSpaces(found.normals[kept], found.offsets[kept])
