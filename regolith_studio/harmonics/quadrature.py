@@ -15,7 +15,7 @@ import numpy as np
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.compiled import kernel
 from regolith_studio.harmonics.coefficients import ShCoefficients
-from regolith_studio.harmonics.legendre import legendre, legendre_slopes
+from regolith_studio.harmonics.legendre import fill_legendre, legendre_factors, legendre_slopes
 from regolith_studio.harmonics.reference import Ellipsoid
 from regolith_studio.harmonics.transform import evaluate_on_grid, ray_grid
 
@@ -96,9 +96,10 @@ def _fields(
     radius, south, east = np.zeros(shape), np.zeros(shape), np.zeros(shape)
     cosine = np.cos(2 * np.pi / n_longitudes * np.arange(n_longitudes))
     sines = np.sin(2 * np.pi / n_longitudes * np.arange(n_longitudes))
+    factors, p = legendre_factors(l_max), np.zeros((l_max + 1, l_max + 1))
     for j in range(len(cosines)):
         sine = np.sqrt(1 - cosines[j] ** 2)
-        p = legendre(cosines[j], sine, l_max)
+        fill_legendre(cosines[j], sine, factors, p)
         slope = legendre_slopes(p, cosines[j], sine)
         for m in range(l_max + 1):
             a, b, da, db = 0.0, 0.0, 0.0, 0.0

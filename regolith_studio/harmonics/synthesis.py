@@ -10,7 +10,7 @@ from regolith_studio.geometry.compiled import kernel
 from regolith_studio.geometry.directions import icosphere
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.icosphere_edges import icosphere_edges
-from regolith_studio.harmonics.legendre import harmonics, legendre
+from regolith_studio.harmonics.legendre import fill_legendre, harmonics, legendre_factors
 
 Basis = NDArray[np.float64] | NDArray[np.float32]
 
@@ -98,10 +98,11 @@ def running_sums(basis: Basis, weights: FloatArray, l_max: int) -> FloatArray:
 
 @kernel
 def _evaluate(directions: FloatArray, weights: FloatArray, l_max: int, values: FloatArray) -> None:
+    factors, p = legendre_factors(l_max), np.zeros((l_max + 1, l_max + 1))
     for i in range(len(directions)):
         x, y, z = directions[i, 0], directions[i, 1], directions[i, 2]
         sine = np.sqrt(x * x + y * y)
-        p = legendre(z, sine, l_max)
+        fill_legendre(z, sine, factors, p)
         c1, s1 = (x / sine, y / sine) if sine > 0.0 else (1.0, 0.0)
         c, s, total = 1.0, 0.0, 0.0
         for m in range(l_max + 1):

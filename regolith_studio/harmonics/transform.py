@@ -17,13 +17,9 @@ from scipy.spatial.transform import Rotation
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, locked_floats
 from regolith_studio.harmonics import shtools
-from regolith_studio.harmonics.coefficients import (
-    ShCoefficients,
-    checked_degree,
-    from_pyshtools,
-    to_pyshtools,
-)
+from regolith_studio.harmonics.coefficients import ShCoefficients, checked_degree
 from regolith_studio.harmonics.legendre import harmonics
+from regolith_studio.harmonics.rings import analysed, synthesised
 from regolith_studio.harmonics.rotation import rotated
 
 SAMPLING_DEGREE = 60
@@ -70,7 +66,7 @@ class RayGrid:
 
 @dataclass(frozen=True)
 class GridKind:
-    """How one kind of grid is laid out and transformed.
+    """How one kind of grid is laid out.
 
     Parameters
     ----------
@@ -78,62 +74,30 @@ class GridKind:
         For a list of choices.
     layout
         Of a degree: cosines of the polar angles, their weights (sum 2), number of longitudes.
-    forward
-        Samples (latitudes, longitudes), degree of the grid and l_max to an array of pyshtools.
-    backward
-        Array of pyshtools and degree of the grid to samples.
     """
 
     label: str
     layout: Callable[[int], tuple[FloatArray, FloatArray, int]]
-    forward: Callable[[FloatArray, int, int], FloatArray]
-    backward: Callable[[FloatArray, int], FloatArray]
 
 
+@cache
 def _glq_layout(degree: int) -> tuple[FloatArray, FloatArray, int]:
-    zeros, weights = _glq(degree)
-    return zeros, weights, 2 * degree + 1
+    zeros, weights = shtools.call("expand.SHGLQ", degree)
+    return np.asarray(zeros, dtype=np.float64), np.asarray(weights, dtype=np.float64), 2 * degree + 1
 
 
-def _glq_forward(samples: FloatArray, degree: int, l_max: int) -> FloatArray:
-    zeros, weights = _glq(degree)
-    return np.asarray(
-        shtools.call("expand.SHExpandGLQ", samples, weights, zeros, norm=4, csphase=1, lmax_calc=l_max)
-    )
-
-
-def _glq_backward(cilm: FloatArray, degree: int) -> FloatArray:
-    zeros, _ = _glq(degree)
-    return np.asarray(shtools.call("expand.MakeGridGLQ", cilm, zeros, lmax=degree, norm=4, csphase=1))
-
-
+@cache
 def _dh2_layout(degree: int) -> tuple[FloatArray, FloatArray, int]:
     n = 2 * (degree + 1)
     weights = np.asarray(shtools.call("utils.DHaj", n))
     return np.cos(np.pi * np.arange(n) / n), weights * 2 / weights.sum(), 2 * n
 
 
-def _dh2_forward(samples: FloatArray, _degree: int, l_max: int) -> FloatArray:
-    return np.asarray(
-        shtools.call("expand.SHExpandDH", samples, norm=4, sampling=2, csphase=1, lmax_calc=l_max)
-    )
-
-
-def _dh2_backward(cilm: FloatArray, degree: int) -> FloatArray:
-    return np.asarray(shtools.call("expand.MakeGridDH", cilm, lmax=degree, norm=4, sampling=2, csphase=1))
-
-
 GRIDS = {
-    "glq": GridKind("Gauss-Legendre", _glq_layout, _glq_forward, _glq_backward),
-    "dh2": GridKind("Driscoll-Healy, n x 2n", _dh2_layout, _dh2_forward, _dh2_backward),
+    "glq": GridKind("Gauss-Legendre", _glq_layout),
+    "dh2": GridKind("Driscoll-Healy, n x 2n", _dh2_layout),
 }
 """Kinds of quadrature grids by key; "dh2" takes four times the rays of "glq" for the same degree."""
-
-
-@cache
-def _glq(degree: int) -> tuple[FloatArray, FloatArray]:
-    zeros, weights = shtools.call("expand.SHGLQ", degree)
-    return np.asarray(zeros, dtype=np.float64), np.asarray(weights, dtype=np.float64)
 
 
 def ray_grid(degree: int = SAMPLING_DEGREE, kind: str = "glq") -> RayGrid:
@@ -171,26 +135,32 @@ def expand(grid: RayGrid, samples: FloatArray, l_max: int) -> ShCoefficients:
     InputError
         If `l_max` is above the grid's degree, or a sample is not finite.
     """
-    return rotated(from_pyshtools(_forward(grid, samples, l_max)), TILT)
+    return rotated(_upright(grid, samples, l_max), TILT)
 
 
 def smoothed(grid: RayGrid, samples: FloatArray, l_max: int) -> FloatArray:
     """The function cut at degree `l_max`, on the same grid, shape (n,)."""
-    return GRIDS[grid.kind].backward(_forward(grid, samples, l_max), grid.degree).ravel()
+    return _on_rings(grid, _upright(grid, samples, l_max))
 
 
 def evaluate_on_grid(grid: RayGrid, coefficients: ShCoefficients) -> FloatArray:
     """The function of `coefficients` at the directions of a grid of no lower degree, shape (n,)."""
     checked_degree(coefficients.l_max, grid.degree)
-    return GRIDS[grid.kind].backward(to_pyshtools(rotated(coefficients, TILT.T)), grid.degree).ravel()
+    return _on_rings(grid, rotated(coefficients, TILT.T))
 
 
-def _forward(grid: RayGrid, samples: FloatArray, l_max: int) -> FloatArray:
+def _upright(grid: RayGrid, samples: FloatArray, l_max: int) -> ShCoefficients:
+    """Coefficients in the frame of the rings."""
     checked_degree(l_max, grid.degree)
     if samples.shape != grid.solid_angles.shape:
         raise ValueError(f"samples must have shape {grid.solid_angles.shape}, got {samples.shape}")
-    rows = samples.reshape(len(GRIDS[grid.kind].layout(grid.degree)[0]), -1)
-    return GRIDS[grid.kind].forward(rows, grid.degree, l_max)
+    cosines, weights, n_longitudes = GRIDS[grid.kind].layout(grid.degree)
+    return ShCoefficients(analysed(samples.reshape(-1, n_longitudes), cosines, weights, l_max))
+
+
+def _on_rings(grid: RayGrid, upright: ShCoefficients) -> FloatArray:
+    cosines, _, n_longitudes = GRIDS[grid.kind].layout(grid.degree)
+    return synthesised(upright.values, cosines, n_longitudes).ravel()
 
 
 def expand_least_squares(directions: ArrayLike, samples: ArrayLike, l_max: int) -> ShCoefficients:
