@@ -127,8 +127,9 @@ def test_that_a_change_is_judged_on_the_same_particles() -> None:
     base = np.abs(rng.normal(0.1, 0.08, (200, 1, 7)))
     study = made_up(np.concatenate([base, base + 1e-3, base], axis=1))
     values, (low, high) = changes(study)
-    assert (low <= values).all()
-    assert (values <= high).all()
+    rounding = 1e-15  # the Jaccard distance changes by the same in each resample
+    assert (low <= values + rounding).all()
+    assert (values <= high + rounding).all()
     assert beyond_chance(study)[0].all()  # the band of either row alone is many times as wide
     assert not beyond_chance(study)[1].any()
     assert np.ptp(study.bands[:, 0, -1]) > 5 * np.ptp([low[0, -1], high[0, -1]])
