@@ -46,12 +46,20 @@ def test_that_a_ball_becomes_nearly_as_round_as_goldberg_allows(n_faces: int) ->
     assert f"with {n_faces} the most is {most:.3f}" in found.reason
 
 
-def test_that_no_box_is_overlooked_where_the_sphericity_cannot_be_met() -> None:
-    """A descent for overlap let another box become the least, 14 per cent off in the aspect ratio."""
+@pytest.mark.parametrize(
+    ("axes", "n_faces"), [((1.25, 1.1, 1.0), 20), ((1.3, 1.0, 0.9), 30), ((1.0, 0.9, 0.8), 30)]
+)
+def test_that_no_box_is_overlooked_where_the_sphericity_cannot_be_met(
+    axes: tuple[float, float, float], n_faces: int
+) -> None:
+    """Another box was the least, up to 14 per cent off in the aspect ratio; which, is a matter of rounding.
+
+    So are facets that are too small to count: without them a corner stands out of the box by 2e-5.
+    """
     turn = np.linalg.qr(np.random.default_rng(5).normal(size=(3, 3)))[0]
-    shape = egg(1.25, 1.1, 1.0)
-    for particle_index in range(2, 5):
-        found = coarsen(Mesh(shape.vertices @ turn, shape.faces), 20, particle_index=particle_index)
+    shape = egg(*axes)
+    for particle_index in range(4):
+        found = coarsen(Mesh(shape.vertices @ turn, shape.faces), n_faces, particle_index=particle_index)
         assert max(found.errors[key] for key in REST) <= 1e-6
 
 

@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 
 from regolith_studio.coarsening.core.box_search import FINE_ANGLE
-from regolith_studio.coarsening.core.cuts import SMALLEST_FACET
 from regolith_studio.coarsening.core.planes import tangents_of
 from regolith_studio.coarsening.evaluation import LossFunction
 from regolith_studio.coarsening.exact.course import (
@@ -43,10 +42,8 @@ from regolith_studio.coarsening.exact.problem import (
     Shape,
     log_sphericity,
 )
-from regolith_studio.coarsening.polyhedra import facet_areas
 from regolith_studio.coarsening.target import Target
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.geometry.half_spaces import HalfSpaces
 
 STEPS = 64
 STALLED = 0.02
@@ -80,11 +77,11 @@ def compromise(
     only_rounder
         Whether to do nothing where a rougher polyhedron is wanted.
     """
+    rest, full = (each._replace(sample_angle=FINE_ANGLE) for each in (rest, full))
     point = measured(rest, planes[0], planes[1], tangents_of(planes[0]), NOWHERE)
     point = verified(rest, point, first_metric(rest, point.shape), LONG_POLISH, TOLERANCE, reach(point))
     apart = 0.0
     if point.worst > TOLERANCE:
-        rest, full = (each._replace(sample_angle=FINE_ANGLE) for each in (rest, full))
         nearest = None if only_rounder else met_in_turn(rest, planes)
         if nearest is None:
             return
@@ -141,28 +138,26 @@ def with_sphericity_held(full: Problem, state: State, bound_steps: int) -> Itera
 
 
 def with_facets_back(
-    target: Target, problems: tuple[Problem, ...], judge: LossFunction, found: Attempt
+    target: Target, problems: tuple[Problem, ...], judge: LossFunction, found: Attempt, n_faces: int
 ) -> Attempt:
     """A polyhedron that misses a condition with all its facets, at the descriptors that it has.
 
     Each of the problems is tried until all facets are back; their searches for boxes are ever finer, since
     one that is overlooked would change the descriptors. The sphericity goes free at last.
     """
-    if found.exact or found.n_facets == len(found.offsets):
+    if found.exact or found.n_facets == n_faces:
         return found
     most = judge.value(found.normals, found.offsets) + FACETS_COST
-    areas = facet_areas(HalfSpaces(found.normals, found.offsets))
-    real = areas >= SMALLEST_FACET
-    best = found
+    real, best = found.without_slivers(), found
     for problem in (*problems, without_sphericity(problems[-1])):
-        held, point = as_it_is(problem, found.normals[real], found.offsets[real])
+        held, point = as_it_is(problem, real.normals, real.offsets)
         if point.worst > TOLERANCE:
             continue
-        for more in with_more_facets(target, held, attempt(held, point), len(found.offsets), 0):
+        for more in with_more_facets(target, held, attempt(held, point), n_faces, 0):
             worth = more.exact and more.n_facets > best.n_facets
             if worth and judge.value(more.normals, more.offsets) <= most:
                 best = replace(more, worst=found.worst)
-        if best.n_facets == len(best.offsets):
+        if best.n_facets == n_faces:
             break
     return best
 

@@ -1,7 +1,7 @@
 """One course of the exact method from one start: free descent, polish, descent along the conditions."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -71,16 +71,18 @@ class Attempt:
     @cached_property
     def solid(self) -> ConvexPolyhedron:
         """The polyhedron of all half-spaces whose facets are more than rounding."""
-        planes = HalfSpaces(self.normals, self.offsets)
-        real = facet_areas(planes) >= SMALLEST_FACET
-        return ConvexPolyhedron.from_half_spaces(
-            planes if real.all() else HalfSpaces(self.normals[real], self.offsets[real])
-        )
+        real = self.without_slivers()
+        return ConvexPolyhedron.from_half_spaces(HalfSpaces(real.normals, real.offsets))
 
     @cached_property
     def descriptors(self) -> Descriptors:
         """Public descriptors of `solid`."""
         return describe(self.solid)
+
+    def without_slivers(self) -> "Attempt":
+        """The half-spaces alone whose facets are more than rounding; what was measured is left as it is."""
+        real = facet_areas(HalfSpaces(self.normals, self.offsets)) >= SMALLEST_FACET
+        return self if real.all() else replace(self, normals=self.normals[real], offsets=self.offsets[real])
 
     @property
     def exact(self) -> bool:

@@ -1,7 +1,7 @@
 """From weights to conditions: which descriptors are kept exactly, and why some cannot be."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -19,6 +19,10 @@ CONDITION_KEYS = ("volume", "sphericity", "min_diameter", "max_diameter", "aspec
 
 EXACT = 1e-6
 """Relative errors up to this count as none."""
+
+
+NEARLY = 5e-3
+"""Relative errors up to this are of conditions that were meant to be met."""
 
 
 FLAT, COPLANAR = 1e-6, 1e-5
@@ -71,6 +75,14 @@ class Request:
     def keys(self) -> tuple[str, ...]:
         """Descriptors that are conditions."""
         return tuple(key for key, asked in zip(CONDITION_KEYS, self.asked, strict=True) if asked)
+
+    def nearly_met_by(self, found: Mapping[str, float]) -> "Request":
+        """The same conditions, but at the value of `found` where that is more than :data:`NEARLY` away."""
+        values = tuple(
+            value if abs(found[key] / value - 1.0) <= NEARLY else found[key]
+            for key, value in zip(CONDITION_KEYS, self.values, strict=True)
+        )
+        return replace(self, values=values)
 
     def problem(
         self, rays: RayTable, sample_angle: float, only_volume: bool = False, sphericity: bool = True

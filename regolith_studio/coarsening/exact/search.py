@@ -49,6 +49,8 @@ class Level:
 
 
 LEVELS = {"fast": Level(1, 2, 12, 16, 14), "best": Level(3, 3, 20, 40, 60)}
+CHECK_ANGLES = (FINE_ANGLE, DENSE_ANGLE)
+"""Of the searches for boxes that confirm a result."""
 COMPROMISES = (12, 20)
 """Facets to start from, besides all, where conditions cannot be met together."""
 ROUND_STARTS = 2
@@ -88,7 +90,7 @@ class Search:
         self._full = request.problem(target.rays, SAMPLE_ANGLE)
         rest = request.problem(target.rays, SAMPLE_ANGLE, sphericity=False)
         self._rest = rest._replace(asked=rest.asked | SIZED)
-        self._checks = tuple(request.problem(target.rays, angle) for angle in (FINE_ANGLE, DENSE_ANGLE))
+        self._checks = tuple(request.problem(target.rays, angle) for angle in CHECK_ANGLES)
         self._judge = LossFunction(target, weights, everything=True)
         self._round_asked = bool(request.asked[SPHERICITY])
         wanted = target.descriptors["sphericity"]
@@ -152,7 +154,9 @@ class Search:
             reason: str | None = own_reason(solid.n_faces, self._n_faces)
         else:
             outcome = self._evened() or self._record.outcome or self._found()
-            outcome = with_facets_back(self._target, self._checks, self._judge, outcome)
+            outcome = with_facets_back(
+                self._target, self._checks, self._judge, self._kept(outcome), self._n_faces
+            )
             solid, found = outcome.solid, outcome.descriptors
             reason = reason_for(self._target, self._request, self._n_faces, solid.n_faces, found)
         yield from self._record.ended(solid.half_spaces)
@@ -168,6 +172,15 @@ class Search:
         even = confirmed(self._request, self._checks, even)
         dear = even.jaccard_distance > best.jaccard_distance + COST
         return even if even.exact and even.n_facets >= best.n_facets and not dear else None
+
+    def _kept(self, outcome: Attempt) -> Attempt:
+        """One that misses a condition, the others confirmed by public descriptors, where that can be."""
+        if outcome.exact:
+            return outcome
+        request = self._request.nearly_met_by(outcome.descriptors)
+        problems = (request.problem(self._target.rays, angle) for angle in CHECK_ANGLES)
+        found = confirmed(request, tuple(problems), outcome.without_slivers())
+        return replace(found, worst=outcome.worst) if found.exact else outcome
 
     @cached_property
     def _itself(self) -> ConvexPolyhedron | None:
