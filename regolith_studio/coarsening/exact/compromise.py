@@ -148,7 +148,7 @@ def with_facets_back(
     if found.exact or found.n_facets == n_faces:
         return found
     most = judge.value(found.normals, found.offsets) + FACETS_COST
-    real, best = found.without_slivers(), found
+    real, best = found.without_redundant(), found
     for problem in (*problems, without_sphericity(problems[-1])):
         held, point = as_it_is(problem, real.normals, real.offsets)
         if point.worst > TOLERANCE:

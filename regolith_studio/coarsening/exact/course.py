@@ -71,7 +71,7 @@ class Attempt:
     @cached_property
     def solid(self) -> ConvexPolyhedron:
         """The polyhedron of all half-spaces whose facets are more than rounding."""
-        real = self.without_slivers()
+        real = self.without_redundant()
         return ConvexPolyhedron.from_half_spaces(HalfSpaces(real.normals, real.offsets))
 
     @cached_property
@@ -79,7 +79,7 @@ class Attempt:
         """Public descriptors of `solid`."""
         return describe(self.solid)
 
-    def without_slivers(self) -> "Attempt":
+    def without_redundant(self) -> "Attempt":
         """The half-spaces alone whose facets are more than rounding; what was measured is left as it is."""
         real = facet_areas(HalfSpaces(self.normals, self.offsets)) >= SMALLEST_FACET
         return self if real.all() else replace(self, normals=self.normals[real], offsets=self.offsets[real])

@@ -179,7 +179,7 @@ class Search:
             return outcome
         request = self._request.nearly_met_by(outcome.descriptors)
         problems = (request.problem(self._target.rays, angle) for angle in CHECK_ANGLES)
-        found = confirmed(request, tuple(problems), outcome.without_slivers())
+        found = confirmed(request, tuple(problems), outcome.without_redundant())
         return replace(found, worst=outcome.worst) if found.exact else outcome
 
     @cached_property
