@@ -19,11 +19,14 @@ from regolith_studio.geometry.arrays import FloatArray
 
 numba: Any = import_module("numba.extending")
 types: Any = import_module("numba").types
+cgutils: Any = import_module("numba.core.cgutils")
 ir: Any = import_module("llvmlite.ir")
 
 WIDTH = 8
 WORD = 7 * WIDTH
 """Bits that are collected in one integer: seven Eights, so that none is the sign."""
+LAST_BITS = (1 << 20) - 1
+"""Last places of a float, which may hold a number."""
 Eight = FloatArray
 
 
@@ -67,6 +70,23 @@ def positive(eight: Eight) -> int:
     return int(sum(1 << k for k in range(WIDTH) if eight[k] > 0.0))
 
 
+def tagged(eight: Eight, tag: int) -> Eight:
+    """The floats with a number of at most 20 bits in their last places: some 2e-10 of their size."""
+    bits = np.array(eight).view(np.int64) & ~LAST_BITS | int(tag)
+    return np.array(bits.view(np.float64))
+
+
+def tags(eight: Eight) -> Eight:
+    """The numbers in the last places."""
+    return np.array((np.array(eight).view(np.int64) & LAST_BITS).astype(np.float64))
+
+
+def squeeze(eight: Eight, word: int) -> Eight:
+    """The floats whose bits are set, in their order, and then zeros."""
+    kept = [eight[k] for k in range(WIDTH) if int(word) >> k & 1]
+    return np.array([*kept, *np.zeros(WIDTH - len(kept))])
+
+
 def smallest(eight: Eight) -> float:
     """The least of the eight; none may be NaN."""
     return float(np.min(eight))
@@ -83,6 +103,11 @@ def first_bit(word: int) -> int:
     return (int(word) & -int(word)).bit_length() - 1
 
 
+def count_bits(word: int) -> int:
+    """How many bits are set."""
+    return int(word).bit_count()
+
+
 class EightType(types.Type):  # type: ignore[misc]
     """Numba's type of an Eight."""
 
@@ -91,7 +116,9 @@ class EightType(types.Type):  # type: ignore[misc]
 
 
 EIGHT = EightType()
+_WORDS = ir.VectorType(ir.IntType(64), WIDTH)
 _FLOATS, _INDEX = ir.VectorType(ir.DoubleType(), WIDTH), ir.IntType(32)
+_COMPRESS = "llvm.experimental.vector.compress.v8f64"
 _NOTHING, _FIRST = ir.Constant(_FLOATS, ir.Undefined), ir.Constant(_INDEX, 0)
 
 
@@ -133,6 +160,28 @@ def _bits(builder: Any, eight: Any) -> Any:
     return builder.zext(builder.bitcast(above, ir.IntType(WIDTH)), ir.IntType(64))
 
 
+def _squeezed(builder: Any, eight: Any, word: Any) -> Any:
+    """The floats whose bits are set to the front, by the instruction where there is one."""
+    bits = ir.VectorType(ir.IntType(1), WIDTH)
+    kept = builder.bitcast(builder.trunc(word, ir.IntType(WIDTH)), bits)
+    kind = ir.FunctionType(_FLOATS, (_FLOATS, bits, _FLOATS))
+    compress = cgutils.get_or_insert_function(builder.module, kind, _COMPRESS)
+    return builder.call(compress, (eight, kept, ir.Constant(_FLOATS, [0.0] * WIDTH)))
+
+
+def _as_words(builder: Any, eight: Any, mask: int) -> Any:
+    """The bits of the floats that are in a mask."""
+    return builder.and_(builder.bitcast(eight, _WORDS), ir.Constant(_WORDS, [mask] * WIDTH))
+
+
+def _tagged(builder: Any, eight: Any, tag: Any) -> Any:
+    """The last places of each float replaced."""
+    one = builder.insert_element(ir.Constant(_WORDS, ir.Undefined), tag, _FIRST)
+    everywhere = ir.Constant(ir.VectorType(_INDEX, WIDTH), [0] * WIDTH)
+    each = builder.shuffle_vector(one, ir.Constant(_WORDS, ir.Undefined), everywhere)
+    return builder.bitcast(builder.or_(_as_words(builder, eight, ~LAST_BITS), each), _FLOATS)
+
+
 _FLOAT, _WORD = types.float64, types.int64
 _Row = tuple[Callable[..., Any], tuple[Any, ...], Any, Callable[..., Any]]
 _TABLE: tuple[_Row, ...] = (
@@ -150,6 +199,10 @@ _TABLE: tuple[_Row, ...] = (
     (positive, (EIGHT,), _WORD, _bits),
     (smallest, (EIGHT,), _FLOAT, lambda b, x: _folded(b, x, lambda y, z: _chosen(b, "<", y, z))),
     (total, (EIGHT,), _FLOAT, lambda b, x: _folded(b, x, b.fadd)),
+    (tagged, (EIGHT, _WORD), EIGHT, _tagged),
+    (tags, (EIGHT,), EIGHT, lambda b, x: b.sitofp(_as_words(b, x, LAST_BITS), _FLOATS)),
+    (squeeze, (EIGHT, _WORD), EIGHT, _squeezed),
+    (count_bits, (_WORD,), _WORD, lambda b, x: b.ctpop(x)),
     (first_bit, (_WORD,), _WORD, lambda b, x: b.cttz(x, ir.Constant(ir.IntType(1), 1))),
 )
 """Function, arguments, result, and what a builder puts in its place; array and place come as a pointer."""

@@ -6,7 +6,10 @@ import pytest
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.compiled import kernel
 from regolith_studio.geometry.eights import (
+    LAST_BITS,
+    WIDTH,
     WORD,
+    count_bits,
     first_bit,
     least,
     load,
@@ -15,7 +18,10 @@ from regolith_studio.geometry.eights import (
     positive,
     smallest,
     splat,
+    squeeze,
     store,
+    tagged,
+    tags,
     total,
 )
 
@@ -95,3 +101,35 @@ def shifted(array: FloatArray, at: int) -> FloatArray:
 def test_that_places_count_along_rows() -> None:
     array = np.arange(60.0).reshape(5, 12)
     assert np.array_equal(shifted(array, 17), np.arange(17.0, 25.0))
+
+
+@kernel
+def front(given: FloatArray, word: int, out: FloatArray) -> int:
+    """The chosen floats to the front, and how many."""
+    store(out, 0, squeeze(load(given, 0), word))
+    return count_bits(word)
+
+
+@pytest.mark.parametrize("word", [0, 1, 0b10110010, 255])
+def test_that_floats_whose_bits_are_set_come_first_and_zeros_after(word: int) -> None:
+    given, out = np.random.default_rng(word).normal(size=WIDTH), np.full(WIDTH, np.nan)
+    chosen = given[np.unpackbits(np.array([word], np.uint8), bitorder="little") == 1]
+    for each in (front, front.py_func):
+        assert each(given, word, out) == len(chosen)
+        assert out.tolist() == [*chosen, *[0.0] * (WIDTH - len(chosen))]
+
+
+@kernel
+def with_tags(given: FloatArray, tag: int, out: FloatArray) -> None:
+    """Floats with a tag, and the tags that they have."""
+    store(out, 0, tagged(load(given, 0), tag))
+    store(out, WIDTH, tags(tagged(load(given, 0), tag)))
+
+
+@pytest.mark.parametrize("tag", [0, 35, LAST_BITS])
+def test_that_a_tag_changes_a_float_by_less_than_a_billionth_and_can_be_read(tag: int) -> None:
+    given, out = np.random.default_rng(tag).normal(size=WIDTH), np.empty((2, WIDTH))
+    for each in (with_tags, with_tags.py_func):
+        each(given, tag, out)
+        assert out[0] == pytest.approx(given, rel=3e-10)
+        assert (out[1] == tag).all()
