@@ -18,7 +18,7 @@ from regolith_studio.geometry.box_curve import (
     value,
 )
 from regolith_studio.geometry.box_record import Found, keep
-from regolith_studio.geometry.box_widths import SpanTable, between, ends_along, span_near
+from regolith_studio.geometry.box_widths import SpanTable, between, ends_along_axes, span_near
 from regolith_studio.geometry.compiled import leaf
 from regolith_studio.geometry.vectors import dot
 
@@ -110,9 +110,7 @@ def _limit(found: Found, margin: float, least: float) -> float:
 def _look(points: FloatArray, curve: Curve, x: float, found: Found) -> tuple[float, Touched]:
     """Volume of the box at x, and the vertices across from the edges and at both ends of the third axis."""
     a, b, c = frame_on(curve, x)
-    top_a, across_a = ends_along(points, a)
-    top_b, across_b = ends_along(points, b)
-    top, bottom = ends_along(points, c)
+    (top_a, across_a), (top_b, across_b), (top, bottom) = ends_along_axes(points, a, b, c)
     long, wide = dot(between(points, top_a, across_a), a), dot(between(points, top_b, across_b), b)
     volume = keep(long, wide, dot(between(points, top, bottom), c), a, b, c, found)
     return volume, (across_a, across_b, max(top, bottom), min(top, bottom))

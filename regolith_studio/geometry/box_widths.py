@@ -17,6 +17,8 @@ from regolith_studio.geometry.eights import (
     smallest,
     splat,
     store,
+    tagged,
+    tags,
 )
 from regolith_studio.geometry.inlined import inlined
 from regolith_studio.geometry.vectors import Vector
@@ -41,12 +43,9 @@ class SpanTable(NamedTuple):
     cells: int
 
 
-@leaf
-def ends_along(points: FloatArray, direction: Vector) -> tuple[int, int]:
-    """The vertices farthest along and against `direction`, of equal ones the first; points of shape (3, n).
-
-    Where there are eight, the last eight may overlap those before: they bring no other ends.
-    """
+@inlined
+def _ends(points: FloatArray, direction: Vector) -> tuple[int, int]:
+    """See :func:`ends_along`."""
     x, y, z = direction
     low, high, bottom, top, n = np.inf, -np.inf, 0, 0, points.shape[1]
     if n >= WIDTH:
@@ -61,15 +60,33 @@ def ends_along(points: FloatArray, direction: Vector) -> tuple[int, int]:
             lows, highs = least(here, lows), most(here, highs)
         lowest, highest = splat(smallest(lows)), splat(-smallest(splat(0.0) - highs))
         nobody = splat(np.inf)
-        first_top = smallest(pick(highs, highest, nobody, tops))
-        return int(first_top), int(smallest(pick(lowest, lows, nobody, bottoms)))
-    for i in range(n):
-        here = points[0, i] * x + points[1, i] * y + points[2, i] * z
-        if here < low:
-            low, bottom = here, i
-        if here > high:
-            high, top = here, i
+        top = int(smallest(pick(highs, highest, nobody, tops)))
+        bottom = int(smallest(pick(lowest, lows, nobody, bottoms)))
+    else:
+        for i in range(n):
+            here = points[0, i] * x + points[1, i] * y + points[2, i] * z
+            if here < low:
+                low, bottom = here, i
+            if here > high:
+                high, top = here, i
     return top, bottom
+
+
+@leaf
+def ends_along(points: FloatArray, direction: Vector) -> tuple[int, int]:
+    """The vertices farthest along and against `direction`, of equal ones the first; points of shape (3, n).
+
+    Where there are eight, the last eight may overlap those before: they bring no other ends.
+    """
+    return _ends(points, direction)
+
+
+@leaf
+def ends_along_axes(
+    points: FloatArray, a: Vector, b: Vector, c: Vector
+) -> tuple[tuple[int, int], tuple[int, int], tuple[int, int]]:
+    """:func:`ends_along` for three directions: one call costs as much as a look along one."""
+    return _ends(points, a), _ends(points, b), _ends(points, c)
 
 
 @inlined
@@ -116,22 +133,51 @@ def farthest(points: FloatArray, x: Eight, y: Eight, z: Eight, found: FloatArray
 
 @kernel
 def span_table(points: FloatArray) -> SpanTable:
-    """Look along the middle of every cell; points of shape (3, n)."""
+    """Look along the middle of every cell; points of shape (3, n).
+
+    Numbers of vertices go with their reach in its last places: of vertices that reach about as far, any is
+    taken.
+    """
     cells = min(MOST_CELLS, max(FEWEST_CELLS, int(np.sqrt(points.shape[1]))))
-    directions = np.empty((3, 3 * cells * cells))
+    middles, spans = np.empty(cells), np.empty(9 * cells * cells + WIDTH)
+    corners = np.empty((points.shape[1], WIDTH))
+    for v in range(len(corners)):
+        for c in range(WIDTH):
+            corners[v, c] = points[c, v] if c < 3 else 0.0
+    for j in range(cells):
+        middles[j] = (2.0 * j + 1.0) / cells - 1.0
+    look_along_rows(points, corners, middles, np.empty(points.shape[1]), np.empty((2, WIDTH)), spans)
+    return SpanTable(spans[: 9 * cells * cells].reshape(-1, 3), cells)
+
+
+@leaf
+def look_along_rows(
+    points: FloatArray,
+    corners: FloatArray,
+    middles: FloatArray,
+    begin: FloatArray,
+    ends: FloatArray,
+    spans: FloatArray,
+) -> None:
+    """Fill the table, eight cells of a row at once; scratch for the vertices, and of shape (2, 8)."""
+    n, cells = points.shape[1], len(middles)
     for k in range(3):
+        second, third = (k + 1) % 3, (k + 2) % 3
         for i in range(cells):
-            for j in range(cells):
-                at = (k * cells + i) * cells + j
-                directions[k, at] = 1.0
-                directions[(k + 1) % 3, at] = (2.0 * i + 1.0) / cells - 1.0
-                directions[(k + 2) % 3, at] = (2.0 * j + 1.0) / cells - 1.0
-    ends = ends_along_each(points, directions)
-    table = np.empty((3 * cells * cells, 3))
-    for at in range(len(table)):
-        for c in range(3):
-            table[at, c] = points[c, ends[0, at]] - points[c, ends[1, at]]
-    return SpanTable(table, cells)
+            for v in range(n):
+                begin[v] = points[k, v] + middles[i] * points[second, v]
+            for first in range(0, cells, WIDTH):
+                at = min(first, cells - WIDTH)
+                across, low, high = load(middles, at), splat(np.inf), splat(-np.inf)
+                for v in range(n):
+                    here = tagged(splat(begin[v]) + splat(points[third, v]) * across, v)
+                    low, high = least(here, low), most(here, high)
+                store(ends, 0, tags(high))
+                store(ends, WIDTH, tags(low))
+                for j in range(WIDTH):
+                    top, bottom = WIDTH * int(ends[0, j]), WIDTH * int(ends[1, j])
+                    cell = (k * cells + i) * cells + at + j
+                    store(spans, 3 * cell, load(corners, top) - load(corners, bottom))
 
 
 @inlined

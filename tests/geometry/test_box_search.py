@@ -21,7 +21,13 @@ from regolith_studio.geometry.box_curve import (
 )
 from regolith_studio.geometry.box_facets import arcs_of, facets_of, least_third, with_all_edges
 from regolith_studio.geometry.box_record import nothing_below
-from regolith_studio.geometry.box_widths import ends_along, ends_along_each, span_near, span_table
+from regolith_studio.geometry.box_widths import (
+    ends_along,
+    ends_along_axes,
+    ends_along_each,
+    span_near,
+    span_table,
+)
 from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.hull_graph import hull_graph
 from regolith_studio.geometry.mesh import Mesh
@@ -104,6 +110,29 @@ def test_that_no_span_of_the_table_is_longer_than_the_solid_is_wide(seed: int) -
         width = np.ptp(points @ way)
         assert way @ (points[top] - points[bottom]) == pytest.approx(width, rel=1e-14)
         assert 0.9 * width < abs(way @ np.array(span_near(table, tuple(way)))) <= width * (1 + 1e-14)
+
+
+@pytest.mark.parametrize("count", [8, 500])
+def test_that_the_table_holds_the_farthest_vertices_along_the_middles_of_its_cells(count: int) -> None:
+    points = np.random.default_rng(count).normal(size=(3, count))
+    table = span_table(points)
+    assert table.spans.shape == (3 * table.cells**2, 3)
+    middles = (2.0 * np.arange(table.cells) + 1.0) / table.cells - 1.0
+    for k in range(3):
+        u, v = np.meshgrid(middles, middles, indexing="ij")
+        directions = np.roll(np.column_stack([np.ones(u.size), u.ravel(), v.ravel()]), k, axis=1)
+        along = (directions * table.spans[k * u.size : (k + 1) * u.size]).sum(axis=1)
+        assert along == pytest.approx(np.ptp(directions @ points, axis=1), rel=1e-8)
+
+
+@pytest.mark.parametrize("n", [5, 8, 50])
+def test_that_looking_along_three_axes_finds_what_three_looks_find(n: int) -> None:
+    rng = np.random.default_rng(n)
+    points, (axes, _) = rng.normal(size=(3, n)), np.linalg.qr(rng.normal(size=(3, 3)))
+    frame = [tuple(axis) for axis in axes]
+    ends = zip((axes @ points).argmax(axis=1), (axes @ points).argmin(axis=1), strict=True)
+    assert ends_along_axes(points, *frame) == tuple(ends)
+    assert ends_along_axes(points, *frame) == tuple(ends_along(points, axis) for axis in frame)
 
 
 @pytest.mark.parametrize("seed", range(4))
