@@ -62,7 +62,13 @@ class Quartic(NamedTuple):
 @inlined
 def unit(vector: Vector) -> Vector:
     """The vector at length 1."""
-    return mixed(vector, 1.0 / length(vector), vector, 0.0)
+    return scaled(vector, 1.0 / length(vector))
+
+
+@inlined
+def scaled(vector: Vector, share: float) -> Vector:
+    """``share * vector``."""
+    return share * vector[0], share * vector[1], share * vector[2]
 
 
 @leaf

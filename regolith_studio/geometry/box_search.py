@@ -9,11 +9,10 @@ looked at first.
 The vertices held fast for a bound come from a table by direction; they need not be the farthest.
 """
 
-from typing import NamedTuple
-
 import numpy as np
 
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
+from regolith_studio.geometry.box_curve import scaled
 from regolith_studio.geometry.box_facets import (
     Facets,
     arcs_of,
@@ -23,14 +22,26 @@ from regolith_studio.geometry.box_facets import (
     with_all_edges,
     worth_asking,
 )
-from regolith_studio.geometry.box_lanes import LANES
+from regolith_studio.geometry.box_lanes import (
+    AREA,
+    DIRECTION,
+    LANES,
+    LEVER,
+    NORMALS,
+    NUMBER,
+    SIDES,
+    WHICH,
+    bounds_on_facet,
+)
 from regolith_studio.geometry.box_record import TIE, Found, keep, nothing_below
 from regolith_studio.geometry.box_sieve import (
     MOST_WAITING,
     PAIRS,
     Sieve,
     add_pair,
+    add_pairs,
     empty_sieve,
+    orthogonal,
     records_of,
     whole_curves,
     work_off,
@@ -39,12 +50,23 @@ from regolith_studio.geometry.box_widths import (
     SpanTable,
     between,
     ends_along,
-    span_near,
     span_table,
 )
 from regolith_studio.geometry.compiled import kernel, leaf
+from regolith_studio.geometry.eights import (
+    WIDTH,
+    count_bits,
+    least,
+    load,
+    most,
+    positive,
+    splat,
+    squeeze,
+    store,
+)
 from regolith_studio.geometry.hull_graph import hull_graph
-from regolith_studio.geometry.vectors import Vector, cross, dot, length, mixed, row
+from regolith_studio.geometry.inlined import inlined
+from regolith_studio.geometry.vectors import Vector, cross, dot, length, row
 
 SIDEWAYS = 1e-9
 """Scalar products of unit normals below this are 0: the facets are at right angles."""
@@ -57,24 +79,6 @@ FEW_EDGES = 150
 """With more edges, pairs are first ruled out one by one."""
 MANY_EDGES, LEAST_SLACK, MOST_SLACK = 8000, 1e-7, 1e-3
 """With more edges left, boxes smaller by a share of 1e-6 to 1e-3 are given up: see `minimum_box`."""
-
-
-class Work(NamedTuple):
-    """Scratch.
-
-    Parameters
-    ----------
-    dots
-        Scalar products of two normals with those of all n facets, shape (2, n).
-    side
-        How many of them are not negative, shape (n,).
-    normals
-        Shape (3, n).
-    """
-
-    dots: FloatArray
-    side: IntArray
-    normals: FloatArray
 
 
 @kernel
@@ -110,10 +114,10 @@ def least_box(facets: Facets, known: float) -> Found:
     found, margin = nothing_below(known), TIE
     points, normals, edges = facets
     table, arcs, n = span_table(points), arcs_of(facets), len(normals)
-    work = Work(np.empty((2, n)), np.empty(n, np.int8), np.ascontiguousarray(normals.T))
+    records, sieve = records_of(facets, arcs), empty_sieve()
     asked = np.full(n, True)
     if n > MANY_FACETS:
-        _on_facets(facets, arcs, table, work, asked, n // FIRST_FACETS, margin, found)
+        _on_facets(facets, arcs, records, table, asked, n // FIRST_FACETS, margin, found, sieve.lanes)
         worth = worth_asking(facets, arcs, table, found.record[0] * (1.0 + margin))
         slack = LEAST_SLACK
         while worth.sum() > MANY_EDGES and slack < MOST_SLACK:
@@ -122,11 +126,13 @@ def least_box(facets: Facets, known: float) -> Found:
             worth = worth_asking(facets, arcs, table, found.record[0] * (1.0 + margin))
         asked = with_all_edges(facets, worth)
         facets, arcs = Facets(points, normals, edges[worth]), arcs[worth]
-    _on_facets(facets, arcs, table, work, asked, 1, margin, found)
+        records = records_of(facets, arcs)
+    _on_facets(facets, arcs, records, table, asked, 1, margin, found, sieve.lanes)
     if n > MANY_FACETS:
         worth = worth_asking(facets, arcs, table, found.record[0] * (1.0 + margin))
         facets, arcs = Facets(points, normals, facets.edges[worth]), arcs[worth]
-    _on_curves(facets, arcs, records_of(facets, arcs), table, work, margin, found, empty_sieve())
+        records = records_of(facets, arcs)
+    _on_curves(facets, arcs, records, table, margin, found, sieve)
     return found
 
 
@@ -136,29 +142,22 @@ def _on_curves(
     arcs: FloatArray,
     records: FloatArray,
     table: SpanTable,
-    work: Work,
     margin: float,
     found: Found,
     sieve: Sieve,
 ) -> None:
     """Boxes flush with any two edges."""
     points, normals, edges = facets
-    dots, side, _ = work
     least_width = np.inf
     for e in range(len(edges)):
         least_width = min(least_width, arcs[e, 6])
     for i in range(len(edges)):
-        _along_all(work.normals, row(normals, edges[i, 2]), dots[0])
-        _along_all(work.normals, row(normals, edges[i, 3]), dots[1])
-        for g in range(len(normals)):
-            side[g] = (dots[0, g] >= 0.0) + (dots[1, g] >= 0.0)
-        k = i + 1 if dots[0, edges[i, 3]] >= 0.0 else i
+        with_itself = dot(row(normals, edges[i, 2]), row(normals, edges[i, 3])) < 0.0
+        k = i if with_itself else i + 1
         while k < len(edges):
-            last = min(len(edges), k + LANES - sieve.filled[PAIRS])
             limit = found.record[0] * (1.0 + margin) / arcs[i, 6]
-            _put_down(edges, arcs, table, side, i, k, last, limit, least_width, sieve)
-            k = last
-            while sieve.filled[PAIRS] == LANES:
+            k = _put_down(records, arcs, table, i, k, limit, least_width, sieve)
+            while sieve.filled[PAIRS] > LANES - WIDTH:
                 _sift(records, points, table, margin, found, sieve)
     while sieve.filled[PAIRS] > 0:
         _sift(records, points, table, margin, found, sieve)
@@ -167,35 +166,34 @@ def _on_curves(
 
 @leaf
 def _put_down(
-    edges: IntArray,
+    records: FloatArray,
     arcs: FloatArray,
     table: SpanTable,
-    side: IntArray,
     i: int,
     first: int,
-    last: int,
     limit: float,
     least_width: float,
     sieve: Sieve,
-) -> None:
-    """Put down the pairs of edge i with edges `first` to `last` that have orthogonal normals.
+) -> int:
+    """Put down the pairs of edge i with edges from `first` on that have orthogonal normals.
 
     Of solids with many edges those are left out that no box below the limit, a volume over the width at
-    edge i, could be flush with.
+    edge i, could be flush with. Returns the first edge that was not asked since the lanes are full.
     """
-    pairs, at = sieve.pairs, np.uintp(sieve.filled[PAIRS])
-    for k in range(first, last):
-        one, other = side[np.uintp(edges[k, 2])], side[np.uintp(edges[k, 3])]
-        pairs[0, at], pairs[1, at], pairs[2, at] = i, k, 0
-        at += np.uintp((one != other) | (one == 1))
-    if len(edges) > FEW_EDGES:
-        put_down, at = at, np.uintp(sieve.filled[PAIRS])
-        for j in range(at, put_down):
-            k = pairs[1, j]
-            pairs[1, at] = k
-            width = arcs[k, 6]
-            at += np.uintp(width * least_width < limit and width * least_third(arcs, table, i, k) < limit)
-    sieve.filled[PAIRS] = at
+    for k in range(first, len(arcs), WIDTH):
+        if sieve.filled[PAIRS] > LANES - WIDTH:
+            return k
+        bits = orthogonal(records, i, k) & ((1 << min(WIDTH, len(arcs) - k)) - 1)
+        if len(arcs) > FEW_EDGES:
+            for other in range(k, min(len(arcs), k + WIDTH)):
+                width = arcs[other, 6]
+                if bits >> (other - k) & 1 and not (
+                    width * least_width < limit and width * least_third(arcs, table, i, other) < limit
+                ):
+                    bits ^= 1 << (other - k)
+        if bits != 0:
+            add_pairs(records, i, k, bits, sieve)
+    return len(arcs)
 
 
 @leaf
@@ -203,33 +201,24 @@ def _sift(
     records: FloatArray, points: FloatArray, table: SpanTable, margin: float, found: Found, sieve: Sieve
 ) -> None:
     """Take the curves out of the lanes; second curves of the same pairs take their place."""
-    whole_curves(records, table, found.record[0] * (1.0 + margin), sieve)
+    broken = whole_curves(table, found.record[0] * (1.0 + margin), sieve)
     if sieve.filled[0] > MOST_WAITING - LANES:
         work_off(points, table, margin, found, sieve)
-    broken = sieve.filled[PAIRS]
-    sieve.filled[PAIRS] = 0
     for at in range(broken):
-        add_pair(sieve.pairs[0, at], sieve.pairs[1, at], True, sieve)
-
-
-@leaf
-def _along_all(normals: FloatArray, direction: Vector, dots: FloatArray) -> None:
-    """Scalar products of all normals (3, n) with a direction."""
-    x, y, z = direction
-    for g in range(normals.shape[1]):
-        dots[g] = normals[0, g] * x + normals[1, g] * y + normals[2, g] * z
+        add_pair(records, sieve.broken[0, at], sieve.broken[1, at], True, sieve)
 
 
 @leaf
 def _on_facets(
     facets: Facets,
     arcs: FloatArray,
+    records: FloatArray,
     table: SpanTable,
-    work: Work,
     asked: BoolArray,
     stride: int,
     margin: float,
     found: Found,
+    lanes: FloatArray,
 ) -> None:
     """Boxes with one side on a facet, each `stride`-th of the asked, and one on a shadow's edge."""
     points, normals, edges = facets
@@ -242,20 +231,50 @@ def _on_facets(
         limit = found.record[0] * (1.0 + margin)
         if len(normals) > MANY_FACETS and nothing_on_facet(table, a, height, limit):
             continue
-        _along_all(work.normals, a, work.dots[0])
-        for e in range(len(edges)):
-            one, two = work.dots[0, edges[e, 2]], work.dots[0, edges[e, 3]]
-            if one * two > 0.0 and min(abs(one), abs(two)) > SIDEWAYS:
-                continue
-            b = cross(row(arcs, e), a)
-            lever = length(b)
-            if lever < SIDEWAYS:
-                continue
-            b = mixed(b, 1.0 / lever, b, 0.0)
-            c = cross(a, b)
-            limit = found.record[0] * (1.0 + margin) / height
-            if abs(dot(span_near(table, b), b) * dot(span_near(table, c), c)) < limit:
-                top, bottom = ends_along(points, b)
-                wide = dot(between(points, top, bottom), b)
-                top, bottom = ends_along(points, c)
-                keep(height, wide, dot(between(points, top, bottom), c), a, b, c, found)
+        first = 0
+        while first < len(edges):
+            first, count = _on_shadow(records, a, first, len(edges), lanes)
+            bounds_on_facet(lanes, count, a, table)
+            for k in range(count):
+                limit = found.record[0] * (1.0 + margin) / height
+                if lanes[AREA * LANES + k] < limit * lanes[LEVER * LANES + k]:
+                    _on_edge(points, row(arcs, int(lanes[WHICH * LANES + k])), a, height, found)
+
+
+@inlined
+def _on_shadow(
+    records: FloatArray, axis: Vector, first: int, last: int, lanes: FloatArray
+) -> tuple[int, int]:
+    """Fill the lanes with edges of the shadow along an axis, `first` or later; where to go on, how many."""
+    n, count = records.shape[1], 0
+    x, y, z, sideways = splat(axis[0]), splat(axis[1]), splat(axis[2]), splat(SIDEWAYS)
+    while first < last and count <= LANES - WIDTH:
+        one, two = NORMALS * n + first, (NORMALS + 3) * n + first
+        up = load(records, one) * x + load(records, one + n) * y + load(records, one + 2 * n) * z
+        down = load(records, two) * x + load(records, two + n) * y + load(records, two + 2 * n) * z
+        inside = positive(up * down)
+        up, down = most(up, splat(0.0) - up), most(down, splat(0.0) - down)
+        inside &= positive(least(up, down) - sideways)
+        bits = ~inside & ((1 << min(WIDTH, last - first)) - 1)
+        if bits != 0:
+            store(lanes, WHICH * LANES + count, squeeze(load(records, NUMBER * n + first), bits))
+            for c in range(3):
+                direction = load(records, (DIRECTION + c) * n + first)
+                store(lanes, (SIDES + c) * LANES + count, squeeze(direction, bits))
+            count += count_bits(bits)
+        first += WIDTH
+    return first, count
+
+
+@leaf
+def _on_edge(points: FloatArray, edge: Vector, a: Vector, height: float, found: Found) -> None:
+    """The box with one side normal to a, and one along an edge."""
+    b = cross(edge, a)
+    lever = length(b)
+    if lever >= SIDEWAYS:
+        b = scaled(b, 1.0 / lever)
+        c = cross(a, b)
+        top, bottom = ends_along(points, b)
+        wide = dot(between(points, top, bottom), b)
+        top, bottom = ends_along(points, c)
+        keep(height, wide, dot(between(points, top, bottom), c), a, b, c, found)

@@ -13,20 +13,25 @@ from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.box_branch import least_on_curve
 from regolith_studio.geometry.box_facets import Facets
 from regolith_studio.geometry.box_lanes import (
-    ACROSS,
     BROKEN,
     CUT,
-    EDGES,
+    CUTS,
+    DIRECTION,
     FEET,
+    FOOT,
     HIGH,
     LANES,
     LOW,
     NORMALS,
-    OF_A_CURVE,
+    NUMBER,
+    OF_A_PIECE,
+    OF_AN_EDGE,
+    ONE_EDGE,
+    OTHER_EDGE,
     ROWS,
     RULED_OUT,
     SECOND,
-    SPANS,
+    SHRINK,
     X,
     cells_of,
     curve_in,
@@ -37,25 +42,34 @@ from regolith_studio.geometry.box_lanes import (
     set_aside,
     take_back,
     where_bounds_meet,
+    whole_eights,
 )
 from regolith_studio.geometry.box_record import Found
 from regolith_studio.geometry.box_widths import SpanTable
 from regolith_studio.geometry.compiled import kernel, leaf
+from regolith_studio.geometry.eights import (
+    WIDTH,
+    count_bits,
+    first_bit,
+    least,
+    load,
+    most,
+    positive,
+    splat,
+    squeeze,
+    store,
+)
+from regolith_studio.geometry.inlined import inlined
+from regolith_studio.geometry.vectors import length, row
 
 MOST_WAITING = 512
 """Pieces that wait; when it is so many, they are worked off."""
 HALVINGS, DEEPEST = 2, 5
 """How often a curve is halved before vertices are looked at, and cut before a piece is searched by itself."""
+MOST = MOST_WAITING + (DEEPEST + 2) * LANES + WIDTH
+"""Places on a stack; the last eight may be written over."""
 PAIRS = 2
 """Place in the numbers of what is filled."""
-OF_AN_EDGE = 13
-ROWS_OF_AN_EDGE = (
-    *((NORMALS + k, NORMALS + 6 + k) for k in range(6)),
-    *((EDGES + k, EDGES + 3 + k) for k in range(3)),
-    *((ACROSS + k, ACROSS + 3 + k) for k in range(3)),
-    (FEET, FEET + 1),
-)
-"""Where the lanes hold what is recorded of the first and of the second edge."""
 
 
 class Sieve(NamedTuple):
@@ -65,98 +79,113 @@ class Sieve(NamedTuple):
     ----------
     lanes
         Of :mod:`regolith_studio.geometry.box_lanes`.
-    pairs
-        Edges of the curve in each lane, and whether it is their second, shape (3, LANES).
     waiting
-        Two stacks of pieces, to be halved and to be cut where bounds meet: the rows of a curve, and how
-        often it was cut.
+        Two stacks of pieces, to be halved and to be cut where bounds meet, a piece a column: the rows of a
+        piece, shape (2, OF_A_PIECE, MOST).
     filled
-        How many pieces wait on either stack, and how many pairs are in the lanes, shape (3,).
-    ends, depth
-        Of the pieces in the lanes: where they begin and end, shape (2, LANES), and how often they were cut.
+        How many pieces wait on either stack, and how many pairs of edges are in the lanes, shape (3,).
+    ends
+        Of the pieces in the lanes: where they begin and end, shape (2, LANES).
+    broken
+        Edges of pairs of which the second curve is still to be asked, shape (2, LANES).
     """
 
     lanes: FloatArray
-    pairs: IntArray
     waiting: FloatArray
     filled: IntArray
     ends: FloatArray
-    depth: IntArray
+    broken: IntArray
 
 
 @kernel
 def empty_sieve() -> Sieve:
     """Nothing in the lanes, nothing waits."""
-    most = MOST_WAITING + (DEEPEST + 2) * LANES
     return Sieve(
         np.zeros(ROWS * LANES),
-        np.empty((3, LANES), np.int64),
-        np.empty((2, most, OF_A_CURVE + 1)),
+        np.empty((2, OF_A_PIECE, MOST)),
         np.zeros(3, np.int64),
         np.empty((2, LANES)),
-        np.empty(LANES, np.int64),
+        np.empty((2, LANES), np.int64),
     )
 
 
 @kernel
 def records_of(facets: Facets, arcs: FloatArray) -> FloatArray:
-    """What lanes hold of each edge: normals of its facets, direction, span and a vertex, shape (13, e)."""
-    records = np.empty((OF_AN_EDGE, len(facets.edges)))
+    """What lanes hold of each edge, shape (OF_AN_EDGE, e + 8): eight may be loaded wherever an edge is."""
+    records = np.zeros((OF_AN_EDGE, len(facets.edges) + WIDTH))
     for e in range(len(facets.edges)):
         one, two = facets.edges[e, 2], facets.edges[e, 3]
         for c in range(3):
-            records[c, e], records[3 + c, e] = facets.normals[one, c], facets.normals[two, c]
-            records[6 + c, e], records[9 + c, e] = arcs[e, c], arcs[e, 3 + c]
-        records[12, e] = facets.edges[e, 0]
+            records[NORMALS + c, e] = facets.normals[one, c]
+            records[NORMALS + 3 + c, e] = facets.normals[two, c]
+            records[DIRECTION + c, e] = arcs[e, c]
+        records[SHRINK, e], records[SHRINK + 1, e] = (
+            1.0 / length(row(facets.normals, one)),
+            1.0 / length(row(facets.normals, two)),
+        )
+        records[FOOT, e], records[NUMBER, e] = facets.edges[e, 0], e
     return records
 
 
+@inlined
+def orthogonal(records: FloatArray, i: int, k: int) -> int:
+    """Which of the eight edges from k on have normals that are orthogonal to some of edge i, as bits."""
+    n = records.shape[1]
+    nought = lowest = highest = splat(0.0)
+    for side in range(NORMALS, NORMALS + 6, 3):
+        x, y, z = splat(records[side, i]), splat(records[side + 1, i]), splat(records[side + 2, i])
+        for other in range(NORMALS, NORMALS + 6, 3):
+            at = other * n + k
+            here = x * load(records, at) + y * load(records, at + n) + z * load(records, at + 2 * n)
+            first = (side == NORMALS) & (other == NORMALS)
+            lowest, highest = here if first else least(here, lowest), here if first else most(here, highest)
+    return positive(nought - lowest) & ~positive(nought - highest)
+
+
+@inlined
+def add_pairs(records: FloatArray, i: int, k: int, bits: int, sieve: Sieve) -> None:
+    """Put edge i into the next lanes, with each of the eight edges from k on whose bit is set."""
+    lanes, at, n = sieve.lanes, sieve.filled[PAIRS], records.shape[1]
+    for line in range(OF_AN_EDGE):
+        store(lanes, (ONE_EDGE + line) * LANES + at, splat(records[line, i]))
+        store(lanes, (OTHER_EDGE + line) * LANES + at, squeeze(load(records, line * n + k), bits))
+    store(lanes, SECOND * LANES + at, splat(0.0))
+    sieve.filled[PAIRS] += count_bits(bits)
+
+
 @leaf
-def add_pair(i: int, k: int, second: bool, sieve: Sieve) -> None:
-    """Put a pair of edges down for the next lane, for its first or second curve."""
-    at = sieve.filled[PAIRS]
-    sieve.pairs[0, at], sieve.pairs[1, at], sieve.pairs[2, at] = i, k, second
+def add_pair(records: FloatArray, i: int, k: int, second: bool, sieve: Sieve) -> None:
+    """Put a pair of edges into the next lane, for its first or second curve."""
+    lanes, at = sieve.lanes, sieve.filled[PAIRS]
+    for line in range(OF_AN_EDGE):
+        lanes[(ONE_EDGE + line) * LANES + at] = records[line, i]
+        lanes[(OTHER_EDGE + line) * LANES + at] = records[line, k]
+    lanes[SECOND * LANES + at] = 1.0 if second else 0.0
     sieve.filled[PAIRS] += 1
 
 
 @leaf
-def take_pairs(records: FloatArray, sieve: Sieve) -> None:
-    """Fill the lanes with the pairs that are put down."""
-    lanes, pairs, count = sieve.lanes, sieve.pairs, sieve.filled[PAIRS]
-    for side in range(2):
-        for row in range(OF_AN_EDGE):
-            to = ROWS_OF_AN_EDGE[row][side] * LANES
-            for k in range(count):
-                lanes[to + k] = records[row, pairs[side, k]]
-    for k in range(count):
-        lanes[SECOND * LANES + k] = float(pairs[2, k])
-
-
-@leaf
-def whole_curves(records: FloatArray, table: SpanTable, limit: float, sieve: Sieve) -> None:
-    """Let the curves of the pairs wait that are not ruled out whole; pairs with a second curve stay."""
-    lanes, waiting, count = sieve.lanes, sieve.waiting, sieve.filled[PAIRS]
-    take_pairs(records, sieve)
-    curves_between(lanes, count)
-    for k in range(count):
-        lanes[X * LANES + k] = 0.0
-    cells_of(lanes, count, table.cells)
-    look_up(lanes, count, table, 2)
-    for row in range(6):
-        for k in range(count):
-            lanes[(SPANS + row) * LANES + k] = lanes[(ACROSS + row) * LANES + k]
-    rule_out(lanes, count, limit)
+def whole_curves(table: SpanTable, limit: float, sieve: Sieve) -> int:
+    """Let the curves of the pairs wait that are not ruled out whole; how many pairs have a second curve."""
+    lanes, count = sieve.lanes, sieve.filled[PAIRS]
+    full = whole_eights(count)
+    curves_between(lanes, full)
+    for k in range(full):
+        lanes[X * LANES + k] = lanes[CUTS * LANES + k] = 0.0
+    cells_of(lanes, full, table.cells)
+    look_up(lanes, count, table)
+    rule_out(lanes, full, limit)
+    for at in range(0, count, WIDTH):
+        low, high = load(lanes, LOW * LANES + at), load(lanes, HIGH * LANES + at)
+        push(0, at, not_ruled_out(lanes, at, count) & positive(high - low), sieve)
     broken = 0
     for k in range(count):
         if lanes[BROKEN * LANES + k] > 0.0:
-            sieve.pairs[0, broken], sieve.pairs[1, broken] = sieve.pairs[0, k], sieve.pairs[1, k]
+            sieve.broken[0, broken] = int(lanes[(ONE_EDGE + NUMBER) * LANES + k])
+            sieve.broken[1, broken] = int(lanes[(OTHER_EDGE + NUMBER) * LANES + k])
             broken += 1
-        if lanes[RULED_OUT * LANES + k] == 0.0 and lanes[LOW * LANES + k] < lanes[HIGH * LANES + k]:
-            for row in range(OF_A_CURVE):
-                waiting[0, sieve.filled[0], row] = lanes[row * LANES + k]
-            waiting[0, sieve.filled[0], OF_A_CURVE] = 0.0
-            sieve.filled[0] += 1
-    sieve.filled[PAIRS] = broken
+    sieve.filled[PAIRS] = 0
+    return broken
 
 
 @leaf
@@ -169,19 +198,36 @@ def work_off(points: FloatArray, table: SpanTable, margin: float, found: Found, 
             halved(points, table, margin, found, take_top(0, sieve), sieve)
 
 
+@inlined
+def not_ruled_out(lanes: FloatArray, at: int, count: int) -> int:
+    """Which of the eight lanes from `at` on hold a piece that is not ruled out, as bits."""
+    bits = positive(splat(0.5) - load(lanes, RULED_OUT * LANES + at))
+    return bits & ((1 << min(WIDTH, count - at)) - 1)
+
+
+@inlined
+def push(stack: int, at: int, bits: int, sieve: Sieve) -> None:
+    """Put those of the pieces in the eight lanes from `at` on whose bit is set on a stack."""
+    if bits != 0:
+        to = stack * OF_A_PIECE * MOST + sieve.filled[stack]
+        for line in range(OF_A_PIECE):
+            store(sieve.waiting, to + line * MOST, squeeze(load(sieve.lanes, line * LANES + at), bits))
+        sieve.filled[stack] += count_bits(bits)
+
+
 @leaf
 def take_top(stack: int, sieve: Sieve) -> int:
-    """Put the top of a stack into the lanes."""
+    """Put the top of a stack into the lanes, each cut once more than before."""
     lanes, waiting = sieve.lanes, sieve.waiting
     taken = min(LANES, int(sieve.filled[stack]))
     sieve.filled[stack] -= taken
-    first = sieve.filled[stack]
-    for row in range(OF_A_CURVE):
-        for k in range(taken):
-            lanes[row * LANES + k] = waiting[stack, first + k, row]
-    for k in range(taken):
-        sieve.depth[k] = int(waiting[stack, first + k, OF_A_CURVE]) + 1
-        sieve.ends[0, k], sieve.ends[1, k] = lanes[LOW * LANES + k], lanes[HIGH * LANES + k]
+    first = stack * OF_A_PIECE * MOST + sieve.filled[stack]
+    for at in range(0, taken, WIDTH):
+        for line in range(OF_A_PIECE):
+            store(lanes, line * LANES + at, load(waiting, first + line * MOST + at))
+        store(lanes, CUTS * LANES + at, load(lanes, CUTS * LANES + at) + splat(1.0))
+        store(sieve.ends, at, load(lanes, LOW * LANES + at))
+        store(sieve.ends, LANES + at, load(lanes, HIGH * LANES + at))
     return taken
 
 
@@ -190,17 +236,17 @@ def halved(
     points: FloatArray, table: SpanTable, margin: float, found: Found, taken: int, sieve: Sieve
 ) -> None:
     """Ask both halves of the pieces in the lanes."""
-    lanes = sieve.lanes
+    lanes, full = sieve.lanes, whole_eights(taken)
     for half in range(2):
-        for k in range(taken):
+        for k in range(full):
             low, high = sieve.ends[0, k], sieve.ends[1, k]
             middle = 0.5 * (low + high)
             low, high = (low, middle) if half == 0 else (middle, high)
             lanes[LOW * LANES + k], lanes[HIGH * LANES + k] = low, high
             lanes[X * LANES + k] = 0.5 * (low + high)
-        cells_of(lanes, taken, table.cells)
-        look_up(lanes, taken, table, 0)
-        rule_out(lanes, taken, found.record[0] * (1.0 + margin))
+        cells_of(lanes, full, table.cells)
+        look_up(lanes, taken, table)
+        rule_out(lanes, full, found.record[0] * (1.0 + margin))
         let_wait(points, table, margin, found, taken, sieve)
 
 
@@ -209,24 +255,24 @@ def cut_where_bounds_meet(
     points: FloatArray, table: SpanTable, margin: float, found: Found, taken: int, sieve: Sieve
 ) -> None:
     """Ask the pieces in the lanes up to a cut and from there, with the vertices farthest at either end."""
-    lanes = sieve.lanes
-    for k in range(taken):
+    lanes, full = sieve.lanes, whole_eights(taken)
+    for k in range(full):
         lanes[X * LANES + k] = lanes[LOW * LANES + k]
-    look_along(lanes, taken, points)
-    set_aside(lanes, taken)
-    for k in range(taken):
+    look_along(lanes, full, points)
+    set_aside(lanes, full)
+    for k in range(full):
         lanes[X * LANES + k] = lanes[HIGH * LANES + k]
-    look_along(lanes, taken, points)
-    where_bounds_meet(lanes, taken)
-    for k in range(taken):
+    look_along(lanes, full, points)
+    where_bounds_meet(lanes, full)
+    for k in range(full):
         lanes[LOW * LANES + k] = lanes[CUT * LANES + k]
-    rule_out(lanes, taken, found.record[0] * (1.0 + margin))
+    rule_out(lanes, full, found.record[0] * (1.0 + margin))
     let_wait(points, table, margin, found, taken, sieve)
-    take_back(lanes, taken)
-    for k in range(taken):
+    take_back(lanes, full)
+    for k in range(full):
         lanes[LOW * LANES + k], lanes[HIGH * LANES + k] = sieve.ends[0, k], lanes[CUT * LANES + k]
         lanes[X * LANES + k] = sieve.ends[0, k]
-    rule_out(lanes, taken, found.record[0] * (1.0 + margin))
+    rule_out(lanes, full, found.record[0] * (1.0 + margin))
     let_wait(points, table, margin, found, taken, sieve)
 
 
@@ -234,19 +280,17 @@ def cut_where_bounds_meet(
 def let_wait(
     points: FloatArray, table: SpanTable, margin: float, found: Found, taken: int, sieve: Sieve
 ) -> None:
-    """Put the pieces that are not ruled out on the stack; those cut too often are searched at once."""
-    lanes, waiting = sieve.lanes, sieve.waiting
-    for k in range(taken):
-        if lanes[RULED_OUT * LANES + k] == 1.0:
-            continue
-        if sieve.depth[k] >= DEEPEST:
+    """Put the pieces that are not ruled out on the stacks; those cut too often are searched at once."""
+    lanes = sieve.lanes
+    for at in range(0, taken, WIDTH):
+        bits, cuts = not_ruled_out(lanes, at, taken), load(lanes, CUTS * LANES + at)
+        few, many = positive(splat(HALVINGS - 0.5) - cuts), positive(cuts - splat(DEEPEST - 0.5))
+        push(0, at, bits & few, sieve)
+        push(1, at, bits & ~few & ~many, sieve)
+        bits &= many
+        while bits > 0:
+            k = at + first_bit(bits)
+            bits &= bits - 1
             curve = curve_in(lanes, k)
             one, two = int(lanes[FEET * LANES + k]), int(lanes[(FEET + 1) * LANES + k])
             least_on_curve(points, table, curve, one, two, margin, found)
-            continue
-        stack = 0 if sieve.depth[k] < HALVINGS else 1
-        at = sieve.filled[stack]
-        for row in range(OF_A_CURVE):
-            waiting[stack, at, row] = lanes[row * LANES + k]
-        waiting[stack, at, OF_A_CURVE] = sieve.depth[k]
-        sieve.filled[stack] += 1

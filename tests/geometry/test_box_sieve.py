@@ -9,17 +9,28 @@ from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.box_curve import frame_on
 from regolith_studio.geometry.box_facets import Facets, arcs_of, facets_of, nothing_on_facet
 from regolith_studio.geometry.box_lanes import (
+    AREA,
     BROKEN,
+    CELLS,
     CUT,
+    CUTS,
     FEET,
     HIGH,
     LANES,
+    LEVER,
     LOW,
-    NORMALS,
+    NUMBER,
+    OF_A_PIECE,
+    OF_AN_EDGE,
+    ONE_EDGE,
     OTHER,
+    OTHER_EDGE,
+    ROWS,
     RULED_OUT,
+    SIDES,
     SPANS,
     X,
+    bounds_on_facet,
     cells_of,
     curve_in,
     curves_between,
@@ -33,18 +44,36 @@ from regolith_studio.geometry.box_lanes import (
 from regolith_studio.geometry.box_record import nothing_below
 from regolith_studio.geometry.box_search import minimum_box
 from regolith_studio.geometry.box_sieve import (
+    HALVINGS,
     PAIRS,
     Sieve,
     add_pair,
+    add_pairs,
     empty_sieve,
+    let_wait,
+    orthogonal,
     records_of,
-    take_pairs,
+    take_top,
     whole_curves,
     work_off,
 )
 from regolith_studio.geometry.box_widths import span_near, span_table
+from regolith_studio.geometry.compiled import kernel
+from regolith_studio.geometry.eights import WIDTH
 from regolith_studio.geometry.hull_graph import hull_graph
 from tests.geometry.solids import random_polyhedron
+
+
+@kernel
+def asked(records: FloatArray, i: int, k: int) -> int:
+    """What is copied into kernels, compiled by itself."""
+    return orthogonal(records, i, k)
+
+
+@kernel
+def put_down(records: FloatArray, i: int, k: int, bits: int, sieve: Sieve) -> None:
+    """What is copied into kernels, compiled by itself."""
+    add_pairs(records, i, k, bits, sieve)
 
 
 def facets(seed: int) -> Facets:
@@ -52,17 +81,28 @@ def facets(seed: int) -> Facets:
     return facets_of(hull_graph(np.array(hull.vertices), hull.faces))
 
 
+def orthogonal_pairs(solid: Facets) -> list[tuple[int, int]]:
+    """Pairs of edges of whose facets some normals are at less and some at more than a right angle."""
+    found = []
+    for i in range(len(solid.edges)):
+        for k in range(i, len(solid.edges)):
+            products = solid.normals[solid.edges[i, 2:]] @ solid.normals[solid.edges[k, 2:]].T >= 0.0
+            if products.any() and not products.all():
+                found.append((i, k))
+    return found
+
+
 def full_lanes(solid: Facets, seed: int = 0) -> tuple[Sieve, FloatArray]:
     """Curves of pairs of edges with orthogonal normals in all lanes, also second ones; and the rows."""
     sieve, arcs = empty_sieve(), arcs_of(solid)
     rng = np.random.default_rng(seed)
+    records = records_of(solid, arcs)
     while sieve.filled[PAIRS] < LANES:
         i, k = rng.integers(len(arcs), size=2)
         products = solid.normals[solid.edges[i, 2:]] @ solid.normals[solid.edges[k, 2:]].T >= 0.0
         if i != k and products.any() and not products.all() and (products[0] != products[1]).any():
             broken = products[0, 0] == products[1, 1] and products[0, 1] == products[1, 0]
-            add_pair(i, k, bool(broken and rng.random() < 0.5), sieve)
-    take_pairs(records_of(solid, arcs), sieve)
+            add_pair(records, i, k, bool(broken and rng.random() < 0.5), sieve)
     curves_between(sieve.lanes, LANES)
     return sieve, sieve.lanes.reshape(-1, LANES)
 
@@ -89,7 +129,8 @@ def test_that_curves_in_lanes_run_between_facets_and_are_flush_with_their_edges(
             assert reach[[0, 1], feet] == pytest.approx(reach.max(axis=1), abs=1e-11)
         for x in (curve.low, curve.high):
             a, b, _ = frame_on(curve, x)
-            on_facets = rows[NORMALS : NORMALS + 12, k].reshape(4, 3) @ np.array([a, b]).T
+            edges = rows[[*range(ONE_EDGE, ONE_EDGE + 6), *range(OTHER_EDGE, OTHER_EDGE + 6)], k]
+            on_facets = edges.reshape(4, 3) @ np.array([a, b]).T
             assert np.sort(on_facets.ravel())[-1] == pytest.approx(1.0, abs=1e-12)
 
 
@@ -98,7 +139,9 @@ def test_that_a_hyperbola_with_two_branches_in_the_square_is_called_broken() -> 
     sieve = empty_sieve()
     normals = rng.normal(size=(4, 3, LANES))
     rows = sieve.lanes.reshape(-1, LANES)
-    rows[NORMALS : NORMALS + 12] = (normals / np.linalg.norm(normals, axis=1, keepdims=True)).reshape(12, -1)
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    rows[ONE_EDGE : ONE_EDGE + 6] = normals[:2].reshape(6, -1)
+    rows[OTHER_EDGE : OTHER_EDGE + 6] = normals[2:].reshape(6, -1)
     curves_between(sieve.lanes, LANES)
     signs = np.einsum("ick,jck->kij", normals[:2], normals[2:]) >= 0.0
     diagonal = (signs[:, 0, 0] == signs[:, 1, 1]) & (signs[:, 0, 1] == signs[:, 1, 0])
@@ -113,7 +156,7 @@ def test_that_spans_in_lanes_are_those_of_the_table_and_of_the_farthest_vertices
     table, (sieve, rows) = span_table(solid.points), full_lanes(solid, seed)
     rows[X] = np.random.default_rng(seed).uniform(rows[LOW], rows[HIGH])
     cells_of(sieve.lanes, LANES, table.cells)
-    look_up(sieve.lanes, LANES, table, 0)
+    look_up(sieve.lanes, LANES, table)
     looked_up = rows[SPANS : SPANS + 9].copy()
     look_along(sieve.lanes, LANES, solid.points)
     for k in range(LANES):
@@ -170,21 +213,80 @@ def test_that_what_waits_holds_the_least_box_and_working_it_off_finds_it(seed: i
     least = float(np.prod(np.ptp(axes @ hull.vertices.T, axis=1)))
     arcs, table, sieve = arcs_of(solid), span_table(solid.points), empty_sieve()
     found, records = nothing_below(1.02 * least), records_of(solid, arcs)
-    for i in range(len(arcs)):
-        for k in range(i, len(arcs)):
-            products = solid.normals[solid.edges[i, 2:]] @ solid.normals[solid.edges[k, 2:]].T >= 0.0
-            if products.all() or not products.any():
-                continue
-            add_pair(i, k, False, sieve)
-            if sieve.filled[PAIRS] == LANES:
-                whole_curves(records, table, float(found.record[0]), sieve)
-                sieve.filled[PAIRS] = 0
-                work_off(solid.points, table, 0.0, found, sieve)
-    whole_curves(records, table, float(found.record[0]), sieve)
+    for i, k in orthogonal_pairs(solid):
+        add_pair(records, i, k, False, sieve)
+        if sieve.filled[PAIRS] == LANES:
+            whole_curves(table, float(found.record[0]), sieve)
+            work_off(solid.points, table, 0.0, found, sieve)
+    whole_curves(table, float(found.record[0]), sieve)
     work_off(solid.points, table, 0.0, found, sieve)
     assert sieve.filled[:2].tolist() == [0, 0]
     assert found.record[0] == pytest.approx(least, rel=1e-8)
     assert np.prod(np.ptp(found.axes @ solid.points, axis=1)) == pytest.approx(least, rel=1e-8)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_that_the_pairs_put_into_lanes_are_those_with_orthogonal_normals(seed: int) -> None:
+    solid = facets(seed)
+    records, sieve = records_of(solid, arcs_of(solid)), empty_sieve()
+    rows, n, found = sieve.lanes.reshape(-1, LANES), len(solid.edges), []
+    for i in range(n):
+        for k in range(i, n, WIDTH):
+            bits = asked(records, i, k) & ((1 << min(WIDTH, n - k)) - 1)
+            put_down(records, i, k, bits, sieve)
+            count = int(sieve.filled[PAIRS])
+            numbers = rows[[ONE_EDGE + NUMBER, OTHER_EDGE + NUMBER], :count]
+            found += [(int(one), int(other)) for one, other in numbers.T]
+            assert (rows[ONE_EDGE : ONE_EDGE + OF_AN_EDGE, :count] == records[:, [i] * count]).all()
+            others = numbers[1].astype(int)
+            assert (rows[OTHER_EDGE : OTHER_EDGE + OF_AN_EDGE, :count] == records[:, others]).all()
+            sieve.filled[PAIRS] = 0
+    assert found == orthogonal_pairs(solid)
+
+
+def test_that_pieces_wait_in_their_order_and_come_back_as_they_were() -> None:
+    sieve, rng = empty_sieve(), np.random.default_rng(5)
+    rows = sieve.lanes.reshape(-1, LANES)
+    rows[:OF_A_PIECE] = given = rng.normal(size=(OF_A_PIECE, LANES))
+    rows[RULED_OUT] = ruled_out = rng.random(LANES) < 0.7
+    rows[CUTS] = given[CUTS] = rng.integers(0, 4, LANES)
+    solid = facets(0)
+    let_wait(solid.points, span_table(solid.points), 0.0, nothing_below(np.inf), LANES - 3, sieve)
+    ruled_out[-3:] = True
+    for stack in (1, 0):
+        wanted = given[:, ~ruled_out & ((given[CUTS] >= HALVINGS) == (stack == 1))]
+        assert sieve.filled[stack] == wanted.shape[1] > 0
+        assert take_top(stack, sieve) == wanted.shape[1]
+        wanted[CUTS] += 1
+        assert (rows[:OF_A_PIECE, : wanted.shape[1]] == wanted).all()
+        assert (sieve.ends[:, : wanted.shape[1]] == wanted[[LOW, HIGH]]).all()
+
+
+def test_that_lanes_with_nothing_in_them_read_no_cell_beyond_the_table() -> None:
+    lanes = np.full(ROWS * LANES, np.nan)
+    cells_of(lanes, LANES, 20)
+    cells = lanes.reshape(-1, LANES)[CELLS : CELLS + 3]
+    assert (cells >= 0.0).all()
+    assert (cells < 1200.0).all()
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_that_no_rectangle_on_a_facet_is_smaller_than_its_bound(seed: int) -> None:
+    solid = facets(seed)
+    table, lanes, axis = span_table(solid.points), np.zeros(ROWS * LANES), solid.normals[seed]
+    rows, directions = lanes.reshape(-1, LANES), arcs_of(solid)[:, :3]
+    count = len(directions)
+    rows[SIDES : SIDES + 3, :count] = directions.T
+    rows[SIDES : SIDES + 3, 7] = axis
+    bounds_on_facet(lanes, count, tuple(axis), table)
+    assert rows[AREA, 7] == np.inf
+    for k in set(range(count)) - {7}:
+        b = np.cross(directions[k], axis)
+        lever = float(np.linalg.norm(b))
+        b = b / lever
+        area = np.prod(np.ptp(np.array([b, np.cross(axis, b)]) @ solid.points, axis=1))
+        assert rows[LEVER, k] == pytest.approx(lever**2, rel=1e-12)
+        assert 0.8 * area < rows[AREA, k] / rows[LEVER, k] <= area * (1.0 + 1e-12)
 
 
 def test_that_a_facet_on_which_nothing_is_said_to_stand_bears_no_smaller_box() -> None:
