@@ -265,8 +265,8 @@ def rule_out(lanes: FloatArray, count: int, limit: float) -> None:
 
 @leaf
 def look_along(lanes: FloatArray, count: int, points: FloatArray) -> None:
-    """Spans between the vertices that are farthest along the three axes at X."""
-    for k in range(count):
+    """Spans between the vertices that are farthest along the three axes at X; along two, an edge's is."""
+    for k in range(whole_eights(count)):
         a, b, _ = directions_on(curve_in(lanes, k), lanes[X * LANES + k])
         a, b = unit(a), unit(b)
         put(lanes, AXES, k, a)
@@ -278,11 +278,17 @@ def look_along(lanes: FloatArray, count: int, points: FloatArray) -> None:
             x, y = load(lanes, start + at), load(lanes, start + LANES + at)
             z, low, high = load(lanes, start + 2 * LANES + at), splat(np.inf), splat(-np.inf)
             bottoms = tops = splat(0.0)
-            for i in range(points.shape[1]):
-                here = splat(points[0, i]) * x + splat(points[1, i]) * y + splat(points[2, i]) * z
-                now = splat(float(i))
-                bottoms, tops = pick(here, low, now, bottoms), pick(high, here, now, tops)
-                low, high = least(here, low), most(here, high)
+            if axis < 2:
+                tops = load(lanes, (FEET + axis) * LANES + at)
+                for i in range(points.shape[1]):
+                    here = splat(points[0, i]) * x + splat(points[1, i]) * y + splat(points[2, i]) * z
+                    bottoms, low = pick(here, low, splat(float(i)), bottoms), least(here, low)
+            else:
+                for i in range(points.shape[1]):
+                    here = splat(points[0, i]) * x + splat(points[1, i]) * y + splat(points[2, i]) * z
+                    now = splat(float(i))
+                    bottoms, tops = pick(here, low, now, bottoms), pick(high, here, now, tops)
+                    low, high = least(here, low), most(here, high)
             store(lanes, ENDS * LANES + at, bottoms)
             store(lanes, (ENDS + 1) * LANES + at, tops)
         for k in range(count):

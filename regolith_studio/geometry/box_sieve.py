@@ -258,11 +258,11 @@ def cut_where_bounds_meet(
     lanes, full = sieve.lanes, whole_eights(taken)
     for k in range(full):
         lanes[X * LANES + k] = lanes[LOW * LANES + k]
-    look_along(lanes, full, points)
+    look_along(lanes, taken, points)
     set_aside(lanes, full)
     for k in range(full):
         lanes[X * LANES + k] = lanes[HIGH * LANES + k]
-    look_along(lanes, full, points)
+    look_along(lanes, taken, points)
     where_bounds_meet(lanes, full)
     for k in range(full):
         lanes[LOW * LANES + k] = lanes[CUT * LANES + k]
