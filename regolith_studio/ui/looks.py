@@ -1,17 +1,18 @@
 """Language, theme and size of letters: taken from the preferences, asked for, and kept."""
 
 from collections.abc import Callable
+from typing import cast
 
 from PySide6.QtCore import QObject
-from PySide6.QtWidgets import QWidget
+from PySide6.QtWidgets import QApplication, QWidget
 
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.ui.dialogs.preferences import LETTERS, PreferencesDialog
-from regolith_studio.ui.theme import choose_letters, choose_theme
+from regolith_studio.ui.theme import apply_letters, choose_letters, choose_theme
 
 
 class Looks(QObject):
-    """Knows what was chosen before, from the beginning.
+    """Knows what was chosen before; letters have their size before other widgets are made.
 
     Parameters
     ----------
@@ -27,6 +28,7 @@ class Looks(QObject):
         super().__init__(window)
         self._preferences, self._apply, self._window = preferences, apply, window
         self._take()
+        apply_letters(cast(QApplication, QApplication.instance()))
 
     def ask(self) -> None:
         """Show the dialog."""

@@ -125,12 +125,27 @@ def apply_theme(app: QApplication, theme: Theme, window: QWidget) -> None:
 
     The style sheet is the window's: one of the application takes five times as long to reach all widgets.
     What widgets ask for before they have their place in the window is the application's, and never changes.
+    A font of the application does not reach widgets under a style sheet that is there already: the sheet
+    follows it, and names the size so that it is another one.
+    """
+    size = apply_letters(app)
+    app.setPalette(_palette(theme))
+    window.setStyleSheet(f"/* {size:.2f} pt */\n{_style_sheet(theme)}")
+
+
+def letters_share() -> float:
+    """Size of letters in units of what the system asks for, at least 1."""
+    return max(1.0, _letters[0] / USUAL)
+
+
+def apply_letters(app: QApplication) -> float:
+    """Give the application its style, and letters of the chosen size; returns that in points.
+
+    Best before any widget is made: one that is there and has no window yet may keep the font that it had.
     """
     if app.styleSheet() != _EVERYWHERE:
         app.setStyle("Fusion")
         app.setStyleSheet(_EVERYWHERE)
-    app.setPalette(_palette(theme))
-    window.setStyleSheet(_style_sheet(theme))
     font = app.font()
     of_system = float(app.property("system_letters") or font.pointSizeF())
     app.setProperty("system_letters", of_system)
@@ -139,6 +154,7 @@ def apply_theme(app: QApplication, theme: Theme, window: QWidget) -> None:
         app.setFont(font)
         for name in OWN_FONTS:
             app.setFont(font, name)  # type: ignore[arg-type]  # bytes would not do, whatever the stubs say
+    return font.pointSizeF()
 
 
 def _palette(theme: Theme) -> QPalette:

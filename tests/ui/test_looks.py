@@ -1,11 +1,14 @@
 """Theme and letters: applied when they change, and only then."""
 
 import pytest
-from PySide6.QtGui import QColor
+from PySide6.QtGui import QColor, QFontMetrics
 from PySide6.QtWidgets import QCheckBox, QDialog, QDialogButtonBox, QLabel, QVBoxLayout, QWidget
 
+from regolith_studio.jobs.runners.inline import InlineRunner
+from regolith_studio.session.session import Session
 from regolith_studio.ui.dialogs.preferences import LETTERS
 from regolith_studio.ui.looks import Looks
+from regolith_studio.ui.main_window import MainWindow
 from regolith_studio.ui.theme import DARK, LIGHT, apply_theme, choose_letters, choose_theme, current_theme
 
 
@@ -27,6 +30,34 @@ def test_that_only_another_look_is_applied(shown, preferences):
     looks.choose(**{LETTERS: 120})
     assert applied == [DARK, DARK]
     assert preferences.window["language"] == "de"
+
+
+def sizes_of_letters(window):
+    """In points, of all that is in a window and not on a canvas of pyqtgraph."""
+    return {round(each.font().pointSizeF(), 1) for each in window.findChildren(QWidget)}
+
+
+@pytest.mark.usefixtures("usual_looks")
+@pytest.mark.parametrize("first", [100, 200])
+def test_that_letters_of_another_size_reach_every_widget_at_the_start_and_later(
+    shown, preferences, app, first
+):
+    usual, of_system = app.font(), app.property("system_letters") or app.font().pointSizeF()
+    preferences.window = preferences.window | {LETTERS: first}
+    window = shown(MainWindow(Session(InlineRunner()), preferences, "image"))
+    assert sizes_of_letters(window) == {round(of_system * first / 100, 1)}
+    slider = window.page.loss.sliders["min_diameter"]
+    for percent in (200, 80, 150):
+        window.looks.choose(**{LETTERS: percent})
+        app.processEvents()
+        assert sizes_of_letters(window) == {round(of_system * percent / 100, 1)}
+        letters = QFontMetrics(app.font())
+        assert window.tasks.text.height() >= letters.height()
+        assert window.page.particles.table.rowHeight(0) in (0, letters.height() + 9)
+        assert slider.field.width() > letters.horizontalAdvance("-100.00")
+        assert slider.label.width() >= slider.label.sizeHint().width()
+    window.looks.choose(**{LETTERS: 100})
+    app.setFont(usual)
 
 
 def test_that_a_theme_reaches_dialogs_of_the_window_and_changes_no_sheet_of_the_application(app, shown):

@@ -18,6 +18,7 @@ from regolith_studio.session.results import Results
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.labels import plain_symbol
 from regolith_studio.ui.widgets.number_text import short_number
+from regolith_studio.ui.widgets.table import LetterRows
 
 _UNITS = {0: "", 1: " [µm]", 2: " [µm²]", 3: " [µm³]", 5: " [µm⁵]"}
 COLUMNS = (mark("Particle"), mark("Fit"), mark("Polyhedron"))
@@ -44,10 +45,10 @@ class DescriptorTablePanel(QWidget):
         self.table.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self.table.setShowGrid(False)
         self.table.setFrameShape(self.table.Shape.NoFrame)
-        header, rows = self.table.horizontalHeader(), self.table.verticalHeader()
+        header = self.table.horizontalHeader()
         header.setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
         header.setDefaultAlignment(_RIGHT)
-        rows.setDefaultSectionSize(self.table.fontMetrics().height() + 9)
+        LetterRows(self.table, 9)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(self.table)

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from PySide6.QtCore import Signal
+from PySide6.QtCore import QEvent, Signal
 from PySide6.QtWidgets import QGridLayout, QVBoxLayout, QWidget
 
 from regolith_studio.coarsening.weights import JACCARD, WEIGHT_KEYS, LossWeights, Preset, presets
@@ -12,7 +12,7 @@ from regolith_studio.errors import InputError
 from regolith_studio.session.own_presets import OwnPresets
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.labels import heading, remark, rich_symbol
-from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
+from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec, align_labels
 from regolith_studio.ui.widgets.preset_bar import PresetBar, PresetEntry
 
 OWN = "own:"
@@ -108,6 +108,11 @@ class LossPanel(QWidget):
         self._chosen = self._source(self.value()["weights"])
         self._show_mark()
 
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() in (QEvent.Type.FontChange, QEvent.Type.StyleChange):
+            align_labels(self.sliders.values())
+
     def _list(self) -> None:
         """Read and list shipped and own presets."""
         found = dict(presets())
@@ -139,12 +144,11 @@ class LossPanel(QWidget):
         grid = QGridLayout()
         grid.setContentsMargins(0, 0, 0, 0)
         grid.setVerticalSpacing(3)
-        widest = max(each.label.sizeHint().width() for each in self.sliders.values())
         for row, (key, slider) in enumerate(self.sliders.items()):
             slider.slider.setObjectName(f"weight_{key}_slider")
             slider.field.setObjectName(f"weight_{key}")
-            slider.label.setFixedWidth(widest)
             grid.addWidget(slider, row, 0)
+        align_labels(self.sliders.values())
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(heading(tr("Weights of the loss (Eq. 9)")))

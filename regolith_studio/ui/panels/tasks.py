@@ -3,7 +3,7 @@
 import time
 from collections.abc import Sequence
 
-from PySide6.QtCore import QTimer, Signal
+from PySide6.QtCore import QEvent, QTimer, Signal
 from PySide6.QtWidgets import QHBoxLayout, QProgressBar, QToolButton, QWidget
 
 from regolith_studio.session.tasks import Task
@@ -45,7 +45,7 @@ class TasksPanel(QWidget):
         layout.addWidget(self.bar)
         layout.addWidget(self.stop)
         layout.addWidget(self.text, 1)
-        self.setFixedHeight(self.stop.sizeHint().height() + 4)  # the views keep their size when work begins
+        self._make_room()
         self._timer = QTimer(self, interval=PATIENCE, singleShot=True)
         self._timer.timeout.connect(self._show)
         self.stop.clicked.connect(self._request)
@@ -66,6 +66,15 @@ class TasksPanel(QWidget):
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
         self.stop.setIcon(icon("stop", theme.bad, theme.muted))
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() in (QEvent.Type.FontChange, QEvent.Type.StyleChange):
+            self._make_room()
+
+    def _make_room(self) -> None:
+        """As high with work as without: the views keep their size when it begins."""
+        self.setFixedHeight(max(self.stop.sizeHint().height() + 4, self.fontMetrics().height() + 4))
 
     def _show(self) -> None:
         patience = time.monotonic() - PATIENCE / 1000

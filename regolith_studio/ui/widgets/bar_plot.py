@@ -17,6 +17,8 @@ GAP = 3
 """Pixels between the names of two categories."""
 LEAST_POINTS = 6.0
 """Size of the smallest letters."""
+LEAST_SHARE = 0.75
+"""Size of the smallest letters of names that stand on one line, in units of the usual size."""
 
 
 @dataclass(frozen=True)
@@ -121,13 +123,15 @@ class BarPlot(Plot):
 
     def _name_categories(self) -> None:
         """Below the bars, by the names that fit, in smaller letters where none do."""
-        axis, font = self.canvas.getAxis("bottom"), self.small_font()
-        room = (self.width() - self.canvas.getAxis("left").width()) / max(1, len(self._categories)) - GAP
+        font = self.small_font()
+        room = (self.width() - self.axes["left"].width()) / max(1, len(self._categories)) - GAP
         names = self._categories if _widest(self._categories, font) < room else self._short
-        while _widest(names, font) > room and font.pointSizeF() > LEAST_POINTS:
-            font.setPointSizeF(font.pointSizeF() - 0.5)
-        axis.setTickFont(font)
-        axis.setTicks([list(enumerate(names))])
+        least = max(LEAST_POINTS, LEAST_SHARE * font.pointSizeF())
+        if _widest(names, _shrunk(names, font, room, least)) > room:  # every other name on a second line
+            names = tuple(f"\n{name}" if at % 2 else name for at, name in enumerate(names))
+            room, least = 2 * room, LEAST_POINTS
+        self.axes["bottom"].setTickFont(_shrunk(names, font, room, least))
+        self.axes["bottom"].setTicks([list(enumerate(names))])
 
     def _draw_bounds(self, places: np.ndarray[Any, Any], bounds: np.ndarray[Any, Any], reach: float) -> None:
         seen = np.isfinite(bounds) & (bounds > 0.0)
@@ -152,6 +156,14 @@ class BarPlot(Plot):
         return "\n".join([self._categories[category], *lines])
 
 
+def _shrunk(names: Sequence[str], font: QFont, room: float, least: float) -> QFont:
+    """Letters in which each name has room, but none below `least` points."""
+    found = QFont(font)
+    while _widest(names, found) > room and found.pointSizeF() > least:
+        found.setPointSizeF(max(least, found.pointSizeF() - 0.5))
+    return found
+
+
 def _widest(names: Sequence[str], font: QFont) -> int:
     metrics = QFontMetrics(font)
-    return max(map(metrics.horizontalAdvance, names), default=0)
+    return max((metrics.horizontalAdvance(name.strip()) for name in names), default=0)

@@ -16,6 +16,8 @@ LEADING = 0.62
 """Space between two lines in units of the letters."""
 SMALLEST = 0.55
 """A formula shrinks to the room it has, but not below this share of its size."""
+LEAST_HEIGHT = 0.75
+"""Share of its height that a formula asks for at least."""
 MOST_KEPT = 512
 """Lines whose outlines are at hand."""
 
@@ -87,7 +89,7 @@ class FormulaLabel(QWidget):
         return QSize(round(widest * scale) + 2, round(self._height() * scale) + 2)
 
     def minimumSizeHint(self) -> QSize:
-        return QSize(40, round(SMALLEST * self.sizeHint().height()))
+        return QSize(40, round(LEAST_HEIGHT * self.sizeHint().height()))
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: ARG002
         if not self._lines:

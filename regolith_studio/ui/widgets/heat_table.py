@@ -17,6 +17,7 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
+from regolith_studio.ui.widgets.table import LetterRows
 
 _ROWS_SHARE = 0.33
 """Of the width, that the names of the rows take at most."""
@@ -49,7 +50,8 @@ class HeatTable(QWidget):
         self._theme = current_theme()
         self._values: tuple[tuple[float, ...], ...] = ()
         self._bands: Bands | None = None
-        self.table = numbers_table(tr("Table of errors"), spare=SPARE)
+        self.table = numbers_table(tr("Table of errors"))
+        self._rows = LetterRows(self.table, SPARE)
         self._stack = QStackedLayout(self)
         self._stack.addWidget(remark_in_the_middle(placeholder))
         self._stack.addWidget(self.table)
@@ -68,9 +70,7 @@ class HeatTable(QWidget):
         """Show other shares, below each the ends of its interval; no rows bring back the sentence."""
         self._values = tuple(tuple(float(value) for value in row) for row in values)
         self._bands = bands
-        lines = 1 if bands is None else 2
-        height = lines * self.table.fontMetrics().height() + SPARE
-        self.table.verticalHeader().setDefaultSectionSize(height)
+        self._rows.set_lines(1 if bands is None else 2)
         self._stack.setCurrentIndex(1 if rows else 0)
         self.table.setRowCount(len(rows))
         self.table.setColumnCount(len(columns))
@@ -115,15 +115,13 @@ class HeatTable(QWidget):
         return item
 
 
-def numbers_table(name: str, spare: int) -> QTableWidget:
+def numbers_table(name: str) -> QTableWidget:
     """A table to be read only, as wide as its place.
 
     Parameters
     ----------
     name
         For those who hear the window.
-    spare
-        Pixels between two lines.
     """
     table = QTableWidget()
     table.setAccessibleName(name)
@@ -136,7 +134,6 @@ def numbers_table(name: str, spare: int) -> QTableWidget:
     table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
     table.horizontalHeader().setMinimumSectionSize(24)
     table.verticalHeader().setTextElideMode(Qt.TextElideMode.ElideRight)
-    table.verticalHeader().setDefaultSectionSize(table.fontMetrics().height() + spare)
     return table
 
 

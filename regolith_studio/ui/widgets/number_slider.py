@@ -1,8 +1,9 @@
 """A slider with a number field: the slider for looking around, the field for exact values."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
-from PySide6.QtCore import QSignalBlocker, Qt, QTimer, Signal
+from PySide6.QtCore import QEvent, QSignalBlocker, Qt, QTimer, Signal
 from PySide6.QtWidgets import QDoubleSpinBox, QGridLayout, QLabel, QSlider, QSpinBox, QWidget
 
 from regolith_studio.ui.translation import tr
@@ -13,6 +14,8 @@ THROTTLE = 30
 
 LEAST_ROOM = "0000.00"
 """What a field has room for, whatever its range."""
+ARROWS = 28
+"""Pixels that arrows and frame take in a field."""
 
 
 @dataclass(frozen=True)
@@ -75,6 +78,7 @@ class NumberSlider(QWidget):
         self._timer = QTimer(self, interval=THROTTLE, singleShot=True)
         self._announced: float | int | None = None
         self._configure()
+        self._make_room()
         layout = QGridLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setHorizontalSpacing(8)
@@ -123,8 +127,7 @@ class NumberSlider(QWidget):
         field.setKeyboardTracking(False)
         field.setAlignment(Qt.AlignmentFlag.AlignRight)
         field.setAccessibleName(tr(spec.name))
-        widest = max(LEAST_ROOM, f"-{limit:.{spec.decimals}f}{field.suffix()}", key=len)
-        field.setFixedWidth(field.fontMetrics().horizontalAdvance(widest) + 28)
+        self._widest = max(LEAST_ROOM, f"-{limit:.{spec.decimals}f}{field.suffix()}", key=len)
         self.slider.setRange(self._ticks(spec.minimum), self._ticks(spec.maximum))
         self.slider.setPageStep(max(1, (self.slider.maximum() - self.slider.minimum()) // 10))
         self.slider.setAccessibleName(tr("{name}, slider", name=tr(spec.name)))
@@ -133,6 +136,15 @@ class NumberSlider(QWidget):
         self.setFocusProxy(self.slider)
         for part in (self.label, self.slider, field):
             part.setToolTip(tr(spec.tip))
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() in (QEvent.Type.FontChange, QEvent.Type.StyleChange):
+            self._make_room()
+
+    def _make_room(self) -> None:
+        """For the longest number, in letters of the present size."""
+        self.field.setFixedWidth(self.field.fontMetrics().horizontalAdvance(self._widest) + ARROWS)
 
     def _ticks(self, value: float) -> int:
         return round(value / self.spec.step)
@@ -164,3 +176,11 @@ class NumberSlider(QWidget):
         self._announce()
         self._timer.stop()
         self.editingFinished.emit()
+
+
+def align_labels(sliders: Iterable[NumberSlider], least: int = 0) -> None:
+    """Let sliders below each other begin at one place, behind the widest label or so many pixels."""
+    each = list(sliders)
+    widest = max((slider.label.sizeHint().width() for slider in each), default=0)
+    for slider in each:
+        slider.label.setFixedWidth(max(widest, least))

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 
 import pyqtgraph as pg
-from PySide6.QtCore import QPointF, Qt
+from PySide6.QtCore import QEvent, QPointF, Qt
 from PySide6.QtGui import QColor, QContextMenuEvent, QFont, QFontMetrics, QResizeEvent
 from PySide6.QtWidgets import (
     QFileDialog,
@@ -21,7 +21,7 @@ from PySide6.QtWidgets import (
 from regolith_studio.errors import RegolithError
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
-from regolith_studio.ui.widgets.count_axis import CountAxis
+from regolith_studio.ui.widgets.axes import CountAxis, FittedAxis
 from regolith_studio.ui.widgets.labels import unbroken
 from regolith_studio.ui.widgets.plot_files import DRAWN, plain_text, save_figure, save_numbers
 
@@ -46,9 +46,11 @@ class Plot(QWidget):
         super().__init__(parent)
         self.theme: Theme = current_theme()
         self._labels = (x, y)
+        self._letters = 0.0
         self._legend_entries: list[tuple[str, str]] = []
         self.count_axis = CountAxis("bottom")
-        self.canvas = pg.PlotWidget(background=None, enableMenu=False, axisItems={"bottom": self.count_axis})
+        self.axes = {"bottom": self.count_axis, "left": FittedAxis("left")}
+        self.canvas = pg.PlotWidget(background=None, enableMenu=False, axisItems=self.axes)
         self.canvas.setFrameShape(self.canvas.Shape.NoFrame)
         self.canvas.setMouseEnabled(x=False, y=False)
         self.canvas.hideButtons()
@@ -96,6 +98,10 @@ class Plot(QWidget):
         self.remark.setText(text)
         self._make_room()
 
+    def hasHeightForWidth(self) -> bool:
+        """No: its legend wraps, but what stands beside it must not be squeezed for that."""
+        return False
+
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
         self._make_room()
@@ -128,9 +134,10 @@ class Plot(QWidget):
     def set_labels(self, x: str, y: str) -> None:
         """Name the axes anew."""
         self._labels = (x, y)
-        style = {"color": self.theme.muted, "font-size": f"{self.font().pointSizeF() - 0.5:.1f}pt"}
+        font = QFont(self.font())
+        font.setPointSizeF(font.pointSizeF() - 0.5)
         for side, text in zip(("bottom", "left"), self._labels, strict=True):
-            self.canvas.setLabel(side, text, **style)
+            self.axes[side].name_it(text, self.theme.muted, font)
 
     def small_font(self) -> QFont:
         """Of the numbers at the axes."""
@@ -142,18 +149,28 @@ class Plot(QWidget):
         """Take the colours of a theme."""
         self.theme = theme
         self.canvas.setBackground(theme.base)
-        small = self.small_font()
-        for side in ("bottom", "left"):
-            axis = self.canvas.getAxis(side)
+        for axis in self.axes.values():
             axis.setPen(pg.mkPen(theme.border))
             axis.setTextPen(pg.mkPen(theme.muted))
-            axis.setTickFont(small)
-            axis.enableAutoSIPrefix(False)
-        metrics = QFontMetrics(small)
-        self.canvas.getAxis("left").setWidth(metrics.horizontalAdvance("00.0000") + metrics.height())
-        self.canvas.getAxis("left").setGrid(70 if theme.dark else 55)
-        self.set_labels(*self._labels)
+        self.axes["left"].setGrid(70 if theme.dark else 55)
+        self._take_letters()
         self.redraw()
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.FontChange and self.font().pointSizeF() != self._letters:
+            self._take_letters()
+            self.redraw()
+
+    def _take_letters(self) -> None:
+        """At the axes, in the size that the plot has."""
+        self._letters = self.font().pointSizeF()
+        small = self.small_font()
+        for axis in self.axes.values():
+            axis.set_tick_letters(small)
+        metrics = QFontMetrics(small)
+        self.axes["left"].setWidth(metrics.horizontalAdvance("00.0000") + metrics.height())
+        self.set_labels(*self._labels)
 
     def value_at(self, place: QPointF) -> str:  # noqa: ARG002
         """What is drawn at a place of the scene, in words; empty where there is nothing."""

@@ -1,17 +1,53 @@
 """Tables as the window uses them: rows to choose from, the first column taking what room is left."""
 
-from PySide6.QtCore import QEvent, Qt
+from PySide6.QtCore import QEvent, QObject, Qt
 from PySide6.QtGui import QResizeEvent, QShowEvent
 from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QTableView
 
 _LEAST = 70
 
 
+class LetterRows(QObject):
+    """Keeps the rows of a table as high as its letters, whatever size these take.
+
+    Parameters
+    ----------
+    spare
+        Pixels between two lines.
+    lines
+        Of letters in a row.
+    """
+
+    def __init__(self, table: QTableView, spare: int, lines: int = 1) -> None:
+        super().__init__(table)
+        self._table, self._spare, self._lines = table, spare, lines
+        table.installEventFilter(self)
+        self._fit()
+
+    def set_lines(self, lines: int) -> None:
+        """Another number of lines in each row."""
+        self._lines = lines
+        self._fit()
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        if event.type() == QEvent.Type.FontChange:
+            self._fit()
+        return super().eventFilter(watched, event)
+
+    def _fit(self) -> None:
+        height, rows = (
+            self._lines * self._table.fontMetrics().height() + self._spare,
+            self._table.verticalHeader(),
+        )
+        if rows.defaultSectionSize() != height:
+            rows.setDefaultSectionSize(height)
+
+
 class ListTable(QTableView):
     """One row can be chosen; no grid, no row numbers, compact rows."""
 
-    _unfitted = False
-    """Letters have changed while nobody saw the table."""
+    _unfitted = True
+    """Content or letters have changed while nobody saw the table."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -22,7 +58,7 @@ class ListTable(QTableView):
         self.setWordWrap(False)
         self.setTextElideMode(Qt.TextElideMode.ElideMiddle)  # names of a sample differ at their end
         self.verticalHeader().hide()
-        self.verticalHeader().setDefaultSectionSize(self.fontMetrics().height() + 9)
+        LetterRows(self, 9)
         header = self.horizontalHeader()
         header.setHighlightSections(False)
         header.setMinimumSectionSize(30)
@@ -30,28 +66,39 @@ class ListTable(QTableView):
         header.setSectionResizeMode(QHeaderView.ResizeMode.Interactive)
 
     def fit_columns(self) -> None:
-        """All columns as wide as their content, the first one as wide as there is room."""
-        header = self.horizontalHeader()
-        shown = [at for at in range(1, header.count()) if not header.isSectionHidden(at)]
-        for column in shown:
+        """All columns as wide as their content, the first one as wide as there is room; once it is seen."""
+        self._unfitted = not self.isVisible()
+        if self.isVisible():
+            self.measure()
+            self.stretch()
+
+    def measure(self) -> None:
+        """Columns as wide as their content."""
+        for column in self._narrow():
             self.resizeColumnToContents(column)
-        taken = sum(header.sectionSize(column) for column in shown)
+
+    def stretch(self) -> None:
+        """The first column as wide as there is room."""
+        header = self.horizontalHeader()
+        taken = sum(map(header.sectionSize, self._narrow()))
         if header.count():
             header.resizeSection(0, max(_LEAST, self.viewport().width() - taken))
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
-        self.fit_columns()
+        if not self._unfitted:
+            self.stretch()
 
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
-        if event.type() in (QEvent.Type.FontChange, QEvent.Type.StyleChange):
-            self._unfitted = not self.isVisible()
-            if self.isVisible():
-                self.fit_columns()
+        if event.type() == QEvent.Type.FontChange:
+            self.fit_columns()
 
     def showEvent(self, event: QShowEvent) -> None:
         super().showEvent(event)
         if self._unfitted:
-            self._unfitted = False
             self.fit_columns()
+
+    def _narrow(self) -> list[int]:
+        header = self.horizontalHeader()
+        return [at for at in range(1, header.count()) if not header.isSectionHidden(at)]

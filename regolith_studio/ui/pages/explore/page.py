@@ -22,6 +22,8 @@ LIST_WIDTH = 40
 """Of the list of particles at first, in digits."""
 LOW = 620
 """Pixels of height below which the views keep the larger share."""
+PLOTS_HEIGHT, PLOTS_LINES = 300, 15
+"""What plots begin with: pixels, or lines of large letters."""
 
 
 class ExplorePage(PageWidget):
@@ -74,7 +76,8 @@ class ExplorePage(PageWidget):
             self._rows.setSizes([3 * height // 5, height - 3 * height // 5])
 
     def _place(self) -> None:
-        middle = self._rows = stacked([self.triptych, self.plots], [520, 300], stretch=0)
+        high_enough = max(PLOTS_HEIGHT, PLOTS_LINES * self.fontMetrics().height())
+        middle = self._rows = stacked([self.triptych, self.plots], [520, high_enough], stretch=0)
         middle.setObjectName("explore_rows")
         controls = scrolled_column([self.fit, self.coarsening, self.loss])
         parts = [padded(self.particles, 10, 10, 2, 8), padded(middle, 2, 10, 2, 8), controls]

@@ -17,7 +17,7 @@ from regolith_studio.ui.pages.lecture.annealing import AnnealingView
 from regolith_studio.ui.pages.lecture.degrees import DegreesView
 from regolith_studio.ui.pages.lecture.field import FieldView
 from regolith_studio.ui.pages.lecture.transport import Transport
-from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.theme import Theme, current_theme, letters_share
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.choice_box import ChoiceBox
 
@@ -34,6 +34,7 @@ class LecturePage(PageWidget):
         super().__init__()
         self.setObjectName("lecture")
         self._context, self._session = context, context.session
+        self._shown_size = 0.0
         self._letters = float(context.recall("letters", LETTERS))
         self._made_for: dict[str, tuple[Any, ...]] = {}
         self._seed = 0
@@ -69,6 +70,9 @@ class LecturePage(PageWidget):
     def set_theme(self, theme: Theme) -> None:
         for lesson in (self.annealing, self.degrees, self.field):
             lesson.set_theme(theme)
+        if self._shown_size not in (0.0, self._size()):  # letters of the whole window have changed
+            for _ in self._show_letters():
+                pass
 
     def commands(self) -> Mapping[str, Callable[..., object]]:
         return {
@@ -247,10 +251,14 @@ class LecturePage(PageWidget):
 
     def _show_letters(self) -> Iterator[None]:
         """By one style sheet for the whole page: fonts of widgets are overruled by that of the program."""
-        size = QGuiApplication.font().pointSizeF() * self._letters
-        self.setStyleSheet(f"* {{ font-size: {size:.1f}pt; }}")
+        self._shown_size = self._size()
+        self.setStyleSheet(f"* {{ font-size: {self._shown_size:.1f}pt; }}")
         yield from polish(self)
         self.set_theme(current_theme())
+
+    def _size(self) -> float:
+        """Of letters in points. What is large in the whole window is not enlarged twice: plots need room."""
+        return QGuiApplication.font().pointSizeF() * self._letters / min(letters_share(), LETTERS)
 
     def _place(self) -> None:
         titles = (tr("Annealing"), tr("Degrees of the fit"), tr("Random field"))

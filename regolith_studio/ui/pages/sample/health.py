@@ -26,6 +26,7 @@ from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.labels import WholeLabel
 from regolith_studio.ui.widgets.number_text import short_number
+from regolith_studio.ui.widgets.table import LetterRows
 
 FINDINGS = (
     ("bodies", mark("Bodies"), mark("Parts that hang together; a particle has one")),
@@ -121,7 +122,7 @@ class HealthPanel(QWidget):
         table.setSelectionMode(QAbstractItemView.SelectionMode.NoSelection)
         table.setShowGrid(False)
         table.verticalHeader().hide()
-        table.verticalHeader().setDefaultSectionSize(table.fontMetrics().height() + 5)
+        LetterRows(table, 5)
         header = table.horizontalHeader()
         header.setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
         header.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)

@@ -23,6 +23,7 @@ from regolith_studio.session.sample_table import UNITS, has_weights, statistics_
 from regolith_studio.studies.tables import Column, Table
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.number_text import short_number
+from regolith_studio.ui.widgets.table import LetterRows
 
 _WEIGHTING_LABELS = {"number": mark("each counts once"), "volume": mark("weighted by volume")}
 _SHORT = {
@@ -70,7 +71,7 @@ class StatisticsPanel(QWidget):
         self.table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
         self.table.setShowGrid(False)
         self.table.verticalHeader().hide()
-        self.table.verticalHeader().setDefaultSectionSize(self.table.fontMetrics().height() + 8)
+        LetterRows(self.table, 8)
         self.table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
         row_ = QHBoxLayout()
         row_.addWidget(QLabel(tr("Statistics of")))

@@ -245,10 +245,12 @@ class SampleTable(ListTable):
                 self.selectionModel().select(index, flags.Select | flags.Rows)
         self._quiet = False
 
-    def fit_columns(self) -> None:
-        """Every column as wide as its content."""
+    def measure(self) -> None:
         for column in range(self._proxy.columnCount()):
             self.resizeColumnToContents(column)
+
+    def stretch(self) -> None:
+        """No column: there are more than fit."""
 
     def _entry(self, row: int) -> ParticleEntry:
         return self.model_.entries[self._proxy.mapToSource(self._proxy.index(row, 0)).row()]

@@ -3,7 +3,7 @@
 import dataclasses
 from collections.abc import Sequence
 
-from PySide6.QtCore import QSignalBlocker, Signal
+from PySide6.QtCore import QEvent, QSignalBlocker, Signal
 from PySide6.QtWidgets import QCheckBox, QDoubleSpinBox, QFormLayout, QVBoxLayout, QWidget
 
 from regolith_studio.imaging.extraction import voxel_diameter
@@ -13,7 +13,7 @@ from regolith_studio.jobs.grain_recipe import GrainRecipe
 from regolith_studio.ui.pages.scan.fields import choice
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.labels import heading, remark
-from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
+from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec, align_labels
 
 DENOISE = (
     ("median", mark("Median of 27 voxels")),
@@ -47,6 +47,7 @@ MIN_VOXELS = NumberSpec(
 )  # fmt: skip
 
 _LABEL_WIDTH = 62
+"""Pixels before the sliders, at least."""
 
 
 class SegmentationControls(QWidget):
@@ -78,6 +79,8 @@ class SegmentationControls(QWidget):
         )
         self.opening, self.closing = _slider("opening", OPENING), _slider("closing", CLOSING)
         self.h_maxima, self.least = _slider("h_maxima", H_MAXIMA), _slider("min_voxels", MIN_VOXELS)
+        self._sliders = (self.opening, self.closing, self.h_maxima, self.least)
+        align_labels(self._sliders, _LABEL_WIDTH)
         self.surface = choice("surface", tr("Surface"), SURFACE)
         self.surface.setToolTip(
             tr(
@@ -168,6 +171,11 @@ class SegmentationControls(QWidget):
         if kind == "grey":
             self._show_which()
 
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() in (QEvent.Type.FontChange, QEvent.Type.StyleChange):
+            align_labels(self._sliders, _LABEL_WIDTH)
+
     def _show_level(self, level: float) -> None:
         with QSignalBlocker(self.level):
             self.level.setValue(level)
@@ -203,7 +211,7 @@ class SegmentationControls(QWidget):
             box.currentIndexChanged.connect(self._changed)
         for check in (self.dark, self.split, self.pores, self.border):
             check.toggled.connect(self._changed)
-        for slider in (self.opening, self.closing, self.h_maxima, self.least):
+        for slider in self._sliders:
             slider.valueChanged.connect(lambda _: self._changed())
         self.level.valueChanged.connect(self._changed)
 
@@ -250,7 +258,6 @@ def _check(name: str, words: str, tip: str) -> QCheckBox:
 def _slider(name: str, spec: NumberSpec) -> NumberSlider:
     slider = NumberSlider(spec)
     slider.field.setObjectName(name)
-    slider.label.setFixedWidth(_LABEL_WIDTH)
     slider.slider.setObjectName(f"{name}_slider")
     return slider
 

@@ -11,6 +11,7 @@ from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.heat_table import numbers_table, remark_in_the_middle
+from regolith_studio.ui.widgets.table import LetterRows
 
 ROWS_SHARE = 0.33
 """Of the width, that the names of the rows take at most."""
@@ -23,9 +24,10 @@ class ChangeTable(QWidget):
         super().__init__(parent)
         self._theme, self._headers = current_theme(), headers
         self._study: CoarseningStudy | None = None
-        self.table = numbers_table(tr("Changes of errors in percentage points"), spare=10)
+        self.table = numbers_table(tr("Changes of errors in percentage points"))
         self.table.setTextElideMode(Qt.TextElideMode.ElideNone)
         self.table.setWordWrap(False)
+        LetterRows(self.table, 10)
         self._stack = QStackedLayout(self)
         self._stack.addWidget(remark_in_the_middle(placeholder))
         self._stack.addWidget(self.table)

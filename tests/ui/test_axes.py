@@ -1,0 +1,86 @@
+"""Axes of plots: nothing on them is cut, and their numbers are those of the data."""
+
+import pytest
+from PySide6.QtCore import QPointF
+from PySide6.QtGui import QFont, QFontMetricsF
+
+from regolith_studio.ui.theme import DARK, LIGHT
+from regolith_studio.ui.widgets.bar_plot import BarPlot, BarSeries
+from regolith_studio.ui.widgets.curve_plot import Curve, CurvePlot
+from regolith_studio.ui.widgets.labels import plain_symbol
+
+NAMES = tuple(map(plain_symbol, ("V", "S", "D_min", "D_max", "AR", "CH", "J")))
+TINY = 6.5
+"""Points below which letters of twice the usual size must not fall."""
+
+
+@pytest.fixture
+def curve(shown):
+    plot = CurvePlot("Step", "Relative error of each descriptor [%]", "nothing")
+    plot.set_curves([Curve("one", "#0072b2", (0.0, 1.0, 2.0), (0.2, 0.6, 0.4))])
+    return shown(plot)
+
+
+@pytest.mark.parametrize("points", [9.0, 18.0])
+@pytest.mark.parametrize("height", [130, 200, 500])
+def test_that_the_label_of_an_axis_has_room_on_it_at_any_height(curve, app, points, height):
+    font = QFont(curve.font())
+    font.setPointSizeF(points)
+    curve.setFont(font)
+    curve.resize(300, height)
+    app.processEvents()
+    axis = curve.axes["left"]
+    assert axis.label.boundingRect().width() <= axis.size().height()
+    said = axis.label.toPlainText().strip()
+    assert said == "Relative error of each descriptor [%]" or (said.endswith("…") and height < 500)
+
+
+def test_that_the_numbers_at_an_axis_stay_those_of_the_data_when_theme_and_letters_change(curve, app):
+    axis = curve.axes["left"]
+    large = QFont(curve.font())
+    large.setPointSizeF(15.0)
+    for change in (
+        lambda: curve.set_theme(DARK),
+        lambda: curve.setFont(large),
+        lambda: curve.set_theme(LIGHT),
+    ):
+        change()
+        app.processEvents()
+        values = [value for value in axis.tickValues(*axis.range, 200.0)[0][1] if value > 0]
+        read = axis.tickStrings(values, axis.autoSIPrefixScale * axis.scale, 0.1)
+        assert [float(each) for each in read] == pytest.approx(values)
+
+
+def test_that_large_numbers_at_an_axis_do_not_lie_upon_each_other(curve, app):
+    font = QFont(curve.font())
+    font.setPointSizeF(20.0)
+    curve.setFont(font)
+    curve.resize(400, 160)
+    app.processEvents()
+    axis = curve.axes["left"]
+    (low, high), length = axis.range, axis.size().height()
+    spacing = axis.tickSpacing(low, high, length)[0][0]
+    assert spacing / (high - low) * length >= QFontMetricsF(curve.small_font()).ascent()
+
+
+@pytest.mark.parametrize("points", [9.0, 18.0])
+def test_that_names_below_bars_stay_legible_and_have_room(shown, app, points):
+    plot = shown(BarPlot("Descriptor", "Error [%]", "nothing"))
+    font = QFont(plot.font())
+    font.setPointSizeF(points)
+    plot.setFont(font)
+    plot.set_bars(NAMES, [BarSeries("fit", "#0072b2", (1.0,) * len(NAMES))])
+    plot.resize(330, 300)
+    app.processEvents()
+    axis = plot.axes["bottom"]
+    letters = axis.style["tickFont"]
+    assert letters.pointSizeF() >= (TINY if points > 9.0 else 6.0)
+    view = axis.linkedView()
+    at = {name: view.mapViewToScene(QPointF(place, 0.0)).x() for place, name in axis._tickLevels[0]}
+    for row in (0, 1):
+        ends = 0.0
+        for name, middle in at.items():
+            if name.startswith("\n") == bool(row):
+                half = QFontMetricsF(letters).horizontalAdvance(name.strip()) / 2
+                assert middle - half >= ends
+                ends = middle + half
