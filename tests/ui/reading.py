@@ -19,6 +19,7 @@ from PySide6.QtWidgets import (
 )
 
 from regolith_studio.ui.views.view_frame import ViewFrame
+from regolith_studio.ui.widgets.choice_box import letters_room
 from regolith_studio.ui.widgets.plot import Plot
 from regolith_studio.ui.widgets.plot_files import plain_text
 
@@ -144,6 +145,9 @@ def cut_off(root):
                     wanted = widget.fontMetrics().horizontalAdvance(longest)
                     if widget.heightForWidth(widget.width()) > widget.height() + 1:
                         found.append((name, text, "too low"))
+            case QComboBox() if widget.currentText():
+                text = widget.currentText()
+                wanted = widget.fontMetrics().horizontalAdvance(text) + widget.width() - letters_room(widget)
             case QAbstractButton() if widget.text():
                 text = widget.text()
                 letters = widget.fontMetrics().horizontalAdvance(text.replace("&", "")) + 12

@@ -17,7 +17,7 @@ from regolith_studio.session.session import Session
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.lecture import PAGE, words
-from regolith_studio.ui.theme import DARK
+from regolith_studio.ui.theme import DARK, LIGHT, choose_letters
 from regolith_studio.ui.widgets import formula
 from regolith_studio.ui.widgets.formula import FormulaLabel, outline
 from regolith_studio.ui.widgets.toast import Toast
@@ -168,6 +168,28 @@ def test_that_letters_and_formulas_grow_and_the_theme_changes(page, wait):
     assert page.annealing.rule.sizeHint().height() > high
     page.set_theme(DARK)
     assert page._context.recall("letters") > 1.5
+
+
+def test_that_letters_that_are_large_everywhere_are_not_enlarged_twice(page, app):
+    sentence = page.annealing.sentence
+    usual = sentence.font().pointSizeF()
+    assert usual > app.font().pointSizeF()
+    try:
+        choose_letters(200)
+        page.set_theme(LIGHT)
+        assert sentence.font().pointSizeF() == pytest.approx(app.font().pointSizeF(), abs=0.1)
+    finally:
+        choose_letters(None)
+    page.set_theme(LIGHT)
+    assert sentence.font().pointSizeF() == pytest.approx(usual)
+
+
+def test_that_a_formula_has_its_height_beside_a_plot_that_is_asked_to_be_higher(page, wait):
+    """Its legend wraps, so Qt took the height that it likes for the least that it needs."""
+    page.tabs.setCurrentWidget(page.field)
+    formula = page.field.formula
+    wait(lambda: formula.sizeHint().height() > 2 * formula.fontMetrics().height())
+    wait(lambda: formula.height() == formula.sizeHint().height(), 5.0)
 
 
 def test_that_a_formula_is_drawn_in_ink_and_shrinks_to_its_room(shown, wait):

@@ -11,6 +11,8 @@ from regolith_studio.errors import InputError
 from regolith_studio.session.own_presets import OwnPresets
 from regolith_studio.session.recipe import Recipe
 from regolith_studio.ui.panels.loss import LossPanel
+from regolith_studio.ui.widgets.choice_box import letters_room
+from regolith_studio.ui.widgets.preset_bar import PresetBar, PresetEntry
 from regolith_studio.ui.widgets.preset_form import PresetForm
 
 MINE = LossWeights.of(volume=0.5, sphericity=1.25, jaccard_distance=7.0)
@@ -124,3 +126,35 @@ def test_that_materials_have_the_papers_preset_and_own_ones(shown):
     assert heard[-1] == ContactParameters()
     form.delete("own:Glass")
     assert labels(form.bar.box) == ["Table 1"]
+
+
+def test_that_the_buttons_of_a_narrow_list_of_presets_stand_below_it(shown, app):
+    bar = PresetBar("test", "Preset")
+    bar.set_entries([PresetEntry("long", "All descriptors and the overlap"), PresetEntry("short", "All")])
+    bar.show_state("short", False)
+    shown(bar)
+    letters = bar.box.fontMetrics()
+    for width in (240, 600, 240):
+        bar.resize(width, bar.sizeHint().height())
+        app.processEvents()
+        beside = bar.reset.y() < bar.box.geometry().bottom()
+        assert beside is (width == 600)
+        assert letters_room(bar.box) >= min(letters.horizontalAdvance("All descriptors and the overlap"), 200)
+        assert all(bar.rect().contains(each.geometry()) for each in (bar.box, bar.reset, bar.more))
+
+
+def test_that_a_preset_with_little_room_still_shows_that_it_was_modified(shown, app):
+    """The same dots are drawn behind letters that have room for all of it."""
+    bar = PresetBar("test", "Preset")
+    bar.set_entries([PresetEntry("one", "All descriptors and the overlap of both bodies")])
+    bar.show_state("one", True)
+    bar.resize(200, 70)
+    shown(bar)
+    app.processEvents()
+    room = letters_room(bar.box)
+    shortened = bar.box.fontMetrics().elidedText(bar.box.currentText(), Qt.TextElideMode.ElideMiddle, room)
+    assert shortened.endswith("ified)")
+    assert "…" in shortened
+    drawn = bar.box.grab().toImage()
+    bar.set_entries([PresetEntry("one", shortened)])
+    assert bar.box.grab().toImage() == drawn

@@ -1,22 +1,53 @@
-"""A box that offers some keys by their labels."""
+"""Boxes that offer some keys by their labels, and end in dots where a label has no room."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
-from PySide6.QtCore import QSignalBlocker
-from PySide6.QtWidgets import QComboBox
+from PySide6.QtCore import QEvent, QRect, QSignalBlocker, Qt
+from PySide6.QtGui import QPaintEvent, QResizeEvent
+from PySide6.QtWidgets import (
+    QAbstractButton,
+    QComboBox,
+    QGridLayout,
+    QStyle,
+    QStyleOptionComboBox,
+    QStylePainter,
+    QWidget,
+)
 
 from regolith_studio.ui.translation import tr
 
+MARGIN = 2
+"""Pixels that styles leave free before a label."""
 
-class ChoiceBox(QComboBox):
+
+class ElidedBox(QComboBox):
+    """May be narrower than its labels: dots stand for what has no room, in the middle or at the end."""
+
+    def __init__(self, elide: Qt.TextElideMode = Qt.TextElideMode.ElideRight) -> None:
+        super().__init__()
+        self._elide = elide
+        self.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
+        self.setMinimumContentsLength(12)
+
+    def paintEvent(self, event: QPaintEvent) -> None:  # noqa: ARG002
+        option = QStyleOptionComboBox()
+        self.initStyleOption(option)
+        option.currentText = self.fontMetrics().elidedText(
+            self.currentText(), self._elide, letters_room(self)
+        )
+        painter = QStylePainter(self)
+        painter.drawComplexControl(QStyle.ComplexControl.CC_ComboBox, option)
+        painter.drawControl(QStyle.ControlElement.CE_ComboBoxLabel, option)
+        painter.end()
+
+
+class ChoiceBox(ElidedBox):
     """One of `entries`, which map keys to labels that are translated; may be narrower than the longest."""
 
     def __init__(self, name: str, accessible: str, entries: Mapping[str, str]) -> None:
         super().__init__()
         self.setObjectName(name)
         self.setAccessibleName(accessible)
-        self.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
-        self.setMinimumContentsLength(12)
         for key, label in entries.items():
             words = tr(label)
             self.addItem(words[:1].upper() + words[1:], key)
@@ -30,3 +61,65 @@ class ChoiceBox(QComboBox):
         """Show another key, and tell nobody."""
         with QSignalBlocker(self):
             self.setCurrentIndex(self.findData(key))
+
+
+class FoldingRow(QWidget):
+    """A box with buttons behind it; they stand below it where the box would have no room for its labels.
+
+    Parameters
+    ----------
+    box
+        Takes what room there is.
+    buttons
+        From left to right.
+    spacing
+        Pixels between two of them.
+    """
+
+    def __init__(self, box: QComboBox, buttons: Sequence[QAbstractButton], spacing: int = 4) -> None:
+        super().__init__()
+        self._box, self._buttons = box, tuple(buttons)
+        self._folded: bool | None = None
+        self._grid = QGridLayout(self)
+        self._grid.setContentsMargins(0, 0, 0, 0)
+        self._grid.setSpacing(spacing)
+        self._grid.setColumnStretch(0, 1)
+        self._needed = 0
+        self.refold()
+
+    def refold(self) -> None:
+        """Look anew what is needed, because there are other labels."""
+        metrics = self._box.fontMetrics()
+        labels = [self._box.itemText(row) for row in range(self._box.count())]
+        widest = max(map(metrics.horizontalAdvance, labels), default=0)
+        wide = (min(button.sizeHint().width(), button.maximumWidth()) for button in self._buttons)
+        behind = sum(wide) + len(self._buttons) * self._grid.spacing()
+        self._needed = widest + self._box.width() - letters_room(self._box) + behind
+        self._place()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._place()
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() in (QEvent.Type.FontChange, QEvent.Type.StyleChange):
+            self.refold()
+
+    def _place(self) -> None:
+        folded = self.width() < self._needed
+        if folded != self._folded:
+            self._folded = folded
+            columns = len(self._buttons)
+            self._grid.addWidget(self._box, 0, 0, 1, 1 + columns * folded)
+            for column, button in enumerate(self._buttons, start=1):
+                self._grid.addWidget(button, int(folded), column)
+
+
+def letters_room(box: QComboBox) -> int:
+    """Pixels that a box has for its label."""
+    option = QStyleOptionComboBox()
+    box.initStyleOption(option)
+    option.rect = QRect(0, 0, box.width(), box.height())
+    style, part = box.style(), QStyle.SubControl.SC_ComboBoxEditField
+    return style.subControlRect(QStyle.ComplexControl.CC_ComboBox, option, part, box).width() - MARGIN

@@ -3,11 +3,12 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from PySide6.QtCore import QSignalBlocker, Qt, Signal
+from PySide6.QtCore import QEvent, QSignalBlocker, Qt, Signal
 from PySide6.QtGui import QAction
-from PySide6.QtWidgets import QComboBox, QHBoxLayout, QInputDialog, QMenu, QPushButton, QToolButton, QWidget
+from PySide6.QtWidgets import QInputDialog, QMenu, QPushButton, QToolButton, QVBoxLayout, QWidget
 
 from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.widgets.choice_box import ElidedBox, FoldingRow
 
 MODIFIED = mark("{preset} (modified)")
 
@@ -49,14 +50,11 @@ class PresetBar(QWidget):
     def __init__(self, name: str, accessible: str, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._entries: tuple[PresetEntry, ...] = ()
-        self.box = QComboBox()
+        self.box = ElidedBox(Qt.TextElideMode.ElideMiddle)  # the mark at the end must be seen
         self.box.setObjectName(name)
         self.box.setAccessibleName(accessible)
-        self.box.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
-        self.box.setMinimumContentsLength(12)
         self.reset = QPushButton(tr("Reset"))
         self.reset.setToolTip(tr("Back to the values of the preset"))
-        self.reset.setMaximumWidth(self.reset.fontMetrics().horizontalAdvance(self.reset.text()) + 16)
         self.more = QToolButton()
         self.more.setText("⋯")
         self.more.setObjectName(f"{name}_more")
@@ -64,12 +62,11 @@ class PresetBar(QWidget):
         self.more.setToolTip(tr("Save or delete a preset of your own"))
         self.more.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
         self.more.setMenu(self._menu())
-        row = QHBoxLayout(self)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(4)
-        row.addWidget(self.box, 1)
-        row.addWidget(self.reset)
-        row.addWidget(self.more)
+        self._make_room()
+        self._row = FoldingRow(self.box, (self.reset, self.more))
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(self._row)
         self.box.activated.connect(lambda _: self.chosen.emit(self.current()))
         self.reset.clicked.connect(self.resetRequested)
 
@@ -87,6 +84,7 @@ class PresetBar(QWidget):
             for row, entry in enumerate(self._entries):
                 self.box.addItem(entry.label, entry.key)
                 self.box.setItemData(row, entry.tip, Qt.ItemDataRole.ToolTipRole)
+        self._row.refold()
 
     def show_state(self, key: str, modified: bool) -> None:
         """Mark the preset that the values come from, and whether they have moved since."""
@@ -99,6 +97,16 @@ class PresetBar(QWidget):
         self.reset.setEnabled(modified)
         own = any(entry.own and entry.key == key for entry in self._entries)
         self.delete.setEnabled(own)
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() in (QEvent.Type.FontChange, QEvent.Type.StyleChange):
+            self._make_room()
+            self._row.refold()
+
+    def _make_room(self) -> None:
+        """The button is no wider than its word: the list needs what is left."""
+        self.reset.setMaximumWidth(self.reset.fontMetrics().horizontalAdvance(self.reset.text()) + 16)
 
     def ask_name(self) -> None:
         """Ask under which name the present values shall be kept."""

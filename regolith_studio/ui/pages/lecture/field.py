@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QPushButton, QVBoxLayout, QWidget
 
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.jobs.events import Job
@@ -19,7 +19,7 @@ from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.camera_link import CameraLink
 from regolith_studio.ui.views.factory import make_view
 from regolith_studio.ui.views.view_frame import ViewFrame
-from regolith_studio.ui.widgets.choice_box import ChoiceBox
+from regolith_studio.ui.widgets.choice_box import ChoiceBox, FoldingRow
 from regolith_studio.ui.widgets.formula import FormulaLabel
 from regolith_studio.ui.widgets.labels import remark
 from regolith_studio.ui.widgets.spectrum_editor import SpectrumEditor
@@ -147,11 +147,7 @@ class FieldView(QWidget):
         column = QVBoxLayout(said)
         column.setContentsMargins(10, 6, 6, 6)
         column.setSpacing(10)
-        row = QHBoxLayout()
-        row.addWidget(self.material, 1)
-        row.addWidget(self.reset)
-        row.addWidget(self.another)
-        column.addLayout(row)
+        column.addWidget(FoldingRow(self.material, (self.reset, self.another), spacing=10))
         column.addWidget(self.sentence)
         column.addWidget(self.formula)
         column.addWidget(self.spectrum, 1)

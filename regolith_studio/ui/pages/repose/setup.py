@@ -22,6 +22,7 @@ from regolith_studio.dem.evaluation.settings import EvaluationSettings
 from regolith_studio.errors import InputError
 from regolith_studio.jobs.repose import ReposeOrder
 from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.widgets.choice_box import ElidedBox
 from regolith_studio.ui.widgets.collapsible import Collapsible
 from regolith_studio.ui.widgets.labels import ElidedLabel, heading, remark
 from regolith_studio.ui.widgets.preset_form import PresetForm
@@ -264,10 +265,9 @@ def _button(text: str, name: str, tip: str) -> QPushButton:
 
 
 def _choice(entries: Mapping[str, str], name: str, spoken: str) -> QComboBox:
-    box = QComboBox()
+    box = ElidedBox()
     box.setObjectName(name)
     box.setAccessibleName(spoken)
-    box.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
     box.setMinimumContentsLength(10)
     for text, data in entries.items():
         box.addItem(tr(text), data)
