@@ -12,7 +12,7 @@ from regolith_studio.resources import resource
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.ui.theme import current_theme
 from regolith_studio.ui.translation import tr
-from regolith_studio.ui.widgets.labels import heading, remark
+from regolith_studio.ui.widgets.labels import heading, remark, with_subscripts
 
 TOUR_SEEN = "tour_seen"
 """In the preferences of the window: that the tour need not start by itself any more."""
@@ -86,8 +86,8 @@ class Tour(QWidget):
         self._at = max(0, number)
         step = self._steps[self._at]
         self._go(step.page)
-        self._title.setText(step.title)
-        self._text.setText(step.text)
+        self._title.setText(with_subscripts(step.title))
+        self._text.setText(with_subscripts(step.text))
         self._count.setText(tr("{at} of {total}", at=self._at + 1, total=len(self._steps)))
         self.back.setEnabled(self._at > 0)
         self.next.setText(tr("Done") if self._at == len(self._steps) - 1 else tr("Next"))

@@ -2,7 +2,7 @@
 
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
-from regolith_studio.ui.widgets.labels import WholeLabel
+from regolith_studio.ui.widgets.labels import WholeLabel, with_subscripts
 
 WORDS = "In each step one plane is moved at random, and the move is taken or not. " * 3
 
@@ -22,3 +22,9 @@ def test_that_a_whole_label_has_all_its_lines_where_there_is_no_room_for_them(ap
     app.processEvents()
     assert label.height() >= label.heightForWidth(label.width()) > 12 * label.fontMetrics().height()
     around.deleteLater()
+
+
+def test_that_a_sentence_gets_real_subscripts_and_is_left_alone_without_symbols():
+    assert with_subscripts("a higher l_max comes closer") == "a higher l<sub>max</sub> comes closer"
+    assert with_subscripts("D_min < 2 & l_max") == "D<sub>min</sub> &lt; 2 &amp; l<sub>max</sub>"
+    assert with_subscripts("flat S<0.8, file sand_max_3.stl") == "flat S<0.8, file sand_max_3.stl"

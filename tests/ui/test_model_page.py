@@ -291,7 +291,7 @@ def test_that_the_outcome_of_a_judgement_is_told_in_german(opened, speaking):
     page.judgement.setValue({"splits": 1, "repeats": 2, "all_models": False})
     page.judge()
     words = page.judgement.notes.text()
-    assert words.startswith("30 gemessene Partikel bei l_max = 4, 0 ausgelassen;")
+    assert words.startswith("30 gemessene Partikel bei l<sub>max</sub> = 4, 0 ausgelassen;")
     assert words.endswith("1 Teilung, 2-mal 20 Ziehungen je Fit, Startwert 0.")
     wanted = {page.judgement.tables["targets"].item(row, 3).text().split()[0] for row in range(3)}
     assert wanted <= {"mindestens", "höchstens"}

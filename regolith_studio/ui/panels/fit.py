@@ -13,7 +13,7 @@ from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.choice_box import ChoiceBox
 from regolith_studio.ui.widgets.collapsible import Collapsible
-from regolith_studio.ui.widgets.labels import heading, remark
+from regolith_studio.ui.widgets.labels import heading, remark, with_subscripts
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
 
 L_MAX = NumberSpec(
@@ -111,7 +111,7 @@ class FitPanel(QWidget):
                     volume=fit.unrepresentable_volume_share,
                 )
             )
-        self.warnings.setText(" ".join(map(retold, fit.warnings)))
+        self.warnings.setText(with_subscripts(" ".join(map(retold, fit.warnings))))
         self.warnings.setVisible(bool(fit.warnings))
 
     def _form(self) -> QWidget:

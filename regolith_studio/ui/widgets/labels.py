@@ -8,6 +8,7 @@ from PySide6.QtGui import QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QLabel, QSizePolicy, QWidget
 
 _TAG = re.compile(r"(<[^<>]*>)")
+_SYMBOL = re.compile(r"\b([lDA])_(min|max|l)\b")
 _SUBSCRIPT = re.compile(r"([A-Za-zΨ])_([A-Za-z0-9]+)")
 
 
@@ -19,6 +20,12 @@ def rich_symbol(text: str) -> str:
 def plain_symbol(text: str) -> str:
     """A symbol such as ``D_min`` where no subscript can be set: ``Dmin``."""
     return _SUBSCRIPT.sub(r"\1\2", text)
+
+
+def with_subscripts(words: str) -> str:
+    """A sentence in which symbols have real subscripts: rich text if there are any, as it is otherwise."""
+    rich, count = _SYMBOL.subn(r"\1<sub>\2</sub>", html.escape(words, quote=False))
+    return rich if count else words
 
 
 def unbroken(rich: str) -> str:

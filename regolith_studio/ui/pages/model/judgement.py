@@ -29,7 +29,7 @@ from regolith_studio.ui.layout import tabs
 from regolith_studio.ui.pages.model.table_view import TableView
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.translation.sentences import retold
-from regolith_studio.ui.widgets.labels import remark
+from regolith_studio.ui.widgets.labels import remark, with_subscripts
 from regolith_studio.ui.widgets.picture_label import PictureLabel
 from regolith_studio.ui.widgets.study_frame import StudyFrame
 
@@ -174,7 +174,7 @@ class JudgementPanel(QWidget):
                 if column:
                     item.setTextAlignment(NUMBERS)
                 self.ranking.setItem(row, column, item)
-        self.notes.setText(retold(table.notes[0]))
+        self.notes.setText(with_subscripts(retold(table.notes[0])))
 
     def _options(self) -> QHBoxLayout:
         row = QHBoxLayout()
