@@ -8,6 +8,7 @@ from PySide6.QtWidgets import QApplication, QWidget
 
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.ui.dialogs.preferences import LETTERS, PreferencesDialog
+from regolith_studio.ui.keyboard_focus import KeyboardFocus
 from regolith_studio.ui.theme import apply_letters, choose_letters, choose_theme
 
 
@@ -27,6 +28,7 @@ class Looks(QObject):
     def __init__(self, preferences: Preferences, apply: Callable[[], None], window: QWidget) -> None:
         super().__init__(window)
         self._preferences, self._apply, self._window = preferences, apply, window
+        self.focus = KeyboardFocus(self)
         self._take()
         apply_letters(cast(QApplication, QApplication.instance()))
 

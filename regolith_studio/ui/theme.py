@@ -200,7 +200,7 @@ QFrame[role="sidebar"] {{ background: {theme.base}; border-right: 1px solid {the
 QFrame[role="sidebar"] QToolButton {{ padding: 6px 2px 4px 2px; border-radius: 5px; color: {theme.muted};
     border: 1px solid transparent; }}
 QFrame[role="sidebar"] QToolButton:hover {{ background: {theme.window}; color: {theme.text}; }}
-QFrame[role="sidebar"] QToolButton:focus {{ border-color: {theme.accent}; }}
+QFrame[role="sidebar"] QToolButton[focused="true"] {{ border-color: {theme.accent}; }}
 QFrame[role="sidebar"] QToolButton:checked {{ background: {theme.selected}; color: {theme.text}; }}
 *[role="heading"] {{ font-weight: 600; }}
 *[role="remark"] {{ color: {theme.muted}; }}
@@ -211,7 +211,7 @@ QFrame[role="toast"] {{ background: {theme.raised}; border: 1px solid {theme.bad
 QFrame[role="toast"][mood="note"] {{ border-color: {theme.accent}; }}
 QTableView {{ border: 1px solid {theme.border}; border-radius: 5px; gridline-color: transparent;
     selection-background-color: {theme.selected}; selection-color: {theme.text}; }}
-QTableView:focus {{ border-color: {theme.accent}; }}
+QTableView[focused="true"] {{ border-color: {theme.accent}; }}
 QTableCornerButton::section {{ background: {theme.window}; border: none;
     border-bottom: 1px solid {theme.border}; }}
 QHeaderView::section {{ background: {theme.window}; color: {theme.muted}; border: none;
@@ -222,9 +222,9 @@ QTabBar::tab {{ padding: 5px 11px; color: {theme.muted}; border: 1px solid trans
     border-top-left-radius: 5px; border-top-right-radius: 5px; }}
 QTabBar::tab:selected {{ color: {theme.text}; background: {theme.base}; border-color: {theme.border}; }}
 QTabBar::tab:hover {{ color: {theme.text}; }}
-QTabBar::tab:focus {{ color: {theme.accent}; border-color: {theme.accent}; }}
+QTabBar[focused="true"]::tab:focus {{ color: {theme.accent}; border-color: {theme.accent}; }}
 QToolButton[role="fold"] {{ border: 1px solid transparent; border-radius: 4px; padding: 1px 3px; }}
-QToolButton[role="fold"]:focus {{ border-color: {theme.accent}; }}
+QToolButton[role="fold"][focused="true"] {{ border-color: {theme.accent}; }}
 QScrollArea {{ border: none; }}
 QCheckBox::indicator {{ width: 1.05em; height: 1.05em; border: 1px solid {theme.muted}; border-radius: 3px;
     background: {theme.base}; }}

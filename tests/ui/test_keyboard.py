@@ -17,6 +17,7 @@ from PySide6.QtWidgets import (
     QPlainTextEdit,
     QScrollBar,
     QTableView,
+    QWidget,
 )
 
 from regolith_studio.jobs.runners.inline import InlineRunner
@@ -27,6 +28,7 @@ from regolith_studio.ui.dialogs.unit import UnitDialog
 from regolith_studio.ui.main_window import MainWindow
 from regolith_studio.ui.pages import pages
 from regolith_studio.ui.views.camera_mouse import WHEEL_ZOOM
+from regolith_studio.ui.views.view_frame import ViewFrame
 
 KINDS = (
     *(QAbstractButton, QComboBox, QAbstractSpinBox, QAbstractSlider),
@@ -86,9 +88,59 @@ def test_that_every_control_of_every_page_is_named_and_reached_by_tab(window, se
                 )
 
 
+def press(window, key):
+    """A key as the display server tells it: to the window, not to a widget in it."""
+    QTest.keyClick(window.windowHandle(), key)
+    QApplication.processEvents()
+
+
+def point(widget, place=None):
+    """A click as the display server tells it."""
+    window = widget.window()
+    at = widget.mapTo(window, place or widget.rect().center())
+    QTest.mouseClick(window.windowHandle(), Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, at)
+    QApplication.processEvents()
+
+
+def framed(window):
+    """What the window frames because it has the keys."""
+    return [each for each in window.findChildren(QWidget) if each.property("focused")]
+
+
+def test_that_the_focus_is_framed_after_a_key_and_not_after_the_mouse(window, settled):
+    window.go("lecture")
+    settled(window)
+    tabs = window.page.tabs.tabBar()
+    assert framed(window) == []
+    for at in (1, 2, 0):
+        point(tabs, tabs.tabRect(at).center())
+        settled(window)
+        assert window.page.tabs.currentIndex() == at
+        assert framed(window) == []
+    assert not window.testAttribute(Qt.WidgetAttribute.WA_KeyboardFocusChange)
+    found = []
+    while not any(isinstance(each, ViewFrame) for each in found):
+        press(window, Qt.Key.Key_Tab)
+        found += framed(window)
+        assert len(framed(window)) <= 1
+        assert len(found) < STEPS
+    assert tabs in found
+    assert window.testAttribute(Qt.WidgetAttribute.WA_KeyboardFocusChange)
+    frame = framed(window)[0]
+    point(frame.view.widget)
+    assert QApplication.focusWidget() is frame.view.widget
+    assert framed(window) == []
+    assert not window.testAttribute(Qt.WidgetAttribute.WA_KeyboardFocusChange)
+    press(window, Qt.Key.Key_Right)
+    assert framed(window) == [frame]
+    settled(window)
+
+
 def test_that_a_view_shows_that_it_has_the_keys_and_turns_with_them(window, settled):
     frames = window.page.triptych.frames
     view = frames["fit"].view
+    window.page.fit.l_max.field.setFocus()
+    press(window, Qt.Key.Key_Tab)
     view.widget.setFocus(Qt.FocusReason.TabFocusReason)
     assert [name for name, frame in frames.items() if frame.property("focused")] == ["fit"]
     before = np.subtract(view.pose.position, view.pose.focal_point)

@@ -4,9 +4,10 @@ import html
 from collections.abc import Mapping
 
 from PySide6.QtCore import QEvent, Qt, Signal
-from PySide6.QtGui import QGuiApplication, QMouseEvent, QResizeEvent
+from PySide6.QtGui import QMouseEvent, QResizeEvent
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
+from regolith_studio.ui.keyboard_focus import FOCUSED
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.protocol import SceneView
 from regolith_studio.ui.widgets.choice_box import ChoiceBox
@@ -62,8 +63,7 @@ class ViewFrame(QFrame):
         self.partner.hide()
         view.widget.setObjectName(f"scene_{name}")
         self._arrange()
-        self.setProperty("focused", False)
-        QGuiApplication.instance().focusObjectChanged.connect(self._show_focus)  # type: ignore[union-attr]
+        self.setProperty(FOCUSED, False)
 
     def set_colour(self, colour: str) -> None:
         """Colour of the mark before the title: the same as in the plots."""
@@ -126,14 +126,6 @@ class ViewFrame(QFrame):
         super().changeEvent(event)
         if event.type() in (QEvent.Type.FontChange, QEvent.Type.StyleChange):
             self._choose_title()
-
-    def _show_focus(self, now: object) -> None:
-        """Outline the frame while keys turn what it shows."""
-        focused = isinstance(now, QWidget) and self.view.widget in (now, now.parentWidget())
-        if focused != self.property("focused"):
-            self.setProperty("focused", focused)
-            self.style().unpolish(self)
-            self.style().polish(self)
 
     def _choose_title(self) -> None:
         """The longest title that there is room for; the shortest with dots where there is none."""

@@ -1,0 +1,109 @@
+"""A frame about what has the keys, for those who use the keyboard: as ``:focus-visible`` on the web."""
+
+from typing import cast
+
+import shiboken6
+from PySide6.QtCore import QEvent, QObject, Qt
+from PySide6.QtGui import QGuiApplication, QKeyEvent, QWindow
+from PySide6.QtWidgets import QAbstractButton, QApplication, QTabBar, QTableView, QWidget
+
+FOCUSED = "focused"
+"""Property that the style sheet asks for; parts around a widget that have it are framed with it."""
+FRAMED = (QAbstractButton, QTabBar, QTableView)
+"""Kinds of widgets whose frame is the style sheet's; all others are framed by Qt's own style."""
+AROUND = 2
+"""Levels above a widget that may frame it."""
+NOT_YET = (Qt.Key.Key_Shift, Qt.Key.Key_Control, Qt.Key.Key_Alt, Qt.Key.Key_AltGr, Qt.Key.Key_Meta)
+"""Keys that do nothing alone."""
+_MODIFIER = Qt.KeyboardModifier
+CHORDS = _MODIFIER.ControlModifier | _MODIFIER.AltModifier | _MODIFIER.MetaModifier
+"""Commands go by such keys; who gives them may be pointing with the mouse."""
+
+
+class KeyboardFocus(QObject):
+    """Watches keys and mouse of the window that is active, and frames what has the focus since a key.
+
+    A press of the mouse takes the frame away, the next key brings it back.
+    """
+
+    def __init__(self, parent: QObject) -> None:
+        super().__init__(parent)
+        self._keys = False
+        self._marked: tuple[QWidget, ...] = ()
+        self._window: QWindow | None = None
+        app = cast(QApplication, QApplication.instance())
+        app.focusChanged.connect(self._move)
+        app.focusWindowChanged.connect(self._watch)
+
+    @property
+    def by_keys(self) -> bool:
+        """Whether the keyboard was used last."""
+        return self._keys
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        match event.type():
+            case QEvent.Type.MouseButtonPress:
+                self._take(False)
+            case QEvent.Type.KeyPress if _walks(cast(QKeyEvent, event)):
+                self._take(True)
+        return super().eventFilter(watched, event)
+
+    def _watch(self, window: QWindow | None) -> None:
+        if self._window is not None and shiboken6.isValid(self._window):
+            self._window.removeEventFilter(self)
+        self._window = window
+        if window is not None:
+            window.installEventFilter(self)
+
+    def _take(self, keys: bool) -> None:
+        now = QApplication.focusWidget()
+        if keys != self._keys:
+            self._keys = keys
+            self._mark(now)
+        if now is not None and now.window().testAttribute(_BY_KEYS) != keys:  # Qt never takes it back
+            now.window().setAttribute(_BY_KEYS, keys)
+            now.update()
+
+    def _move(self, _old: QWidget | None, now: QWidget | None) -> None:
+        if QGuiApplication.mouseButtons() != Qt.MouseButton.NoButton:  # in a native window within the window
+            self._keys = False
+        self._mark(now)
+
+    def _mark(self, now: QWidget | None) -> None:
+        marked = _framed(now) if now is not None and self._keys else ()
+        for widget in self._marked:
+            if widget not in marked and shiboken6.isValid(widget):
+                _set(widget, False)
+        for widget in marked:
+            if widget not in self._marked:
+                _set(widget, True)
+        self._marked = marked
+
+
+_BY_KEYS = Qt.WidgetAttribute.WA_KeyboardFocusChange
+
+
+def _walks(event: QKeyEvent) -> bool:
+    """Whether who presses this key looks at what has the focus."""
+    if event.key() in (Qt.Key.Key_Tab, Qt.Key.Key_Backtab):
+        return True
+    return event.key() not in NOT_YET and not event.modifiers() & CHORDS
+
+
+def _framed(widget: QWidget) -> tuple[QWidget, ...]:
+    found: list[QWidget] = [widget] if isinstance(widget, FRAMED) else []
+    around = widget.parentWidget()
+    for _ in range(AROUND):
+        if around is None or around.isWindow():
+            break
+        if around.property(FOCUSED) is not None:
+            found.append(around)
+        around = around.parentWidget()
+    return tuple(found)
+
+
+def _set(widget: QWidget, focused: bool) -> None:
+    widget.setProperty(FOCUSED, focused)
+    widget.style().unpolish(widget)
+    widget.style().polish(widget)
+    widget.update()
