@@ -171,9 +171,13 @@ class Page:
     opens: tuple[FileKind, ...] = ()
     prepare: Callable[[], object] | None = None
 
-    def steps(self, context: PageContext) -> Generator[None, None, PageWidget]:
-        """Build the page, step by step; returns it."""
+    def steps(
+        self, context: PageContext, place: Callable[[PageWidget], object] | None = None
+    ) -> Generator[None, None, PageWidget]:
+        """Build the page, step by step; returns it. `place` is told it while it is still empty."""
         widget = self.make(context)
+        if place is not None:
+            place(widget)
         yield
         yield from widget.assemble()
         return widget

@@ -1,6 +1,7 @@
 """The sidebar and the page that is seen; a page is built when it is first visited."""
 
 from collections.abc import Callable
+from functools import partial
 
 from PySide6.QtCore import QTimer, Signal
 from PySide6.QtWidgets import QAbstractItemView, QHBoxLayout, QStackedWidget, QWidget
@@ -27,11 +28,16 @@ class PageStack(QWidget):
     built = Signal(str)
     approached = Signal(str)
     """The mouse, or the keyboard, has come to the button of a page."""
+    ended = Signal()
+    """The window closes; no page will be wanted any more."""
 
     def __init__(self, pages: tuple[Page, ...], context_of: Callable[[str], PageContext]) -> None:
         super().__init__()
         self.pages = {page.key: page for page in pages}
         self.widgets: dict[str, PageWidget] = {}
+        self._ended = False
+        self.load: Callable[[str], object] | None = None
+        """Loads what a page needs in the background and calls :meth:`prepare`; without, that is done here."""
         self._contexts: dict[str, PageContext] = {}
         self._context_of = context_of
         self._current = self._awaited = ""
@@ -71,9 +77,12 @@ class PageStack(QWidget):
         """Show a page as soon as it is built, step by step while the window goes on answering."""
         if key in self.widgets:
             self.go(key)
-        else:
-            self._awaited = key
+            return
+        self._awaited = key
+        if self.load is None:
             self._builder.want(key)
+        else:
+            self.load(key)
 
     def prepare(self, key: str) -> None:
         """Build a page that may be wanted soon, step by step."""
@@ -119,26 +128,34 @@ class PageStack(QWidget):
             widget.release()
 
     def finish(self) -> None:
-        """Let no page be half built, and wait for none."""
+        """The window closes: let no page be half built, and wait for none."""
         self._awaited = ""
+        if not self._ended:
+            self._ended, self.load = True, None
+            self.ended.emit()
         self._builder.finish_all()
         self._unthemed.clear()
         self._theming.stop()
 
     def _steps(self, key: str) -> Steps:
         context = self._contexts[key] = self._context_of(key)
-        widget = yield from self.pages[key].steps(context)
+        widget = yield from self.pages[key].steps(context, partial(self._make_room, key))
         context.wiring.pause()
         yield
         for view in widget.findChildren(QAbstractItemView):
             view.setTabKeyNavigation(False)  # Tab leaves a table; arrows move in it
-        room = self._rooms[key] = Room(widget)
-        self._stack.addWidget(room)
         yield
         yield from polish(widget)
         widget.set_theme(current_theme())
         yield
         return widget
+
+    def _make_room(self, key: str, page: PageWidget) -> None:
+        """Give a page its place while it is empty: its parts take their style one by one, not all at once."""
+        if (abandoned := self._rooms.pop(key, None)) is not None:  # by an error on the way
+            abandoned.deleteLater()
+        self._rooms[key] = Room(page)
+        self._stack.addWidget(self._rooms[key])
 
     def _theme_next(self) -> None:
         if self._unthemed:

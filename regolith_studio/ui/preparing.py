@@ -1,4 +1,4 @@
-"""Loads in the background what pages need: one when the mouse comes near its button, all after a visit.
+"""Loads in the background what pages need: one that is visited or that the mouse comes near, then all.
 
 The one that the mouse comes near is also built, step by step between the events of the window. Not at the
 start: many a visit ends on the page where it began, and what the others need is memory.
@@ -6,7 +6,7 @@ start: many a visit ends on the page where it began, and what the others need is
 
 from PySide6.QtCore import QObject, QTimer
 
-from regolith_studio.jobs.events import Event, Job, Progress, Started, Steps
+from regolith_studio.jobs.events import Event, Failed, Job, Progress, Started, Steps
 from regolith_studio.jobs.runners.protocol import Runner
 from regolith_studio.ui.page import Page
 from regolith_studio.ui.page_stack import PageStack
@@ -34,9 +34,11 @@ class Preparing(QObject):
         self._next = ""
         self._wanted: list[str] = []
         stack.approached.connect(self._want_soon)
+        stack.load = self._want_soon
         self._later = QTimer(self, singleShot=True, interval=PAUSE)
         self._later.timeout.connect(lambda: self.want(*stack.pages))
         stack.changed.connect(lambda _key: self._later.start())
+        stack.ended.connect(self._end)
 
     def want(self, *keys: str) -> None:
         """Prepare these pages before all others that are waiting."""
@@ -51,19 +53,27 @@ class Preparing(QObject):
         if self._later.isActive():
             self._later.start()
 
+    def _end(self) -> None:
+        """Want nothing any more: the runner is closed next."""
+        self._later.stop()
+        self._stack.approached.disconnect(self._want_soon)
+
     def _want_soon(self, key: str) -> None:
         self._next = key
-        self.want(key)
+        if key not in self._ready:
+            self.want(key)
         self._build_next()
 
     def _hear(self, event: Event) -> None:
-        if isinstance(event, Progress):
-            self._build_next()
+        self._build_next()
+        if isinstance(event, Failed) and self._stack.awaited:
+            self._stack.prepare(self._stack.awaited)  # which says what is wrong
 
     def _build_next(self) -> None:
-        if self._next in self._ready:
-            self._stack.prepare(self._next)
-            self._next = ""
+        """What somebody waits for, and the page whose button the mouse is at."""
+        for key in {self._next, self._stack.awaited} & self._ready:
+            self._stack.prepare(key)
+            self._next = "" if key == self._next else self._next
 
 
 def prepared(pages: tuple[Page, ...], ready: set[str]) -> Steps:
