@@ -1,7 +1,9 @@
 """Starts the window: a splash first, then everything that takes time to load."""
 
 import gc
+import os
 import sys
+import threading
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -14,6 +16,8 @@ from regolith_studio.ui.application import make_application
 from regolith_studio.ui.environment import check_display
 from regolith_studio.ui.icons import pixmap
 
+LINGER = 2.0
+"""Seconds that the process may outlive its window."""
 _WIDTH, _HEIGHT, _MARK = 420, 170, 92
 _GROUND, _LETTERS, _QUIET = "#1d2126", "#e4e7eb", "#9aa4b0"
 
@@ -52,9 +56,29 @@ def run(paths: Sequence[str | Path] = (), unit: str | None = None) -> int:
     splash.close()
     gc.enable()
     QTimer.singleShot(0, window, lambda: welcome(window))
+    clock = latest_end()
+    window.pages.ended.connect(clock.start)
     code = app.exec()
+    clock.cancel()
     sys.excepthook = sys.__excepthook__
     return code
+
+
+def latest_end(seconds: float = LINGER) -> threading.Timer:
+    """A clock that, once started and not cancelled, ends the process after so long, whatever its threads do.
+
+    Everything is kept when the window has closed, and what runs has been told to stop; but finding grains in
+    a scan looks up only between steps of some seconds, and the process would outlive its window for as long.
+    """
+
+    def end() -> None:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(0)
+
+    clock = threading.Timer(seconds, end)
+    clock.daemon = True
+    return clock
 
 
 def make_splash() -> QLabel:

@@ -49,6 +49,36 @@ def test_that_the_program_starts_with_a_light_import_and_ends_with_its_window(tm
     assert (tmp_path / "preferences.json").exists()
 
 
+STUCK = """
+import time
+from regolith_studio.jobs.events import Job, Started
+from regolith_studio.ui import app, start
+def stuck():
+    yield Started("a step without an end", 1)
+    time.sleep(100.0)
+def welcome(window):
+    window.session.run("stuck", "stuck", Job(stuck, ()), lambda _result: None)
+    window.preferences.window = {}
+    time.sleep(0.3)
+    window.close()
+    print("closed", flush=True)
+app.welcome = welcome
+from regolith_studio.ui import main_window
+main_window.may_close = lambda *_: True
+start.run()
+"""
+
+
+def test_that_the_process_ends_soon_after_its_window_whatever_runs(tmp_path):
+    surroundings = os.environ | {"QT_QPA_PLATFORM": "offscreen", "REGOLITH_STUDIO_CONFIG": str(tmp_path)}
+    ended = subprocess.run(
+        [sys.executable, "-c", STUCK], env=surroundings, capture_output=True, text=True, timeout=90
+    )
+    assert ended.returncode == 0, ended.stderr
+    assert "Traceback" not in ended.stderr
+    assert (tmp_path / "preferences.json").exists()
+
+
 def test_that_the_splash_shows_mark_and_name(shown):
     splash = shown(make_splash())
     image = splash.pixmap().toImage()
