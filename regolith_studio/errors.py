@@ -157,10 +157,16 @@ def _place(parts: Sequence[str | int]) -> str:
 
 
 def _shown(value: Any) -> str:
-    return _short(json.dumps(value, ensure_ascii=False, default=str))
+    """The beginning of a value, however long it is."""
+    text = ""
+    for part in json.JSONEncoder(ensure_ascii=False, default=str).iterencode(value):
+        text += part[: _LONGEST_VALUE + 1]
+        if len(text) > _LONGEST_VALUE:
+            break
+    return _short(text)
 
 
 def _short(text: str) -> str:
     """In one line, with a question mark for each sign that cannot be shown, cut where it is long."""
-    text = "".join(sign if sign.isprintable() else "?" for sign in text)
+    text = "".join(sign if sign.isprintable() else "?" for sign in text[: _LONGEST_VALUE + 1])
     return text if len(text) <= _LONGEST_VALUE else f"{text[: _LONGEST_VALUE - 1]}…"

@@ -1,6 +1,7 @@
 """A recipe says the same after a round trip, and what is wrong with one is a sentence."""
 
 import json
+import time
 from pathlib import Path
 
 import pytest
@@ -10,6 +11,7 @@ from regolith_studio.errors import FileError, InputError
 from regolith_studio.resources import resource
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.recipe import (
+    LARGEST,
     Outputs,
     Population,
     Recipe,
@@ -123,3 +125,18 @@ def test_that_a_recipe_is_plain_json_that_a_person_can_edit() -> None:
     assert document["inputs"] == ["a.stl"]
     assert document["l_max"] == 10
     assert document["weights"] is None
+
+
+def test_that_a_large_file_that_is_no_recipe_is_refused_at_once(tmp_path):
+    """Its sentence was made of all of it, and cut at the end: 44 s for 90 MB in the window."""
+    document = tmp_path / "large.json"
+    document.write_text("[" + ",".join(["""{"a": [1, 2, 3]}"""] * 400_000) + "]", encoding="utf-8")
+    began = time.process_time()
+    with pytest.raises(FileError, match=r'not \[\{"a": \[1, 2, 3\]\}, \{"a": .*…'):
+        read_recipe(document)
+    assert time.process_time() - began < 4.0
+    with document.open("ab") as file:
+        file.truncate(LARGEST + 1)
+    with pytest.raises(FileError):
+        read_recipe(document)
+    assert time.process_time() - began < 5.0
