@@ -84,3 +84,16 @@ def test_that_names_below_bars_stay_legible_and_have_room(shown, app, points):
                 half = QFontMetricsF(letters).horizontalAdvance(name.strip()) / 2
                 assert middle - half >= ends
                 ends = middle + half
+
+
+def test_that_an_axis_is_drawn_anew_when_its_range_changes(curve, app):
+    """Its numbers stood still while the curve went on."""
+    app.processEvents()
+    curve.grab()
+    before = [axis.picture for axis in curve.axes.values()]
+    curve.set_curves([Curve("one", "#0072b2", (0.0, 100.0, 200.0), (20.0, 60.0, 40.0))])
+    app.processEvents()
+    curve.grab()
+    for axis, old in zip(curve.axes.values(), before, strict=True):
+        assert axis.range == list(axis.linkedView().viewRange()[axis.orientation == "left"])
+        assert axis.picture is not old

@@ -24,6 +24,10 @@ class FittedAxis(pg.AxisItem):  # type: ignore[misc]
     _wanted = ("", "", QFont())
     _shown: tuple[str, float] | None = None
 
+    def __init__(self, orientation: str) -> None:
+        super().__init__(orientation)
+        self.autoSIPrefix = False  # so that another range is drawn without asking for a prefix
+
     def name_it(self, text: str, colour: str, font: QFont) -> None:
         """Label the axis with rich text in a colour, in letters of this font where there is room."""
         self._wanted, self._shown = (text, colour, font), None
