@@ -6,6 +6,7 @@ import signal
 import socket
 import subprocess
 import sys
+import time
 from collections.abc import Iterator
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
@@ -63,6 +64,19 @@ def program(name: str, *options: object) -> "subprocess.Popen[bytes]":
     )
 
 
+def wait_for(port: int, seconds: float = 60.0) -> None:
+    """Until somebody listens: a scheduler takes seconds to load where others are at work."""
+    end = time.monotonic() + seconds
+    while True:
+        try:
+            socket.create_connection(("127.0.0.1", port), 1.0).close()
+        except ConnectionRefusedError:
+            assert time.monotonic() < end, f"nobody listens on port {port}"
+            time.sleep(0.1)
+        else:
+            return
+
+
 @dataclass(frozen=True)
 class Cluster:
     """A scheduler and two workers on this machine."""
@@ -80,6 +94,7 @@ def cluster(scheme: str = "tcp", *tls: object) -> Iterator[Cluster]:
     options = ("--nthreads", 1, "--no-nanny", "--no-dashboard")
     workers = tuple(program("worker", address, *options, *tls) for _ in range(2))
     try:
+        wait_for(int(place[-1]))
         yield Cluster(address, scheduler, workers)
     finally:
         for process in (scheduler, *workers):
