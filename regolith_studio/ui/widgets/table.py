@@ -35,10 +35,8 @@ class LetterRows(QObject):
         return super().eventFilter(watched, event)
 
     def _fit(self) -> None:
-        height, rows = (
-            self._lines * self._table.fontMetrics().height() + self._spare,
-            self._table.verticalHeader(),
-        )
+        height = self._lines * self._table.fontMetrics().height() + self._spare
+        rows = self._table.verticalHeader()
         if rows.defaultSectionSize() != height:
             rows.setDefaultSectionSize(height)
 
