@@ -118,7 +118,7 @@ class EightType(types.Type):  # type: ignore[misc]
 EIGHT = EightType()
 _WORDS = ir.VectorType(ir.IntType(64), WIDTH)
 _FLOATS, _INDEX = ir.VectorType(ir.DoubleType(), WIDTH), ir.IntType(32)
-_COMPRESS = "llvm.experimental.vector.compress.v8f64"
+_COMPRESS = "llvm.experimental.vector.compress.v8i64"
 _NOTHING, _FIRST = ir.Constant(_FLOATS, ir.Undefined), ir.Constant(_INDEX, 0)
 
 
@@ -161,12 +161,16 @@ def _bits(builder: Any, eight: Any) -> Any:
 
 
 def _squeezed(builder: Any, eight: Any, word: Any) -> Any:
-    """The floats whose bits are set to the front, by the instruction where there is one."""
+    """The floats whose bits are set to the front, by the instruction where there is one.
+
+    As words: of floats LLVM 20 aborts for processors without AVX-512.
+    """
     bits = ir.VectorType(ir.IntType(1), WIDTH)
     kept = builder.bitcast(builder.trunc(word, ir.IntType(WIDTH)), bits)
-    kind = ir.FunctionType(_FLOATS, (_FLOATS, bits, _FLOATS))
+    kind = ir.FunctionType(_WORDS, (_WORDS, bits, _WORDS))
     compress = cgutils.get_or_insert_function(builder.module, kind, _COMPRESS)
-    return builder.call(compress, (eight, kept, ir.Constant(_FLOATS, [0.0] * WIDTH)))
+    words = builder.bitcast(eight, _WORDS)
+    return builder.bitcast(builder.call(compress, (words, kept, ir.Constant(_WORDS, [0] * WIDTH))), _FLOATS)
 
 
 def _as_words(builder: Any, eight: Any, mask: int) -> Any:

@@ -1,5 +1,11 @@
 """Eight floats side by side: compiled code against numpy and the rules of single floats."""
 
+import os
+import platform
+import subprocess
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -133,3 +139,23 @@ def test_that_a_tag_changes_a_float_by_less_than_a_billionth_and_can_be_read(tag
         each(given, tag, out)
         assert out[0] == pytest.approx(given, rel=3e-10)
         assert (out[1] == tag).all()
+
+
+@pytest.mark.skipif(platform.machine() not in ("x86_64", "AMD64"), reason="names processors of that kind")
+@pytest.mark.parametrize("processor", ["x86-64", "haswell"])
+def test_that_processors_without_wide_registers_do_the_same(processor: str, tmp_path: Path) -> None:
+    """In its own process: where LLVM cannot make code for a processor it aborts."""
+    others = {"NUMBA_CPU_NAME": processor, "NUMBA_CPU_FEATURES": "", "NUMBA_CACHE_DIR": str(tmp_path)}
+    command = [
+        sys.executable,
+        "-m",
+        "pytest",
+        "-q",
+        "-p",
+        "no:cacheprovider",
+        __file__,
+        "-k",
+        "not processors",
+    ]
+    found = subprocess.run(command, env=os.environ | others, capture_output=True, text=True, timeout=280)
+    assert found.returncode == 0, found.stdout + found.stderr
