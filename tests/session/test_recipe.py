@@ -1,13 +1,12 @@
 """A recipe says the same after a round trip, and what is wrong with one is a sentence."""
 
 import json
-import time
 from pathlib import Path
 
 import pytest
 
 from regolith_studio.coarsening.weights import LossWeights
-from regolith_studio.errors import FileError, InputError
+from regolith_studio.errors import FileError, InputError, _shown
 from regolith_studio.resources import resource
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.recipe import (
@@ -127,16 +126,21 @@ def test_that_a_recipe_is_plain_json_that_a_person_can_edit() -> None:
     assert document["weights"] is None
 
 
-def test_that_a_large_file_that_is_no_recipe_is_refused_at_once(tmp_path):
-    """Its sentence was made of all of it, and cut at the end: 44 s for 90 MB in the window."""
+class Unread:
+    """Must not be looked at."""
+
+    def __str__(self):
+        raise AssertionError("read to the end")
+
+
+def test_that_a_sentence_about_a_large_value_reads_its_beginning_only(tmp_path):
+    """It was made of all of it, and cut at the end: 44 s for 90 MB in the window."""
+    assert _shown([{"a": [1, 2, 3]}] * 50 + [Unread()]).startswith('[{"a": [1, 2, 3]}, {"a":')
     document = tmp_path / "large.json"
-    document.write_text("[" + ",".join(["""{"a": [1, 2, 3]}"""] * 400_000) + "]", encoding="utf-8")
-    began = time.process_time()
+    document.write_text("[" + ",".join(["""{"a": [1, 2, 3]}"""] * 1_000) + "]", encoding="utf-8")
     with pytest.raises(FileError, match=r'not \[\{"a": \[1, 2, 3\]\}, \{"a": .*…'):
         read_recipe(document)
-    assert time.process_time() - began < 4.0
     with document.open("ab") as file:
         file.truncate(LARGEST + 1)
     with pytest.raises(FileError):
         read_recipe(document)
-    assert time.process_time() - began < 5.0
