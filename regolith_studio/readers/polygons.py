@@ -65,18 +65,20 @@ def _ears(points: NDArray[np.float64]) -> NDArray[np.int64]:
     Each search begins where the last ear was. A polygon without ears crosses itself; the rest of it is cut
     fan-wise.
     """
-    flat = _in_its_plane(points)
-    ring, triangles = list(range(len(flat))), []
+    flat, ring = _in_its_plane(points).T.copy(), np.arange(len(points))
+    size, triangles = len(ring), []
     place = misses = trials = 0
-    while len(ring) > 3 and misses < len(ring) and trials < MOST_TRIALS:
-        place, trials = place % len(ring), trials + 1
-        if not _is_ear(flat, ring, place):
+    while size > 3 and misses < size and trials < MOST_TRIALS:
+        place, trials = place % size, trials + 1
+        corners = [place - 1 if place else size - 1, place, (place + 1) % size]
+        if not _is_ear(flat[:, :size], corners):
             place, misses = place + 1, misses + 1
             continue
-        triangles.append((ring[place - 1], ring[place], ring[(place + 1) % len(ring)]))
-        del ring[place]
-        misses = 0
-    rest = [(ring[0], ring[i], ring[i + 1]) for i in range(1, len(ring) - 1)]
+        triangles.append(ring[corners])
+        for row in (ring, *flat):
+            row[place : size - 1] = row[place + 1 : size]
+        size, misses = size - 1, 0
+    rest = [(ring[0], ring[i], ring[i + 1]) for i in range(1, size - 1)]
     return np.array(triangles + rest, dtype=np.int64)
 
 
@@ -89,19 +91,16 @@ def _in_its_plane(points: NDArray[np.float64]) -> NDArray[np.float64]:
     return points[:, [first, second]]
 
 
-def _is_ear(flat: NDArray[np.float64], ring: list[int], place: int) -> bool:
-    """Whether the corner is convex and no other vertex lies in its triangle."""
-    triangle = (ring[place - 1], ring[place], ring[(place + 1) % len(ring)])
-    a, b, c = flat[list(triangle)]
-    if _cross(b - a, c - b) <= 0:
+def _is_ear(flat: NDArray[np.float64], corners: list[int]) -> bool:
+    """Whether the middle one of three corners is convex and no other, shape (2, size), in its triangle."""
+    a, b, c = flat[:, corners].T.tolist()
+    if (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0]) <= 0:
         return False
-    others = flat[[index for index in ring if index not in triangle]]
-    inside = np.ones(len(others), dtype=np.bool_)
+    x, y = flat
+    inside = np.ones(len(x), dtype=np.bool_)
+    inside[corners] = False
     for start, stop in ((a, b), (b, c), (c, a)):
-        edge, spoke = stop - start, others - start
-        inside &= edge[0] * spoke[:, 1] - edge[1] * spoke[:, 0] >= 0
+        left = (stop[0] - start[0]) * (y - start[1])
+        left -= (stop[1] - start[1]) * (x - start[0])
+        inside &= left >= 0
     return not inside.any()
-
-
-def _cross(first: NDArray[np.float64], second: NDArray[np.float64]) -> float:
-    return float(first[0] * second[1] - first[1] * second[0])

@@ -75,6 +75,7 @@ class _Package:
         self._objects: dict[str, dict[str | None, Element]] = {}
         self.root_part = self._find_root()
         self.placements = 0
+        self.faces = 0
 
     def model(self, part: str) -> Element:
         """The root element of a model part."""
@@ -165,7 +166,8 @@ def _place(
     thing = package.object(part, use.get("objectid", ""))
     for mesh in _children(thing, "mesh"):
         points, faces = _triangles(mesh)
-        if sum(len(placed) for _, placed in parts) + len(faces) > MOST_FACES:
+        package.faces += len(faces)
+        if package.faces > MOST_FACES:
             raise FileError(f"has more than {MOST_FACES:,} faces, which is more than can be read.")
         faces = faces[:, ::-1] if np.linalg.det(matrix[:3, :3]) < 0 else faces
         parts.append((points @ matrix[:3, :3].T + matrix[:3, 3], faces))
