@@ -61,8 +61,7 @@ from regolith_studio.geometry.eights import (
     most,
     positive,
     splat,
-    squeeze,
-    store,
+    store_some,
 )
 from regolith_studio.geometry.hull_graph import hull_graph
 from regolith_studio.geometry.inlined import inlined
@@ -257,10 +256,10 @@ def _on_shadow(
         inside &= positive(least(up, down) - sideways)
         bits = ~inside & ((1 << min(WIDTH, last - first)) - 1)
         if bits != 0:
-            store(lanes, WHICH * LANES + count, squeeze(load(records, NUMBER * n + first), bits))
+            store_some(lanes, WHICH * LANES + count, load(records, NUMBER * n + first), bits)
             for c in range(3):
                 direction = load(records, (DIRECTION + c) * n + first)
-                store(lanes, (SIDES + c) * LANES + count, squeeze(direction, bits))
+                store_some(lanes, (SIDES + c) * LANES + count, direction, bits)
             count += count_bits(bits)
         first += WIDTH
     return first, count

@@ -56,8 +56,8 @@ from regolith_studio.geometry.eights import (
     most,
     positive,
     splat,
-    squeeze,
     store,
+    store_some,
 )
 from regolith_studio.geometry.inlined import inlined
 from regolith_studio.geometry.vectors import length, row
@@ -148,7 +148,7 @@ def add_pairs(records: FloatArray, i: int, k: int, bits: int, sieve: Sieve) -> N
     lanes, at, n = sieve.lanes, sieve.filled[PAIRS], records.shape[1]
     for line in range(OF_AN_EDGE):
         store(lanes, (ONE_EDGE + line) * LANES + at, splat(records[line, i]))
-        store(lanes, (OTHER_EDGE + line) * LANES + at, squeeze(load(records, line * n + k), bits))
+        store_some(lanes, (OTHER_EDGE + line) * LANES + at, load(records, line * n + k), bits)
     store(lanes, SECOND * LANES + at, splat(0.0))
     sieve.filled[PAIRS] += count_bits(bits)
 
@@ -211,7 +211,7 @@ def push(stack: int, at: int, bits: int, sieve: Sieve) -> None:
     if bits != 0:
         to = stack * OF_A_PIECE * MOST + sieve.filled[stack]
         for line in range(OF_A_PIECE):
-            store(sieve.waiting, to + line * MOST, squeeze(load(sieve.lanes, line * LANES + at), bits))
+            store_some(sieve.waiting, to + line * MOST, load(sieve.lanes, line * LANES + at), bits)
         sieve.filled[stack] += count_bits(bits)
 
 

@@ -20,6 +20,7 @@ from regolith_studio.geometry.arrays import FloatArray
 numba: Any = import_module("numba.extending")
 types: Any = import_module("numba").types
 cgutils: Any = import_module("numba.core.cgutils")
+registry: Any = import_module("numba.core.registry")
 ir: Any = import_module("llvmlite.ir")
 
 WIDTH = 8
@@ -81,10 +82,10 @@ def tags(eight: Eight) -> Eight:
     return np.array((np.array(eight).view(np.int64) & LAST_BITS).astype(np.float64))
 
 
-def squeeze(eight: Eight, word: int) -> Eight:
-    """The floats whose bits are set, in their order, and then zeros."""
+def store_some(array: FloatArray, at: int, eight: Eight, word: int) -> None:
+    """Write the floats whose bits are set in a row from place `at` on; spoils the rest of eight places."""
     kept = [eight[k] for k in range(WIDTH) if int(word) >> k & 1]
-    return np.array([*kept, *np.zeros(WIDTH - len(kept))])
+    array.reshape(-1)[at : at + WIDTH] = [*kept, *np.full(WIDTH - len(kept), np.nan)]
 
 
 def smallest(eight: Eight) -> float:
@@ -118,7 +119,7 @@ class EightType(types.Type):  # type: ignore[misc]
 EIGHT = EightType()
 _WORDS = ir.VectorType(ir.IntType(64), WIDTH)
 _FLOATS, _INDEX = ir.VectorType(ir.DoubleType(), WIDTH), ir.IntType(32)
-_COMPRESS = "llvm.experimental.vector.compress.v8i64"
+_COMPRESS = "llvm.experimental.vector.compress.v8f64"
 _NOTHING, _FIRST = ir.Constant(_FLOATS, ir.Undefined), ir.Constant(_INDEX, 0)
 
 
@@ -160,17 +161,30 @@ def _bits(builder: Any, eight: Any) -> Any:
     return builder.zext(builder.bitcast(above, ir.IntType(WIDTH)), ir.IntType(64))
 
 
-def _squeezed(builder: Any, eight: Any, word: Any) -> Any:
-    """The floats whose bits are set to the front, by the instruction where there is one.
+def _some_stored(builder: Any, to: Any, eight: Any, word: Any) -> None:
+    """By the instruction for it, or one by one, each in the place of the last if that was not meant."""
+    if _compresses():
+        builder.store(_compressed(builder, eight, word), to, align=8)
+        return
+    place = builder.bitcast(to, ir.DoubleType().as_pointer())
+    for k in range(WIDTH):
+        builder.store(builder.extract_element(eight, ir.Constant(_INDEX, k)), place)
+        bit = builder.and_(builder.lshr(word, ir.Constant(word.type, k)), ir.Constant(word.type, 1))
+        place = builder.gep(place, [bit])
 
-    As words: of floats LLVM 20 aborts for processors without AVX-512.
-    """
+
+def _compresses() -> bool:
+    """Whether code is made for a processor that moves chosen floats to the front."""
+    return "+avx512f" in registry.cpu_target.target_context.codegen().magic_tuple()[2].split(",")
+
+
+def _compressed(builder: Any, eight: Any, word: Any) -> Any:
+    """The floats whose bits are set to the front."""
     bits = ir.VectorType(ir.IntType(1), WIDTH)
     kept = builder.bitcast(builder.trunc(word, ir.IntType(WIDTH)), bits)
-    kind = ir.FunctionType(_WORDS, (_WORDS, bits, _WORDS))
+    kind = ir.FunctionType(_FLOATS, (_FLOATS, bits, _FLOATS))
     compress = cgutils.get_or_insert_function(builder.module, kind, _COMPRESS)
-    words = builder.bitcast(eight, _WORDS)
-    return builder.bitcast(builder.call(compress, (words, kept, ir.Constant(_WORDS, [0] * WIDTH))), _FLOATS)
+    return builder.call(compress, (eight, kept, ir.Constant(_FLOATS, [0.0] * WIDTH)))
 
 
 def _as_words(builder: Any, eight: Any, mask: int) -> Any:
@@ -205,7 +219,7 @@ _TABLE: tuple[_Row, ...] = (
     (total, (EIGHT,), _FLOAT, lambda b, x: _folded(b, x, b.fadd)),
     (tagged, (EIGHT, _WORD), EIGHT, _tagged),
     (tags, (EIGHT,), EIGHT, lambda b, x: b.sitofp(_as_words(b, x, LAST_BITS), _FLOATS)),
-    (squeeze, (EIGHT, _WORD), EIGHT, _squeezed),
+    (store_some, (types.Array, types.Integer, EIGHT, _WORD), types.none, _some_stored),
     (count_bits, (_WORD,), _WORD, lambda b, x: b.ctpop(x)),
     (first_bit, (_WORD,), _WORD, lambda b, x: b.cttz(x, ir.Constant(ir.IntType(1), 1))),
 )

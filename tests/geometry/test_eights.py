@@ -24,8 +24,8 @@ from regolith_studio.geometry.eights import (
     positive,
     smallest,
     splat,
-    squeeze,
     store,
+    store_some,
     tagged,
     tags,
     total,
@@ -112,17 +112,18 @@ def test_that_places_count_along_rows() -> None:
 @kernel
 def front(given: FloatArray, word: int, out: FloatArray) -> int:
     """The chosen floats to the front, and how many."""
-    store(out, 0, squeeze(load(given, 0), word))
+    store_some(out, 1, load(given, 0), word)
     return count_bits(word)
 
 
-@pytest.mark.parametrize("word", [0, 1, 0b10110010, 255])
-def test_that_floats_whose_bits_are_set_come_first_and_zeros_after(word: int) -> None:
-    given, out = np.random.default_rng(word).normal(size=WIDTH), np.full(WIDTH, np.nan)
+@pytest.mark.parametrize("word", [0, 1, 0b10110010, 0b01111111, 255])
+def test_that_floats_whose_bits_are_set_are_stored_in_a_row_within_eight_places(word: int) -> None:
+    given, out = np.random.default_rng(word).normal(size=WIDTH), np.full(WIDTH + 2, 7.0)
     chosen = given[np.unpackbits(np.array([word], np.uint8), bitorder="little") == 1]
     for each in (front, front.py_func):
         assert each(given, word, out) == len(chosen)
-        assert out.tolist() == [*chosen, *[0.0] * (WIDTH - len(chosen))]
+        assert out[1 : 1 + len(chosen)].tolist() == chosen.tolist()
+        assert out[[0, -1]].tolist() == [7.0, 7.0]
 
 
 @kernel
