@@ -5526,6 +5526,11 @@
   </message>
   <message>
    <location filename="ui/translation/sentences.py" />
+   <source>The result has {real} facets instead of {faces}.</source>
+   <translation>Das Ergebnis hat {real} statt {faces} Facetten.</translation>
+  </message>
+  <message>
+   <location filename="ui/translation/sentences.py" />
    <source>The result has {real} facets instead of {faces}: no place was found where the other half-spaces bound a facet and all descriptors are met.</source>
    <translation>Das Ergebnis hat {real} statt {faces} Facetten: Es fand sich kein Ort, wo die übrigen Halbräume eine Facette begrenzen und alle Deskriptoren getroffen sind.</translation>
   </message>

@@ -9,7 +9,7 @@ from regolith_studio.coarsening.bounds import greatest_sphericity
 from regolith_studio.coarsening.coarsen import coarsen
 from regolith_studio.coarsening.core.box_search import FINE_ANGLE
 from regolith_studio.coarsening.exact.in_turn import met_in_turn
-from regolith_studio.coarsening.exact.request import Request
+from regolith_studio.coarsening.exact.request import Request, reason_for
 from regolith_studio.coarsening.loss import loss
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import LossWeights
@@ -114,6 +114,18 @@ def test_that_conditions_are_met_in_turn_and_their_polyhedron_is_as_it_says() ->
     assert problem.asked[0]
     assert problem.wanted[0] == rest.wanted[0]
     assert not problem.asked[1]
+
+
+def test_that_missing_facets_are_named_beside_the_descriptor_that_is_missed() -> None:
+    ball, flat = Target.of(egg(1.0, 0.99, 0.98)), Target.of(egg(1.0, 0.6, 0.3))
+    for target, words in ((ball, "the most is"), (flat, "volume is off by 1 %")):
+        wanted = target.descriptors
+        found = {**wanted, "volume": 1.01 * wanted["volume"]}
+        request = Request.of(target, LossWeights.from_preset("all"))
+        few, all_of_them = (reason_for(target, request, 20, n_real, found) for n_real in (18, 20))
+        assert all_of_them is not None
+        assert words in all_of_them
+        assert few == f"{all_of_them} The result has 18 facets instead of 20."
 
 
 def test_that_a_cube_cannot_have_twenty_facets_and_the_reason_says_that_it_has_six() -> None:

@@ -108,7 +108,7 @@ class Request:
 def reason_for(
     target: Target, request: Request, n_faces: int, n_real: int, found: Mapping[str, float]
 ) -> str | None:
-    """One sentence about the condition that is missed by most, else about facets that are missing.
+    """One sentence about the condition that is missed by most, and one about facets that are missing.
 
     ``None`` where the descriptors `found` meet all conditions to 1e-6 with `n_real` = `n_faces` facets. The
     aspect ratio is named where two diameters are within that and their ratio is not.
@@ -121,13 +121,15 @@ def reason_for(
     if worst is None or missed[worst] <= EXACT:
         return None if n_real == n_faces else facets_reason(n_real, n_faces)
     wanted = target.descriptors["sphericity"]
+    fewer = "" if n_real == n_faces else f" The result has {n_real} facets instead of {n_faces}."
     if "sphericity" in missed and (bound := sphericity_reason(wanted, n_faces)) is not None:
-        return bound
+        return bound + fewer
     rough = worst == "sphericity" and found[worst] > wanted
     advice = ROUGH_ADVICE if rough else ADVICE
     return (
         f"No polyhedron with {n_faces} faces was found that meets all descriptors:"
         f" {_reported(worst, request).replace('_', ' ')} is off by {100 * missed[worst]:.2g} %; {advice}"
+        + fewer
     )
 
 

@@ -38,6 +38,7 @@ SENTENCES = (
         "The result has {real} facets instead of {faces}: no place was found where the other half-spaces"
         " bound a facet and all descriptors are met."
     ),
+    mark("The result has {real} facets instead of {faces}."),
     mark(
         "Not even {faces} faces bring all errors below {limit} %: the least is {error} %, with {count} faces."
     ),
@@ -90,6 +91,10 @@ def retold(sentence: str) -> str:
     """A sentence in the language of the window, with the numbers that it has; itself if it is not known."""
     if (known := tr(sentence)) != sentence:
         return known
+    parts = _AFTER_A_SENTENCE.split(sentence)
+    told = [retold(part) for part in parts] if len(parts) > 1 else parts
+    if all(new != old for new, old in zip(told, parts, strict=True)):
+        return " ".join(told)
     for template, form in _forms():
         if match := form.fullmatch(sentence):
             return tr(template, **{name: _word(value) for name, value in match.groupdict().items()})
@@ -108,6 +113,7 @@ def _word(value: str) -> str:
     return known if known.lower() != value else value
 
 
+_AFTER_A_SENTENCE = re.compile(r"(?<=\.) (?=[A-Z])")
 PLUS = " + "
 PARTS = (mark("size"), mark("box"), mark("sphericity"))
 """Terms of a loss as the study of the trade-off names them."""
