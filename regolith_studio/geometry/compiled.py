@@ -17,12 +17,16 @@ from typing import Any, TypeVar, cast
 
 import numba
 
+from regolith_studio.geometry.quiet_results import return_quietly
+
 F = TypeVar("F", bound=Callable[..., object])
 
 OPTIONS: Any = {"cache": True, "nogil": True, "error_model": "numpy", "fastmath": False}
 
 _PACKAGE = Path(__file__).resolve().parents[1]
-_MARKS = (b"@kernel", b"@leaf", b"@inlined", b"lower_builtin")
+_MARKS = (b"@kernel", b"@leaf", b"@inlined", b"lower_builtin", b"_boxers")
+
+return_quietly()
 
 
 def kernel(function: F) -> F:
