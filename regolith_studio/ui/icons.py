@@ -3,7 +3,7 @@
 from functools import lru_cache
 
 from PySide6.QtCore import QByteArray, QRectF, Qt
-from PySide6.QtGui import QIcon, QPainter, QPixmap
+from PySide6.QtGui import QColor, QIcon, QImage, QPainter, QPixmap
 from PySide6.QtSvg import QSvgRenderer
 
 from regolith_studio.resources import resource
@@ -35,15 +35,23 @@ def pixmap(name: str, colour: str, size: int) -> QPixmap:
     EnvironmentProblem
         If there is no such icon.
     """
-    picture = QPixmap(size, size)
+    coloured, drawing = _drawing(name, size)
+    picture = QImage(drawing)
+    if not coloured:
+        painter = QPainter(picture)
+        painter.setCompositionMode(QPainter.CompositionMode.CompositionMode_SourceIn)
+        painter.fillRect(0, 0, size, size, QColor(colour))
+        painter.end()
+    return QPixmap.fromImage(picture)
+
+
+@lru_cache(maxsize=512)
+def _drawing(name: str, size: int) -> tuple[bool, QImage]:
+    """Whether the icon has colours of its own, and its picture; in black where it has not."""
+    words = resource("icons", f"{name}.svg").read_text(encoding="utf-8")
+    picture = QImage(size, size, QImage.Format.Format_ARGB32_Premultiplied)
     picture.fill(Qt.GlobalColor.transparent)
     painter = QPainter(picture)
-    drawing = _drawing(name).replace("currentColor", colour)
-    QSvgRenderer(QByteArray(drawing.encode())).render(painter, QRectF(0, 0, size, size))
+    QSvgRenderer(QByteArray(words.encode())).render(painter, QRectF(0, 0, size, size))
     painter.end()
-    return picture
-
-
-@lru_cache(maxsize=64)
-def _drawing(name: str) -> str:
-    return resource("icons", f"{name}.svg").read_text(encoding="utf-8")
+    return "currentColor" not in words, picture

@@ -168,7 +168,7 @@ class MainWindow(QMainWindow):
 
     def _apply_theme(self) -> None:
         theme = current_theme()
-        apply_theme(cast(QApplication, QApplication.instance()), theme, self)
+        apply_theme(cast(QApplication, QApplication.instance()), theme, self, self.pages.rooms)
         self.menus.set_theme(theme)
         self.pages.set_theme(theme)
         self.tasks.set_theme(theme)

@@ -10,7 +10,7 @@ from regolith_studio.ui.page import Page, PageContext, PageWidget
 from regolith_studio.ui.page_building import PageBuilder, Steps, polish
 from regolith_studio.ui.room import Room
 from regolith_studio.ui.sidebar import Sidebar
-from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.theme import Theme, current_theme, restyle
 
 
 class PageStack(QWidget):
@@ -43,6 +43,7 @@ class PageStack(QWidget):
         self._current = self._awaited = ""
         self._builder = PageBuilder(self._steps, self._take, self)
         self._unthemed: list[str] = []
+        self._styled = ""
         self._theming = QTimer(self, interval=0)
         self._theming.timeout.connect(self._theme_next)
         self._stack = QStackedWidget()
@@ -108,12 +109,18 @@ class PageStack(QWidget):
         return [sentence for each in self.widgets.values() if (sentence := each.busy())]
 
     def set_theme(self, theme: Theme) -> None:
-        """Take the colours of the present theme: the page that is seen at once, the others one by one."""
+        """Take the colours of the present theme, one page after the other: the one that is seen first."""
         self._bar.set_theme(theme)
-        self._unthemed = [key for key in self.widgets if key != self._current]
-        self._theming.start()
+        self._styled = ""
+        self._unthemed = sorted(self.widgets, key=lambda key: key != self._current)
         if self._current:
-            self.widgets[self._current].set_theme(theme)
+            self._rooms[self._current].setUpdatesEnabled(False)  # not seen in both themes at once
+        self._theming.start()
+
+    @property
+    def rooms(self) -> tuple[Room, ...]:
+        """With a page in each; they take another theme by :meth:`set_theme`."""
+        return tuple(self._rooms.values())
 
     def let_go(self) -> None:
         """Let hidden pages forget particles that have been closed."""
@@ -138,6 +145,7 @@ class PageStack(QWidget):
         self._theming.stop()
 
     def _steps(self, key: str) -> Steps:
+        begun = current_theme()
         context = self._contexts[key] = self._context_of(key)
         widget = yield from self.pages[key].steps(context, partial(self._make_room, key))
         context.wiring.pause()
@@ -146,6 +154,8 @@ class PageStack(QWidget):
             view.setTabKeyNavigation(False)  # Tab leaves a table; arrows move in it
         yield
         yield from polish(widget)
+        if current_theme() != begun:  # what was polished before has the colours of then
+            restyle(widget)
         widget.set_theme(current_theme())
         yield
         return widget
@@ -158,15 +168,23 @@ class PageStack(QWidget):
         self._stack.addWidget(self._rooms[key])
 
     def _theme_next(self) -> None:
-        if self._unthemed:
-            self._theme(self._unthemed[0])
-        else:
+        """Style and plots of a page in two turns."""
+        if not self._unthemed:
             self._theming.stop()
+        elif self._styled == self._unthemed[0]:
+            self._theme(self._styled)
+        else:
+            self._styled = self._unthemed[0]
+            restyle(self._rooms[self._styled])
 
     def _theme(self, key: str) -> None:
         if key in self._unthemed:
             self._unthemed.remove(key)
+            if self._styled != key:
+                restyle(self._rooms[key])
+            self._styled = ""
             self.widgets[key].set_theme(current_theme())
+            self._rooms[key].setUpdatesEnabled(True)
 
     def _take(self, key: str, widget: PageWidget) -> None:
         self.widgets[key] = widget

@@ -1,8 +1,9 @@
 """How the window looks: light or dark as the system says, one palette and one style sheet for all of it."""
 
+from collections.abc import Container
 from dataclasses import dataclass
 
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QObject, Qt
 from PySide6.QtGui import QColor, QGuiApplication, QPalette
 from PySide6.QtWidgets import QApplication, QWidget
 
@@ -120,17 +121,33 @@ def choose_letters(percent: object) -> None:
     _letters[0] = min(max(float(percent), SMALLEST), LARGEST) if known else USUAL  # type: ignore[arg-type]
 
 
-def apply_theme(app: QApplication, theme: Theme, window: QWidget) -> None:
+def apply_theme(app: QApplication, theme: Theme, window: QWidget, later: Container[QObject] = ()) -> None:
     """Give the whole application a theme, and letters of the chosen size.
 
     The style sheet is the window's: one of the application takes five times as long to reach all widgets.
     What widgets ask for before they have their place in the window is the application's, and never changes.
     A font of the application does not reach widgets under a style sheet that is there already: the sheet
-    follows it, and names the size so that it is another one.
+    follows it, and names the size so that it is another one. While that stays the sheet does, and widgets
+    only look up its colours again; those in `later` when :func:`restyle` is called for them.
     """
     size = apply_letters(app)
     app.setPalette(_palette(theme))
-    window.setStyleSheet(f"/* {size:.2f} pt */\n{_style_sheet(theme)}")
+    sheet = f"/* {size:.2f} pt */\n{_style_sheet()}"
+    if sheet == window.styleSheet():
+        restyle(window, later)
+    else:
+        window.setStyleSheet(sheet)
+
+
+def restyle(widget: QWidget, later: Container[QObject] = ()) -> None:
+    """Let a widget and all in it, without those in `later`, look up the colours of their style sheet.
+
+    Qt takes them from the palette only when it polishes a widget.
+    """
+    widget.style().polish(widget)
+    for part in widget.children():
+        if isinstance(part, QWidget) and part not in later:
+            restyle(part, later)
 
 
 def letters_share() -> float:
@@ -176,6 +193,9 @@ def _palette(theme: Theme) -> QPalette:
         role.Link: theme.accent,
         role.Accent: theme.accent,
         role.Mid: theme.border,
+        role.Midlight: theme.selected,
+        role.LinkVisited: theme.doubtful,
+        role.BrightText: theme.bad,
     }.items():
         colours.setColor(target, QColor(colour))
     for target in (role.WindowText, role.Text, role.ButtonText):
@@ -183,54 +203,56 @@ def _palette(theme: Theme) -> QPalette:
     return colours
 
 
-def _style_sheet(theme: Theme) -> str:
+def _style_sheet() -> str:
+    """Colours are named by their role in the palette, so that the sheet is the same in every theme."""
     return f"""
-QToolTip {{ color: {theme.text}; background: {theme.raised}; border: 1px solid {theme.border};
+QToolTip {{ color: palette(text); background: palette(button); border: 1px solid palette(mid);
     padding: 4px; }}
-QMainWindow::separator {{ width: 1px; height: 1px; background: {theme.border}; }}
+QMainWindow::separator {{ width: 1px; height: 1px; background: palette(mid); }}
 QSplitter::handle {{ background: transparent; }}
-QSplitter::handle:hover {{ background: {theme.accent}; }}
-QStatusBar {{ border-top: 1px solid {theme.border}; }}
+QSplitter::handle:hover {{ background: palette(highlight); }}
+QStatusBar {{ border-top: 1px solid palette(mid); }}
 QStatusBar::item {{ border: none; }}
-QToolBar {{ border: none; border-bottom: 1px solid {theme.border}; spacing: 2px; padding: 3px 6px; }}
+QToolBar {{ border: none; border-bottom: 1px solid palette(mid); spacing: 2px; padding: 3px 6px; }}
 QToolBar QToolButton {{ padding: 4px 7px; border-radius: 4px; border: 1px solid transparent; }}
-QToolBar QToolButton:hover {{ background: {theme.raised}; border-color: {theme.border}; }}
-QToolBar QToolButton:checked {{ background: {theme.base}; border-color: {theme.border}; }}
-QFrame[role="sidebar"] {{ background: {theme.base}; border-right: 1px solid {theme.border}; }}
-QFrame[role="sidebar"] QToolButton {{ padding: 6px 2px 4px 2px; border-radius: 5px; color: {theme.muted};
-    border: 1px solid transparent; }}
-QFrame[role="sidebar"] QToolButton:hover {{ background: {theme.window}; color: {theme.text}; }}
-QFrame[role="sidebar"] QToolButton[focused="true"] {{ border-color: {theme.accent}; }}
-QFrame[role="sidebar"] QToolButton:checked {{ background: {theme.selected}; color: {theme.text}; }}
+QToolBar QToolButton:hover {{ background: palette(button); border-color: palette(mid); }}
+QToolBar QToolButton:checked {{ background: palette(base); border-color: palette(mid); }}
+QFrame[role="sidebar"] {{ background: palette(base); border-right: 1px solid palette(mid); }}
+QFrame[role="sidebar"] QToolButton {{ padding: 6px 2px 4px 2px; border-radius: 5px;
+    color: palette(placeholder-text); border: 1px solid transparent; }}
+QFrame[role="sidebar"] QToolButton:hover {{ background: palette(window); color: palette(text); }}
+QFrame[role="sidebar"] QToolButton[focused="true"] {{ border-color: palette(highlight); }}
+QFrame[role="sidebar"] QToolButton:checked {{ background: palette(midlight); color: palette(text); }}
 *[role="heading"] {{ font-weight: 600; }}
-*[role="remark"] {{ color: {theme.muted}; }}
-*[role="warning"] {{ color: {theme.doubtful}; }}
-QFrame[role="card"] {{ background: {theme.base}; border: 1px solid {theme.border}; border-radius: 5px; }}
-QFrame[role="card"][focused="true"] {{ border-color: {theme.accent}; }}
-QFrame[role="toast"] {{ background: {theme.raised}; border: 1px solid {theme.bad}; border-radius: 6px; }}
-QFrame[role="toast"][mood="note"] {{ border-color: {theme.accent}; }}
-QTableView {{ border: 1px solid {theme.border}; border-radius: 5px; gridline-color: transparent;
-    selection-background-color: {theme.selected}; selection-color: {theme.text}; }}
-QTableView[focused="true"] {{ border-color: {theme.accent}; }}
-QTableCornerButton::section {{ background: {theme.window}; border: none;
-    border-bottom: 1px solid {theme.border}; }}
-QHeaderView::section {{ background: {theme.window}; color: {theme.muted}; border: none;
-    border-bottom: 1px solid {theme.border}; padding: 4px 3px; }}
-QTabWidget::pane {{ border: 1px solid {theme.border}; border-radius: 5px; background: {theme.base};
+*[role="remark"] {{ color: palette(placeholder-text); }}
+*[role="warning"] {{ color: palette(link-visited); }}
+QFrame[role="card"] {{ background: palette(base); border: 1px solid palette(mid); border-radius: 5px; }}
+QFrame[role="card"][focused="true"] {{ border-color: palette(highlight); }}
+QFrame[role="toast"] {{ background: palette(button); border: 1px solid palette(bright-text);
+    border-radius: 6px; }}
+QFrame[role="toast"][mood="note"] {{ border-color: palette(highlight); }}
+QTableView {{ border: 1px solid palette(mid); border-radius: 5px; gridline-color: transparent;
+    selection-background-color: palette(midlight); selection-color: palette(text); }}
+QTableView[focused="true"] {{ border-color: palette(highlight); }}
+QTableCornerButton::section {{ background: palette(window); border: none;
+    border-bottom: 1px solid palette(mid); }}
+QHeaderView::section {{ background: palette(window); color: palette(placeholder-text); border: none;
+    border-bottom: 1px solid palette(mid); padding: 4px 3px; }}
+QTabWidget::pane {{ border: 1px solid palette(mid); border-radius: 5px; background: palette(base);
     top: -1px; }}
-QTabBar::tab {{ padding: 5px 11px; color: {theme.muted}; border: 1px solid transparent; border-bottom: none;
-    border-top-left-radius: 5px; border-top-right-radius: 5px; }}
-QTabBar::tab:selected {{ color: {theme.text}; background: {theme.base}; border-color: {theme.border}; }}
-QTabBar::tab:hover {{ color: {theme.text}; }}
-QTabBar[focused="true"]::tab:focus {{ color: {theme.accent}; border-color: {theme.accent}; }}
+QTabBar::tab {{ padding: 5px 11px; color: palette(placeholder-text); border: 1px solid transparent;
+    border-bottom: none; border-top-left-radius: 5px; border-top-right-radius: 5px; }}
+QTabBar::tab:selected {{ color: palette(text); background: palette(base); border-color: palette(mid); }}
+QTabBar::tab:hover {{ color: palette(text); }}
+QTabBar[focused="true"]::tab:focus {{ color: palette(highlight); border-color: palette(highlight); }}
 QToolButton[role="fold"] {{ border: 1px solid transparent; border-radius: 4px; padding: 1px 3px; }}
-QToolButton[role="fold"][focused="true"] {{ border-color: {theme.accent}; }}
+QToolButton[role="fold"][focused="true"] {{ border-color: palette(highlight); }}
 QScrollArea {{ border: none; }}
-QCheckBox::indicator {{ width: 1.05em; height: 1.05em; border: 1px solid {theme.muted}; border-radius: 3px;
-    background: {theme.base}; }}
-QCheckBox::indicator:hover {{ border-color: {theme.accent}; }}
-QCheckBox::indicator:checked {{ background: {theme.accent}; border-color: {theme.accent};
+QCheckBox::indicator {{ width: 1.05em; height: 1.05em; border: 1px solid palette(placeholder-text);
+    border-radius: 3px; background: palette(base); }}
+QCheckBox::indicator:hover {{ border-color: palette(highlight); }}
+QCheckBox::indicator:checked {{ background: palette(highlight); border-color: palette(highlight);
     image: url("{resource("icons", "tick.svg").as_posix()}"); }}
-QCheckBox::indicator:disabled {{ border-color: {theme.border}; }}
-QCheckBox::indicator:checked:disabled {{ background: {theme.border}; }}
+QCheckBox::indicator:disabled {{ border-color: palette(mid); }}
+QCheckBox::indicator:checked:disabled {{ background: palette(mid); }}
 """

@@ -1,12 +1,17 @@
 """Theme and letters: applied when they change, and only then."""
 
+import time
+
 import pytest
+from PySide6.QtCore import QEvent, QObject
 from PySide6.QtGui import QColor, QFontMetrics
 from PySide6.QtWidgets import QCheckBox, QDialog, QDialogButtonBox, QLabel, QVBoxLayout, QWidget
 
 from regolith_studio.jobs.runners.inline import InlineRunner
 from regolith_studio.session.session import Session
+from regolith_studio.ui.app import open_window
 from regolith_studio.ui.dialogs.preferences import LETTERS
+from regolith_studio.ui.icons import pixmap
 from regolith_studio.ui.looks import Looks
 from regolith_studio.ui.main_window import MainWindow
 from regolith_studio.ui.theme import DARK, LIGHT, apply_theme, choose_letters, choose_theme, current_theme
@@ -78,6 +83,74 @@ def test_that_a_theme_reaches_dialogs_of_the_window_and_changes_no_sheet_of_the_
         assert window.palette().window().color() == QColor(theme.window)
     assert all(button.icon().isNull() for button in buttons.buttons())
     assert app.styleSheet() == everywhere
+
+
+def pictures_of_pages(window, keys, wait, settled):
+    """What is seen on pages, once they have taken their theme."""
+    found = {}
+    for key in keys:
+        window.go(key)
+        settled(window)
+        wait(lambda: not window.pages._theming.isActive())
+        seen = [None, window.grab().toImage()]
+        while seen[-1] != seen[-2]:  # what a visit has set off goes on for some turns
+            end = time.monotonic() + 0.2
+            wait(lambda end=end: time.monotonic() > end)
+            seen.append(window.grab().toImage())
+        found[key] = seen[-1]
+    return found
+
+
+@pytest.mark.usefixtures("usual_looks")
+def test_that_a_theme_chosen_later_looks_as_one_from_the_start(shown, preferences, wait, settled):
+    keys = ("explore", "studies")
+
+    def opened(theme):
+        preferences.window = {"theme": theme}
+        window = open_window(views="image", preferences=preferences)
+        window.resize(1100, 720)
+        shown(window)
+        wait(lambda: window.session.results.coarsened is not None)
+        return window
+
+    changed = opened("light")
+    light = pictures_of_pages(changed, keys, wait, settled)
+    changed.looks.choose(theme="dark")
+    later = pictures_of_pages(changed, keys, wait, settled)
+    dark = pictures_of_pages(opened("dark"), keys, wait, settled)
+    for key in keys:
+        assert later[key] == dark[key], key
+        assert later[key] != light[key]
+
+
+@pytest.mark.usefixtures("usual_looks")
+def test_that_another_theme_gives_no_widget_another_style(shown, preferences, wait):
+    """Qt polishes every widget of the window again when its sheet is another: a quarter of a second."""
+    window = shown(MainWindow(Session(InlineRunner()), preferences, "image"))
+    window.looks.choose(theme="light")
+    told = []
+
+    class Ear(QObject):
+        def eventFilter(self, watched, event):  # noqa: N802
+            if event.type() == QEvent.Type.StyleChange:
+                told.append(watched.objectName())
+            return False
+
+    ear = Ear()
+    for widget in (window, *window.findChildren(QWidget)):
+        widget.installEventFilter(ear)
+    window.looks.choose(theme="dark")
+    wait(lambda: not window.pages._theming.isActive())
+    assert told == []
+    assert window.palette().window().color() == QColor(DARK.window)
+
+
+def test_that_an_icon_is_drawn_in_the_colour_that_is_asked_for():
+    for colour in ("#ff0000", "#0000ff"):
+        image = pixmap("open", colour, 24).toImage()
+        seen = [image.pixelColor(x, y) for x in range(24) for y in range(24)]
+        assert {each.name() for each in seen if each.alpha() == 255} == {colour}
+        assert any(each.alpha() == 0 for each in seen)
 
 
 def luminance(colour):

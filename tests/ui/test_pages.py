@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 from PySide6.QtCore import Qt, QTimer
+from PySide6.QtGui import QColor
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QLabel, QVBoxLayout, QWidget
 
@@ -18,7 +19,7 @@ from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.page import Page, PageContext, PageWidget
 from regolith_studio.ui.page_stack import PageStack
 from regolith_studio.ui.pages import pages
-from regolith_studio.ui.theme import DARK, LIGHT
+from regolith_studio.ui.theme import DARK, LIGHT, apply_theme
 from regolith_studio.ui.widgets.toast import Toast
 from regolith_studio.ui.wiring import Wiring
 
@@ -226,13 +227,33 @@ def test_that_hidden_pages_take_a_theme_later_or_when_they_are_seen(stack, wait,
     for theme in (DARK, LIGHT):
         monkeypatch.setattr("regolith_studio.ui.page_stack.current_theme", lambda theme=theme: theme)
         stack.set_theme(theme)
-        assert two.theme is theme
+        wait(lambda theme=theme: two.theme is theme)
         assert one.theme is not theme
         if theme is DARK:
             stack.go("one")
             assert one.theme is theme
             stack.go("two")
     wait(lambda: one.theme is LIGHT)
+
+
+def test_that_a_page_that_was_being_built_has_the_colours_of_now(pieces, wait, app, monkeypatch):
+    begun = [LIGHT]
+    monkeypatch.setattr("regolith_studio.ui.page_stack.current_theme", lambda: begun[0])
+    apply_theme(app, LIGHT, pieces.window())
+    remarks = []
+
+    def polished(widget):
+        remarks.append(QLabel("quiet", widget))
+        remarks[0].setProperty("role", "remark")
+        remarks[0].ensurePolished()
+        begun[0] = DARK
+        apply_theme(app, DARK, pieces.window(), pieces.rooms)
+        yield
+
+    monkeypatch.setattr("regolith_studio.ui.page_stack.polish", polished)
+    pieces.visit("two")
+    wait(lambda: pieces.current == "two")
+    assert remarks[0].palette().windowText().color() == QColor(DARK.muted)
 
 
 def test_that_no_page_is_left_half_built(pieces):

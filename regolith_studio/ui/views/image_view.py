@@ -128,7 +128,8 @@ class ImageView(QWidget):
         size = [max(1, round(self.width() * ratio)), max(1, round(self.height() * ratio))]
         if self._plotter is None or (not self._stale and [self._image.width(), self._image.height()] == size):
             return
-        self._plotter.window_size = size
+        if list(self._plotter.window_size) != size:  # it draws
+            self._plotter.window_size = size
         self._plotter.render()
         pixels = np.ascontiguousarray(self._plotter.screenshot(return_img=True)[..., :3])
         height, width, _ = pixels.shape

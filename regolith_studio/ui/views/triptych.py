@@ -121,16 +121,14 @@ class Triptych(QSplitter):
             return
         solid, centre = found.polyhedron, np.asarray(found.centre, dtype=np.float64)
         self._shapes[POLYHEDRON] = Shape(POLYHEDRON, solid, centre)
-        ink = self._theme.surroundings
         self.pointer.forget()
-        self.views[POLYHEDRON].draw(lambda plotter: surfaces.show_polyhedron(plotter, solid, centre, ink))
+        self._draw_polyhedron()
         self.frames[POLYHEDRON].set_texts(
             tr("Polyhedron, {count} facets", count=solid.n_faces),
             tr("{count} vertices, {triangles} triangles", count=solid.n_vertices, triangles=solid.n_triangles)
             + _shortfall(results),
             tr("{count} facets", count=solid.n_faces),
         )
-        self._draw_extras(POLYHEDRON)
         self.comparison.set_shapes(self._shapes, POLYHEDRON)
 
     def set_heat(self, heat: bool) -> None:
@@ -199,6 +197,10 @@ class Triptych(QSplitter):
         for name, frame in self.frames.items():
             frame.view.set_surroundings(theme.surroundings)
             frame.set_colour(getattr(theme, name))
+        if self._heat:
+            self._draw_fit()
+        self._draw_polyhedron()
+        self._draw_extras(PARTICLE, FIT)
         self.comparison.set_theme(theme)
 
     def release(self) -> None:
@@ -228,6 +230,14 @@ class Triptych(QSplitter):
             reach = float(np.abs(distances).max(initial=0.0))
             self.frames[FIT].set_detail(tr("at most {reach:.3g} µm from the particle", reach=reach))
         self._draw_extras(FIT)
+
+    def _draw_polyhedron(self) -> None:
+        solid = self._shapes.get(POLYHEDRON)
+        if solid is None or solid.polyhedron is None:
+            return
+        facets, centre, ink = solid.polyhedron, solid.origin, self._theme.surroundings
+        self.views[POLYHEDRON].draw(lambda plotter: surfaces.show_polyhedron(plotter, facets, centre, ink))
+        self._draw_extras(POLYHEDRON)
 
     def _draw_extras(self, *names: str) -> None:
         for name in names:
