@@ -65,6 +65,24 @@ def test_that_letters_of_another_size_reach_every_widget_at_the_start_and_later(
     app.setFont(usual)
 
 
+@pytest.mark.usefixtures("usual_looks")
+def test_that_large_letters_leave_the_views_their_room(shown, preferences, app, settled):
+    usual = app.font()
+    preferences.window = {LETTERS: 200}
+    window = shown(open_window(views="image", preferences=preferences))
+    window.resize(1920, 1080)
+    settled(window)
+    page = window.page
+    assert page.particles.width() < 1920 / 5
+    assert page.triptych.width() > 1920 / 3
+    names = [page.particles.table.sizeHintForColumn(0), page.particles.table.columnWidth(0)]
+    assert names == sorted(names), "no name ends in dots"
+    for box in (page.coarsening.method, page.coarsening.target):
+        assert box.width() >= box.sizeHint().width() - 2, box.objectName()
+    window.looks.choose(**{LETTERS: 100})
+    app.setFont(usual)
+
+
 def test_that_a_theme_reaches_dialogs_of_the_window_and_changes_no_sheet_of_the_application(app, shown):
     window = shown(QWidget())
     apply_theme(app, LIGHT, window)

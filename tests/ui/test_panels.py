@@ -6,6 +6,7 @@ import numpy as np
 import pyqtgraph as pg
 import pytest
 from PySide6.QtCore import Qt
+from PySide6.QtGui import QFontMetrics
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QAbstractButton, QAbstractSpinBox, QComboBox, QSlider
 
@@ -174,6 +175,27 @@ def test_that_the_list_shows_what_is_known_and_announces_the_row_that_is_clicked
     QTest.mouseClick(panel.table.viewport(), Qt.MouseButton.LeftButton, pos=where)
     assert heard == [{"selected": "large"}]
     assert panel.value() == {"selected": "large"}
+
+
+def test_that_a_narrow_list_leaves_columns_out_and_keeps_the_names(shown, app):
+    """A third of the screen went to it at letters of 200 %, and a narrower one showed dots for names."""
+    panel = shown(ParticleListPanel())
+    panel.set_entries([measured("agglutinate-1", 1.0), measured("bead-2", 2.0)])
+    table, names = panel.table, QFontMetrics(panel.table.font()).horizontalAdvance("agglutinate-1")
+    seen = {}
+    for width in (names + 60, names + 120, 400, names + 60):
+        panel.resize(width, 300)
+        app.processEvents()
+        seen[width] = [column for column in (2, 3, 4) if not table.isColumnHidden(column)]
+        assert table.columnWidth(0) >= names
+        assert table.horizontalScrollBar().maximum() == 0
+    assert seen[names + 60] == []
+    assert 2 in seen[names + 120]
+    assert 4 not in seen[names + 120]
+    assert seen[400] == [2, 3, 4]
+    assert table.isColumnHidden(1), "one group needs no column"
+    tip = table.model().index(0, 0).data(Qt.ItemDataRole.ToolTipRole)
+    assert tip.startswith("agglutinate-1\nV [µm³] ")
 
 
 def test_that_the_list_keeps_its_row_when_more_becomes_known(shown):

@@ -104,7 +104,9 @@ class _Model(QAbstractTableModel):
             case Qt.ItemDataRole.DecorationRole if index.column() == 0:
                 return self.icons.get(health_word(entry))
             case Qt.ItemDataRole.ToolTipRole:
-                return "\n".join(map(retold, health_sentences(entry).split("\n")))
+                values = [f"{tr(each.title)} {each.text(entry)}" for each in COLUMNS[WORDS:]]
+                health = map(retold, health_sentences(entry).split("\n"))
+                return "\n".join([entry.id, ", ".join(values), *health])
             case Qt.ItemDataRole.TextAlignmentRole if index.column() >= WORDS:
                 return RIGHT
         return column.key(entry) if role == SORT_ROLE else None
@@ -192,7 +194,7 @@ class ParticleListPanel(QWidget):
         self.table.viewport().update()
 
     def _make_table(self) -> ListTable:
-        table = ListTable()
+        table = ListTable(tuple(range(len(COLUMNS) - 1, WORDS - 1, -1)))
         table.setObjectName("particle_table")
         table.setAccessibleName(tr("Particles"))
         table.setModel(self._sorted)

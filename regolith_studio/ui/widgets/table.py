@@ -5,6 +5,8 @@ from PySide6.QtGui import QResizeEvent, QShowEvent
 from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QTableView
 
 _LEAST = 70
+_NAME = 18
+"""Digits that the first column is granted, at most, before others stay; an icon has room in it."""
 
 
 class LetterRows(QObject):
@@ -42,13 +44,21 @@ class LetterRows(QObject):
 
 
 class ListTable(QTableView):
-    """One row can be chosen; no grid, no row numbers, compact rows."""
+    """One row can be chosen; no grid, no row numbers, compact rows.
+
+    Parameters
+    ----------
+    dispensable
+        Columns that are left out, in this order, while there is no room for the names in the first one.
+    """
 
     _unfitted = True
     """Content or letters have changed while nobody saw the table."""
 
-    def __init__(self) -> None:
+    def __init__(self, dispensable: tuple[int, ...] = ()) -> None:
         super().__init__()
+        self._dispensable = dispensable
+        self._left_out: dict[int, int] = {}
         self.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
         self.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)
         self.setShowGrid(False)
@@ -72,15 +82,35 @@ class ListTable(QTableView):
 
     def measure(self) -> None:
         """Columns as wide as their content."""
+        for column in self._left_out:
+            self.setColumnHidden(column, False)
+        self._left_out.clear()
         for column in self._narrow():
             self.resizeColumnToContents(column)
 
     def stretch(self) -> None:
         """The first column as wide as there is room."""
         header = self.horizontalHeader()
-        taken = sum(map(header.sectionSize, self._narrow()))
+        taken = self._make_room()
         if header.count():
             header.resizeSection(0, max(_LEAST, self.viewport().width() - taken))
+
+    def _make_room(self) -> int:
+        """Leave out what must be, and bring back what need not; returns the width of the columns that stay."""
+        header = self.horizontalHeader()
+        widths = {column: header.sectionSize(column) for column in self._narrow()} | self._left_out
+        names = min(self.sizeHintForColumn(0), self.fontMetrics().horizontalAdvance("0" * _NAME))
+        for column in self._dispensable:
+            if column not in widths:  # hidden for another reason
+                continue
+            short = self.viewport().width() - sum(widths.values()) < names
+            if short:
+                self._left_out[column] = widths.pop(column)
+            elif column in self._left_out:
+                del self._left_out[column]
+            if self.isColumnHidden(column) != short:
+                self.setColumnHidden(column, short)
+        return sum(widths.values())
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)

@@ -20,6 +20,10 @@ from regolith_studio.ui.views.triptych import Triptych
 
 LIST_WIDTH = 40
 """Of the list of particles at first, in digits."""
+LIST_ROOM, NAMES_WIDTH = 320, 22
+"""Pixels that it takes at most; digits that it takes at least, which is more with large letters."""
+CONTROLS_LETTERS = 32
+"""Of what is on the right, in digits, where that is more than usual."""
 LOW = 620
 """Pixels of height below which the views keep the larger share."""
 PLOTS_HEIGHT, PLOTS_LINES = 300, 15
@@ -81,8 +85,10 @@ class ExplorePage(PageWidget):
         middle.setObjectName("explore_rows")
         controls = scrolled_column([self.fit, self.coarsening, self.loss])
         parts = [padded(self.particles, 10, 10, 2, 8), padded(middle, 2, 10, 2, 8), controls]
-        wide_enough = self.fontMetrics().horizontalAdvance("0" * LIST_WIDTH)
-        columns = side_by_side(parts, [wide_enough, 900, CONTROLS_WIDTH], stretch=1)
+        digits = [self.fontMetrics().horizontalAdvance("0" * count) for count in (LIST_WIDTH, NAMES_WIDTH)]
+        wide_enough = max(min(digits[0], LIST_ROOM), digits[1])
+        controls_wide = max(CONTROLS_WIDTH, self.fontMetrics().horizontalAdvance("0" * CONTROLS_LETTERS))
+        columns = side_by_side(parts, [wide_enough, 900, controls_wide], stretch=1)
         columns.setObjectName("explore_columns")
         layout = QHBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
