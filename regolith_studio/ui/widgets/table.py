@@ -96,7 +96,7 @@ class ListTable(QTableView):
             header.resizeSection(0, max(_LEAST, self.viewport().width() - taken))
 
     def _make_room(self) -> int:
-        """Leave out what must be, and bring back what need not; returns the width of the columns that stay."""
+        """Leave out what must be, bring back what need not; returns the width of the columns that stay."""
         header = self.horizontalHeader()
         widths = {column: header.sectionSize(column) for column in self._narrow()} | self._left_out
         names = min(self.sizeHintForColumn(0), self.fontMetrics().horizontalAdvance("0" * _NAME))
