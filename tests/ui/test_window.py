@@ -259,11 +259,11 @@ def test_that_the_export_tells_what_it_will_write_and_refuses_a_used_folder(wind
     dialog.reject()
 
 
-def test_that_the_window_follows_dark_and_light(window):
+def test_that_the_window_follows_dark_and_light(window, wait):
     light = [picture.mean() for picture in pictures(window)]
     window.menus.by_name["theme_dark"].trigger()
     assert current_theme() is DARK
-    assert window.page.plots.error_bars.plot.theme is DARK
+    wait(lambda: window.page.plots.error_bars.plot.theme is DARK)
     assert all(picture.mean() < mean - 60 for picture, mean in zip(pictures(window), light, strict=True))
     assert window.preferences.window["theme"] == "dark"
     window.menus.by_name["theme_light"].trigger()
