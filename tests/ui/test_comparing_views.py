@@ -10,9 +10,11 @@ from PySide6.QtWidgets import QApplication
 from regolith_studio.geometry.plane_cut import plane_cut
 from regolith_studio.scene import facets, sectioning
 from regolith_studio.scene.comparing import OTHER
+from regolith_studio.scene.distance import signed_distances
 from regolith_studio.scene.sight import Sight
-from regolith_studio.scene.surfaces import SURFACE
+from regolith_studio.scene.surfaces import OUTLINE, SURFACE
 from regolith_studio.ui.app import open_window
+from regolith_studio.ui.theme import DARK, LIGHT
 from regolith_studio.ui.widgets.number_text import grouped_number
 
 SECONDS = 120.0
@@ -186,3 +188,22 @@ def test_that_the_picture_of_what_is_seen_has_bar_line_and_titles_at_any_scale(w
     assert bare.pixelColor(5, bare.height() // 2).alpha() == 0
     inked = [bare.pixelColor(x, y).alpha() for x in range(4, 120) for y in range(4, 22)]
     assert max(inked) == 255  # the title
+
+
+def test_that_another_theme_measures_no_distances_again(window, wait, monkeypatch):
+    asked = []
+
+    def counted(*arguments):
+        asked.append(arguments)
+        return signed_distances(*arguments)
+
+    monkeypatch.setattr("regolith_studio.ui.views.triptych.signed_distances", counted)
+    switch(window, "heat")
+    for theme in (DARK, LIGHT):
+        window.page.triptych.set_theme(theme)
+        edges = actor(window, "polyhedron", OUTLINE).prop.color
+        assert edges.hex_rgb == theme.surroundings.outline
+    assert len(asked) == 1
+    window.session.choose(l_max=4)
+    wait(lambda: len(asked) == 2)
+    switch(window, "heat")

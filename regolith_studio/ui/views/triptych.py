@@ -62,6 +62,7 @@ class Triptych(QSplitter):
         self._extras: dict[str, bool] = {}
         self._star_point: FloatArray | None = None
         self._hidden: BoolArray | None = None
+        self._measured: tuple[Mesh, Mesh, FloatArray] | None = None
         self.sections = Sections(self)
         self.comparison = Comparison(self.frames, self.sections)
         self.pointer = FacetPointer(
@@ -222,7 +223,7 @@ class Triptych(QSplitter):
         if mesh is None or particle is None:
             return
         ink = self._theme.surroundings
-        distances: FloatArray | None = signed_distances(mesh.vertices, particle) if self._heat else None
+        distances = self._distances(mesh, particle) if self._heat else None
         self.views[FIT].draw(lambda plotter: surfaces.show_fit(plotter, mesh, distances, None, ink))
         if distances is None:
             self.frames[FIT].set_detail(self._size_of_fit)
@@ -230,6 +231,12 @@ class Triptych(QSplitter):
             reach = float(np.abs(distances).max(initial=0.0))
             self.frames[FIT].set_detail(tr("at most {reach:.3g} µm from the particle", reach=reach))
         self._draw_extras(FIT)
+
+    def _distances(self, fit: Mesh, particle: Mesh) -> FloatArray:
+        """Of the fit from the particle; measured once, another theme only writes the scale anew."""
+        if self._measured is None or self._measured[0] is not fit or self._measured[1] is not particle:
+            self._measured = (fit, particle, signed_distances(fit.vertices, particle))
+        return self._measured[2]
 
     def _draw_polyhedron(self) -> None:
         solid = self._shapes.get(POLYHEDRON)
