@@ -37,7 +37,9 @@ def test_that_every_way_gives_the_loss_of_a_brick_in_a_brick(how: dict[str, Any]
     assert loss(points) == pytest.approx(wanted, rel=1e-6)
 
 
-@pytest.mark.parametrize(("overlap", "within"), [("boolean", 1e-6), ("points", 0.03)])
+@pytest.mark.parametrize(
+    ("overlap", "within"), [("boolean", 1e-6), pytest.param("points", 0.03, marks=pytest.mark.slow)]
+)
 def test_that_the_overlap_is_that_of_the_solids(overlap: str, within: float) -> None:
     if overlap == "boolean":
         pytest.importorskip("manifold3d")

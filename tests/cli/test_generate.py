@@ -62,6 +62,7 @@ def test_that_each_virtual_particle_is_a_closed_mesh_inside_the_range(
         assert row["sound"] == "true"
 
 
+@pytest.mark.slow
 def test_that_workers_and_repetition_do_not_change_a_byte(command, fit: Path, tmp_path: Path) -> None:
     for place, jobs in (("one", 1), ("two", 2)):
         said = command("generate", fit, "-n", 23, "-o", tmp_path / place, "--level", 2, "--jobs", jobs)
@@ -175,6 +176,7 @@ def test_that_one_particle_makes_no_model(command, ellipsoids: Path, tmp_path: P
     assert "at least 2 different particles, got 1" in said.err
 
 
+@pytest.mark.slow
 def test_that_models_are_judged_on_what_they_have_not_seen(command, fit: Path, tmp_path: Path) -> None:
     wanted = ("--models", "gaussian_field,sample_matched", "--l-max", 4, "--splits", 2, "--repeats", 1)
     said = command("study", "population", fit, "-o", tmp_path / "p", *wanted, "--draws", 20, "--json")

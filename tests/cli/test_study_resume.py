@@ -82,6 +82,7 @@ def test_that_other_options_and_other_inputs_are_refused(
     assert "another set of particles" in said.err
 
 
+@pytest.mark.slow
 def test_that_a_judgement_of_models_goes_on_to_the_same_bytes(
     command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

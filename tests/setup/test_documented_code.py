@@ -95,6 +95,7 @@ def test_that_the_python_of_the_pages_runs(page: str, text: str) -> None:
     exec(compile(text, page, "exec"), {})
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("here")
 def test_that_the_short_commands_of_the_pages_run_one_after_the_other() -> None:
     for page, words in commands():
