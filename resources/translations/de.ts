@@ -6960,8 +6960,8 @@
   </message>
   <message>
    <location filename="ui/panels/loss_curve.py" />
-   <source>lowest {loss:.4g}</source>
-   <translation>kleinster {loss:.4g}</translation>
+   <source>lowest {loss:.3g}</source>
+   <translation>kleinster {loss:.3g}</translation>
   </message>
   <message>
    <source>mass and inertia</source>

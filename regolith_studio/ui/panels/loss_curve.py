@@ -44,7 +44,7 @@ class LossCurvePanel(QWidget):
         self.plot.set_remark(
             tr("step {at} of {total}", at=progress.step, total=progress.steps)
             if running and progress
-            else tr("lowest {loss:.4g}", loss=min(losses))
+            else tr("lowest {loss:.3g}", loss=min(losses))
         )
 
     def set_theme(self, theme: Theme) -> None:
