@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from regolith_studio.errors import Cancelled, RegolithError, of_the_system
 
 DONE, BAD_INPUT, BAD_USE, INTERRUPTED = 0, 1, 2, 130
+STOPPED = "Stopped."
 
 
 def run(arguments: Sequence[str]) -> int:
@@ -20,9 +21,11 @@ def run(arguments: Sequence[str]) -> int:
     try:
         app(list(arguments), prog_name="regolith-studio")
     except SystemExit as end:
+        if end.code == INTERRUPTED:  # so typer ends at Ctrl+C, without a word
+            return _say(STOPPED, INTERRUPTED)
         return end.code if isinstance(end.code, int) else DONE
     except (KeyboardInterrupt, Cancelled):
-        return _say("Stopped.", INTERRUPTED)
+        return _say(STOPPED, INTERRUPTED)
     except RegolithError as error:
         return _say(str(error), BAD_INPUT)
     except OSError as error:
