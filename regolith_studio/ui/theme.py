@@ -92,13 +92,13 @@ DARK = Theme(
 
 THEMES = {"light": LIGHT, "dark": DARK}
 
+STYLE = "fusion"
+
 SMALLEST, USUAL, LARGEST = 80.0, 100.0, 200.0
 """Sizes of letters in percent."""
 
 OWN_FONTS = ("QMenuBar", "QMenu", "QToolButton", "QStatusBar", "QMessageBox", "QTipLabel", "QDockWidgetTitle")
 """Widgets to which a desktop may have given fonts of their own."""
-
-_EVERYWHERE = "QDialogButtonBox { dialogbuttonbox-buttons-have-icons: 0; }"
 
 _chosen: list[str] = ["system"]
 _letters: list[float] = [USUAL]
@@ -124,8 +124,8 @@ def choose_letters(percent: object) -> None:
 def apply_theme(app: QApplication, theme: Theme, window: QWidget, later: Container[QObject] = ()) -> None:
     """Give the whole application a theme, and letters of the chosen size.
 
-    The style sheet is the window's: one of the application takes five times as long to reach all widgets.
-    What widgets ask for before they have their place in the window is the application's, and never changes.
+    The style sheet is the window's, and the application has none: one of the application takes five times as
+    long to reach all widgets, and while it has one every part that is put into another takes its style again.
     A font of the application does not reach widgets under a style sheet that is there already: the sheet
     follows it, and names the size so that it is another one. While that stays the sheet does, and widgets
     only look up its colours again; those in `later` when :func:`restyle` is called for them.
@@ -160,9 +160,8 @@ def apply_letters(app: QApplication) -> float:
 
     Best before any widget is made: one that is there and has no window yet may keep the font that it had.
     """
-    if app.styleSheet() != _EVERYWHERE:
-        app.setStyle("Fusion")
-        app.setStyleSheet(_EVERYWHERE)
+    if app.style().name() != STYLE:
+        app.setStyle(STYLE)
     font = app.font()
     of_system = float(app.property("system_letters") or font.pointSizeF())
     app.setProperty("system_letters", of_system)
@@ -206,6 +205,7 @@ def _palette(theme: Theme) -> QPalette:
 def _style_sheet() -> str:
     """Colours are named by their role in the palette, so that the sheet is the same in every theme."""
     return f"""
+QDialogButtonBox {{ dialogbuttonbox-buttons-have-icons: 0; }}
 QToolTip {{ color: palette(text); background: palette(button); border: 1px solid palette(mid);
     padding: 4px; }}
 QMainWindow::separator {{ width: 1px; height: 1px; background: palette(mid); }}

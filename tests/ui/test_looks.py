@@ -12,6 +12,7 @@ from regolith_studio.session.session import Session
 from regolith_studio.ui.app import open_window
 from regolith_studio.ui.dialogs.preferences import LETTERS
 from regolith_studio.ui.icons import pixmap
+from regolith_studio.ui.layout import padded
 from regolith_studio.ui.looks import Looks
 from regolith_studio.ui.main_window import MainWindow
 from regolith_studio.ui.theme import DARK, LIGHT, apply_theme, choose_letters, choose_theme, current_theme
@@ -83,12 +84,12 @@ def test_that_large_letters_leave_the_views_their_room(shown, preferences, app, 
     app.setFont(usual)
 
 
-def test_that_a_theme_reaches_dialogs_of_the_window_and_changes_no_sheet_of_the_application(app, shown):
+def test_that_a_theme_reaches_dialogs_of_the_window(app, shown):
     window = shown(QWidget())
     apply_theme(app, LIGHT, window)
-    everywhere = app.styleSheet()
     dialog = QDialog(window)
-    buttons, remark = QDialogButtonBox(QDialogButtonBox.StandardButton.Close), QLabel("1")
+    buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, parent=dialog)
+    remark = QLabel("1")
     remark.setProperty("role", "remark")
     column = QVBoxLayout(dialog)
     column.addWidget(remark)
@@ -100,7 +101,18 @@ def test_that_a_theme_reaches_dialogs_of_the_window_and_changes_no_sheet_of_the_
         assert remark.palette().windowText().color() == QColor(theme.muted)
         assert window.palette().window().color() == QColor(theme.window)
     assert all(button.icon().isNull() for button in buttons.buttons())
-    assert app.styleSheet() == everywhere
+
+
+def test_that_parts_take_their_style_once_when_they_come_into_the_window(app, shown):
+    window = shown(QWidget())
+    apply_theme(app, LIGHT, window)
+    part, styled = QWidget(), []
+    part.changeEvent = lambda event: styled.append(event.type())
+    for _ in range(3):
+        part_of = padded(part, 0, 0, 0, 0)
+    assert QEvent.Type.StyleChange not in styled
+    QVBoxLayout(window).addWidget(part_of)
+    assert styled.count(QEvent.Type.StyleChange) == 1
 
 
 def pictures_of_pages(window, keys, wait, settled):

@@ -158,7 +158,7 @@ class BatchDialog(QDialog):
         self.report.setVisible(report)
 
     def _buttons(self) -> None:
-        self.box = QDialogButtonBox(QDialogButtonBox.StandardButton.Close)
+        self.box = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, parent=self)
         self.go = self.box.addButton(tr("Run"), QDialogButtonBox.ButtonRole.ActionRole)
         self.halt = self.box.addButton(tr("Stop"), QDialogButtonBox.ButtonRole.ActionRole)
         self.report = self.box.addButton(tr("Open the results"), QDialogButtonBox.ButtonRole.ActionRole)

@@ -93,7 +93,7 @@ class ExportDialog(QDialog):
         self.state = remark()
         self.bar = QProgressBar()
         self.bar.setAccessibleName(tr("Progress of the export"))
-        buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Cancel)
+        buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Cancel, parent=self)
         self.cancel = buttons.button(QDialogButtonBox.StandardButton.Cancel)
         self.go = buttons.addButton(tr("Export"), QDialogButtonBox.ButtonRole.AcceptRole)
         self.go.setObjectName("export_go")

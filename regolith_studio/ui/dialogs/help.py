@@ -42,7 +42,7 @@ def about_dialog(parent: QWidget, renderer: str) -> QDialog:
 
 
 def _closed(dialog: QDialog, content: QHBoxLayout) -> QDialog:
-    buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close)
+    buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, parent=dialog)
     buttons.rejected.connect(dialog.reject)
     layout = QVBoxLayout(dialog)
     layout.addLayout(content)

@@ -70,7 +70,7 @@ class PreferencesDialog(QDialog):
         form.addRow("", self.note)
         form.addRow(tr("Theme"), self.theme)
         form.addRow(tr("Size of letters"), self.letters)
-        buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close)
+        buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, parent=self)
         buttons.rejected.connect(self.reject)
         layout = QVBoxLayout(self)
         layout.addLayout(form)

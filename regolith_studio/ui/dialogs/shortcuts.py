@@ -140,7 +140,7 @@ class ShortcutsDialog(QDialog):
         mouse.setHorizontalSpacing(24)
         for gesture, meaning in MOUSE:
             mouse.addRow(tr(gesture), QLabel(tr(meaning)))
-        buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close)
+        buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, parent=self)
         buttons.button(QDialogButtonBox.StandardButton.Close).setAutoDefault(False)  # Enter searches
         buttons.rejected.connect(self.reject)
         layout = QVBoxLayout(self)

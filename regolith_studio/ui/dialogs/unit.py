@@ -60,7 +60,7 @@ class UnitDialog(QDialog):
         form.addRow(tr("Unit"), self.unit)
         form.addRow(self._voxel_label, self.voxel)
         buttons = QDialogButtonBox(
-            QDialogButtonBox.StandardButton.Open | QDialogButtonBox.StandardButton.Cancel
+            QDialogButtonBox.StandardButton.Open | QDialogButtonBox.StandardButton.Cancel, parent=self
         )
         buttons.accepted.connect(self.accept)
         buttons.rejected.connect(self.reject)

@@ -113,7 +113,7 @@ def show_details(parent: QWidget, sentence: str, details: str) -> None:
     text = QPlainTextEdit(details)
     text.setReadOnly(True)
     text.setAccessibleName(tr("Details"))
-    buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close)
+    buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, parent=dialog)
     copy = buttons.addButton(tr("Copy report"), QDialogButtonBox.ButtonRole.ActionRole)
     copy.clicked.connect(text.selectAll)
     copy.clicked.connect(text.copy)

@@ -150,7 +150,7 @@ class PictureDialog(QDialog):
         self.transparent = QCheckBox(tr("Transparent background"))
         self.transparent.setObjectName("picture_transparent")
         buttons = QDialogButtonBox(
-            QDialogButtonBox.StandardButton.Save | QDialogButtonBox.StandardButton.Cancel
+            QDialogButtonBox.StandardButton.Save | QDialogButtonBox.StandardButton.Cancel, parent=self
         )
         buttons.accepted.connect(self.accept)
         buttons.rejected.connect(self.reject)

@@ -82,7 +82,7 @@ class VolumeDialog(QDialog):
         self._said = tr("A raw file says nothing about itself: how many voxels are in it, and of which type?")
         self.verdict, self.facts = remark(), remark()
         self._buttons = QDialogButtonBox(
-            QDialogButtonBox.StandardButton.Open | QDialogButtonBox.StandardButton.Cancel
+            QDialogButtonBox.StandardButton.Open | QDialogButtonBox.StandardButton.Cancel, parent=self
         )
         self._arrange()
         self._suggest()
