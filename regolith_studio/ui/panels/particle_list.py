@@ -4,15 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from PySide6.QtCore import (
-    QAbstractTableModel,
-    QItemSelectionModel,
-    QModelIndex,
-    QPersistentModelIndex,
-    QSortFilterProxyModel,
-    Qt,
-    Signal,
-)
+from PySide6.QtCore import QItemSelectionModel, QModelIndex, Qt, Signal
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from regolith_studio.session.results import ParticleEntry
@@ -20,17 +12,14 @@ from regolith_studio.session.sample_table import health_sentences, health_word
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.translation.sentences import retold
+from regolith_studio.ui.widgets.entry_rows import RIGHT, UNSORTED, EntryRows, Index
 from regolith_studio.ui.widgets.health_icons import health_pixmaps
 from regolith_studio.ui.widgets.labels import heading, remark
 from regolith_studio.ui.widgets.number_text import short_number
 from regolith_studio.ui.widgets.table import ListTable
 
-Index = QModelIndex | QPersistentModelIndex
-NOWHERE = QModelIndex()
-SORT_ROLE = Qt.ItemDataRole.UserRole + 1
 WORDS = 2
 """Columns of words; those of numbers follow."""
-RIGHT = int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
 
 
 @dataclass(frozen=True)
@@ -81,23 +70,19 @@ COLUMNS = (
 )
 
 
-class _Model(QAbstractTableModel):
+class _Model(EntryRows):
     def __init__(self, parent: QWidget) -> None:
-        super().__init__(parent)
-        self.entries: tuple[ParticleEntry, ...] = ()
+        super().__init__(len(COLUMNS), parent)
         self.icons: dict[str, Any] = {}
 
     def set_theme(self, theme: Theme) -> None:
         self.icons = health_pixmaps(theme)
 
-    def rowCount(self, parent: Index = NOWHERE) -> int:
-        return 0 if parent.isValid() else len(self.entries)
-
-    def columnCount(self, parent: Index = NOWHERE) -> int:
-        return 0 if parent.isValid() else len(COLUMNS)
+    def value(self, entry: ParticleEntry, column: int) -> Any:
+        return COLUMNS[column].key(entry)
 
     def data(self, index: Index, role: int = Qt.ItemDataRole.DisplayRole) -> Any:
-        entry, column = self.entries[index.row()], COLUMNS[index.column()]
+        entry, column = self.rows[index.row()], COLUMNS[index.column()]
         match role:
             case Qt.ItemDataRole.DisplayRole:
                 return column.text(entry)
@@ -109,7 +94,7 @@ class _Model(QAbstractTableModel):
                 return "\n".join([entry.id, ", ".join(values), *health])
             case Qt.ItemDataRole.TextAlignmentRole if index.column() >= WORDS:
                 return RIGHT
-        return column.key(entry) if role == SORT_ROLE else None
+        return None
 
     def headerData(
         self, section: int, orientation: Qt.Orientation, role: int = Qt.ItemDataRole.DisplayRole
@@ -137,9 +122,6 @@ class ParticleListPanel(QWidget):
         self.setObjectName("particle_list")
         self._model = _Model(self)
         self._model.set_theme(current_theme())
-        self._sorted = QSortFilterProxyModel(self)
-        self._sorted.setSourceModel(self._model)
-        self._sorted.setSortRole(SORT_ROLE)
         self.table = self._make_table()
         self._selected = ""
         self._quiet = False
@@ -170,18 +152,9 @@ class ParticleListPanel(QWidget):
         entries = tuple(entries)
         if entries == self._model.entries:
             return
-        same = [entry.id for entry in entries] == [entry.id for entry in self._model.entries]
         self._quiet = True
-        if same:
-            self._model.entries = entries
-            last = self._model.index(max(0, len(entries) - 1), len(COLUMNS) - 1)
-            self._model.dataChanged.emit(self._model.index(0, 0), last)
-        else:
-            self._model.beginResetModel()
-            self._model.entries = entries
-            self._model.endResetModel()
-            groups = {entry.particle.group for entry in entries}
-            self.table.setColumnHidden(1, len(groups) < 2)
+        self._model.set_entries(entries)
+        self.table.setColumnHidden(1, len({entry.particle.group for entry in entries}) < 2)
         self._quiet = False
         self._mark()
         self.table.fit_columns()
@@ -197,25 +170,25 @@ class ParticleListPanel(QWidget):
         table = ListTable(tuple(range(len(COLUMNS) - 1, WORDS - 1, -1)))
         table.setObjectName("particle_table")
         table.setAccessibleName(tr("Particles"))
-        table.setModel(self._sorted)
+        table.setModel(self._model)
         table.setSortingEnabled(True)
-        table.horizontalHeader().setSortIndicator(-1, Qt.SortOrder.AscendingOrder)
+        table.horizontalHeader().setSortIndicator(UNSORTED, Qt.SortOrder.AscendingOrder)
         return table
 
     def _mark(self) -> None:
-        row = next((r for r, entry in enumerate(self._model.entries) if entry.id == self._selected), -1)
+        row = next((r for r, entry in enumerate(self._model.rows) if entry.id == self._selected), -1)
         if row < 0:
             return
-        index = self._sorted.mapFromSource(self._model.index(row, 0))
+        index = self._model.index(row, 0)
         self._quiet = True
         flags = QItemSelectionModel.SelectionFlag
         self.table.selectionModel().setCurrentIndex(index, flags.ClearAndSelect | flags.Rows)
-        self.table.scrollTo(self._sorted.index(index.row(), 0))
+        self.table.scrollTo(index)
         self._quiet = False
 
     def _clicked(self, index: QModelIndex) -> None:
         if self._quiet or not index.isValid():
             return
-        self._selected = self._model.entries[self._sorted.mapToSource(index).row()].id
+        self._selected = self._model.rows[index.row()].id
         self.valueChanged.emit(self.value())
         self.editingFinished.emit()

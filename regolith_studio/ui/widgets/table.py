@@ -43,6 +43,10 @@ class LetterRows(QObject):
             rows.setDefaultSectionSize(height)
 
 
+MEASURED = 100
+"""Rows, from the first one that is seen, that say how wide columns must be."""
+
+
 class ListTable(QTableView):
     """One row can be chosen; no grid, no row numbers, compact rows.
 
@@ -69,6 +73,7 @@ class ListTable(QTableView):
         LetterRows(self, 9)
         header = self.horizontalHeader()
         header.setHighlightSections(False)
+        header.setResizeContentsPrecision(MEASURED)
         header.setMinimumSectionSize(30)
         header.setDefaultAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
         header.setSectionResizeMode(QHeaderView.ResizeMode.Interactive)

@@ -5,15 +5,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from PySide6.QtCore import (
-    QAbstractTableModel,
-    QItemSelectionModel,
-    QModelIndex,
-    QPersistentModelIndex,
-    QSortFilterProxyModel,
-    Qt,
-    Signal,
-)
+from PySide6.QtCore import QItemSelectionModel, QModelIndex, Qt, Signal
 from PySide6.QtWidgets import QAbstractItemView, QWidget
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
@@ -22,14 +14,12 @@ from regolith_studio.session.sample_table import Filter, form_of, has_weights, h
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.translation.sentences import retold
+from regolith_studio.ui.widgets.entry_rows import RIGHT, UNSORTED, EntryRows, Index
 from regolith_studio.ui.widgets.health_icons import health_pixmaps
 from regolith_studio.ui.widgets.labels import plain_symbol
 from regolith_studio.ui.widgets.number_text import short_number
 from regolith_studio.ui.widgets.table import ListTable
 
-Index = QModelIndex | QPersistentModelIndex
-NOWHERE = QModelIndex()
-SORT_ROLE = Qt.ItemDataRole.UserRole + 1
 _UNITS = {0: "", 1: " [µm]", 2: " [µm²]", 3: " [µm³]", 5: " [µm⁵]"}
 HEALTH, FORM = "health", "form"
 WEIGHT = "weight"
@@ -39,7 +29,6 @@ HEALTH_WORDS = (
 FORM_WORDS = (mark("equant"), mark("disc"), mark("rod"), mark("blade"))
 WORDS = 4
 """Columns of words; those of numbers follow."""
-RIGHT = int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
 
 
 @dataclass(frozen=True)
@@ -104,38 +93,23 @@ class _Formatted(_Number):
         return short_number(entry.descriptors[self._key])
 
 
-class SampleModel(QAbstractTableModel):
+class SampleModel(EntryRows):
     """The entries as Qt asks for them."""
 
     def __init__(self, parent: QWidget) -> None:
-        super().__init__(parent)
-        self.entries: tuple[ParticleEntry, ...] = ()
         self.columns = columns()
+        super().__init__(len(self.columns), parent)
         self._icons: dict[str, Any] = {}
 
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
         self._icons = health_pixmaps(theme)
 
-    def set_entries(self, entries: tuple[ParticleEntry, ...]) -> None:
-        """Show other particles, or the same ones with more known about them."""
-        same = [entry.id for entry in entries] == [entry.id for entry in self.entries]
-        if same and entries:
-            self.entries = entries
-            self.dataChanged.emit(self.index(0, 0), self.index(len(entries) - 1, len(self.columns) - 1))
-            return
-        self.beginResetModel()
-        self.entries = entries
-        self.endResetModel()
-
-    def rowCount(self, parent: Index = NOWHERE) -> int:
-        return 0 if parent.isValid() else len(self.entries)
-
-    def columnCount(self, parent: Index = NOWHERE) -> int:
-        return 0 if parent.isValid() else len(self.columns)
+    def value(self, entry: ParticleEntry, column: int) -> Any:
+        return self.columns[column].value(entry)
 
     def data(self, index: Index, role: int = Qt.ItemDataRole.DisplayRole) -> Any:
-        entry, column = self.entries[index.row()], self.columns[index.column()]
+        entry, column = self.rows[index.row()], self.columns[index.column()]
         match role:
             case Qt.ItemDataRole.DisplayRole:
                 return tr(column.text(entry)) if column.key in (HEALTH, FORM) else column.text(entry)
@@ -145,7 +119,7 @@ class SampleModel(QAbstractTableModel):
                 return _tip(entry) if column.key == HEALTH else column.text(entry)
             case Qt.ItemDataRole.TextAlignmentRole if index.column() >= WORDS:
                 return RIGHT
-        return column.value(entry) if role == SORT_ROLE else None
+        return None
 
     def headerData(
         self, section: int, orientation: Qt.Orientation, role: int = Qt.ItemDataRole.DisplayRole
@@ -165,20 +139,6 @@ def _tip(entry: ParticleEntry) -> str:
     return "\n".join(map(retold, health_sentences(entry).split("\n")))
 
 
-class _Filtered(QSortFilterProxyModel):
-    keeps: Filter | None = None
-
-    def filterAcceptsRow(self, row: int, parent: Index) -> bool:  # noqa: ARG002
-        model = self.sourceModel()
-        assert isinstance(model, SampleModel), "the proxy stands before the sample"
-        return self.keeps is None or self.keeps(model.entries[row])
-
-    def set_filter(self, keeps: Filter | None) -> None:
-        self.beginResetModel()
-        self.keeps = keeps
-        self.endResetModel()
-
-
 class SampleTable(ListTable):
     """Announces which particles are chosen, and which one is current."""
 
@@ -192,12 +152,9 @@ class SampleTable(ListTable):
         self.setSelectionMode(QAbstractItemView.SelectionMode.ExtendedSelection)
         self.model_ = SampleModel(self)
         self.model_.set_theme(current_theme())
-        self._proxy = _Filtered(self)
-        self._proxy.setSourceModel(self.model_)
-        self._proxy.setSortRole(SORT_ROLE)
-        self.setModel(self._proxy)
+        self.setModel(self.model_)
         self.setSortingEnabled(True)
-        self.horizontalHeader().setSortIndicator(-1, Qt.SortOrder.AscendingOrder)
+        self.horizontalHeader().setSortIndicator(UNSORTED, Qt.SortOrder.AscendingOrder)
         self._quiet = False
         self.selectionModel().selectionChanged.connect(lambda *_: self._announce())
         self.selectionModel().currentRowChanged.connect(lambda index, _old: self._announce_current(index))
@@ -217,19 +174,19 @@ class SampleTable(ListTable):
         """Show only what this keeps."""
         chosen = self.chosen()
         self._quiet = True
-        self._proxy.set_filter(keeps)
+        self.model_.set_filter(keeps)
         self._quiet = False
         self.choose(chosen)
         self._announce()
 
     def visible_entries(self) -> list[ParticleEntry]:
         """What is listed, in the order of the rows."""
-        return [self._entry(row) for row in range(self._proxy.rowCount())]
+        return list(self.model_.rows)
 
     def chosen(self) -> list[str]:
         """Ids of the chosen rows, from top to bottom."""
         rows = sorted(index.row() for index in self.selectionModel().selectedRows())
-        return [self._entry(row).id for row in rows]
+        return [self.model_.rows[row].id for row in rows]
 
     def choose(self, ids: Sequence[str], current: str = "") -> None:
         """Choose these rows; announces nothing."""
@@ -237,7 +194,7 @@ class SampleTable(ListTable):
         self._quiet = True
         self.selectionModel().clearSelection()
         for row, entry in enumerate(self.visible_entries()):
-            index = self._proxy.index(row, 0)
+            index = self.model_.index(row, 0)
             if entry.id == current:
                 self.selectionModel().setCurrentIndex(index, flags.NoUpdate)
                 self.scrollTo(index)
@@ -246,14 +203,11 @@ class SampleTable(ListTable):
         self._quiet = False
 
     def measure(self) -> None:
-        for column in range(self._proxy.columnCount()):
+        for column in range(self.model_.columnCount()):
             self.resizeColumnToContents(column)
 
     def stretch(self) -> None:
         """No column: there are more than fit."""
-
-    def _entry(self, row: int) -> ParticleEntry:
-        return self.model_.entries[self._proxy.mapToSource(self._proxy.index(row, 0)).row()]
 
     def _announce(self) -> None:
         if not self._quiet:
@@ -261,4 +215,4 @@ class SampleTable(ListTable):
 
     def _announce_current(self, index: QModelIndex) -> None:
         if not self._quiet and index.isValid():
-            self.currentChosen.emit(self._entry(index.row()).id)
+            self.currentChosen.emit(self.model_.rows[index.row()].id)

@@ -1,0 +1,90 @@
+"""Rows of particles: Qt's own examiner of models finds nothing, whatever is sorted, filtered or learned."""
+
+import random
+
+import pytest
+from PySide6.QtCore import QItemSelectionModel, Qt
+from PySide6.QtTest import QAbstractItemModelTester
+
+from regolith_studio.geometry.directions import icosphere
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.session.results import ParticleEntry
+from regolith_studio.ui.widgets.entry_rows import UNSORTED, EntryRows
+
+FALLING = Qt.SortOrder.DescendingOrder
+MESH = icosphere(1)
+
+
+class Rows(EntryRows):
+    def data(self, index, role=Qt.ItemDataRole.DisplayRole):
+        entry = self.rows[index.row()]
+        return str(self.value(entry, index.column())) if role == Qt.ItemDataRole.DisplayRole else None
+
+    def value(self, entry, column):
+        return (entry.id, entry.particle.group, entry.descriptors.get("volume", 0.0))[column]
+
+
+def entries(groups, **volumes):
+    return tuple(
+        ParticleEntry(name, Particle(name, MESH, group=group), None, {"volume": volumes.get(name, 1.0)})
+        for name, group in zip("edcba", groups, strict=True)
+    )
+
+
+@pytest.fixture
+def rows(app):
+    made = Rows(3, app)
+    examiner = QAbstractItemModelTester(made, QAbstractItemModelTester.FailureReportingMode.Fatal)
+    made.set_entries(entries("xyxyx"))
+    yield made
+    examiner.deleteLater()
+    made.deleteLater()
+
+
+def listed(rows):
+    return "".join(rows.index(row, 0).data() for row in range(rows.rowCount()))
+
+
+def test_that_equal_rows_stay_as_they_were_given_in_both_orders(rows):
+    rows.sort(1)
+    assert listed(rows) == "ecadb"
+    rows.sort(1, FALLING)
+    assert listed(rows) == "dbeca"
+    rows.sort(UNSORTED)
+    assert listed(rows) == "edcba"
+
+
+def test_that_what_is_chosen_stays_chosen_when_rows_move(rows):
+    chosen = QItemSelectionModel(rows)
+    chosen.select(rows.index(0, 0), QItemSelectionModel.SelectionFlag.Select)
+    rows.sort(0)
+    assert [index.data() for index in chosen.selectedIndexes()] == ["e"]
+    assert chosen.selectedIndexes()[0].row() == 4
+    rows.sort(2, FALLING)
+    rows.set_entries(entries("xyxyx", e=2.0, b=3.0))
+    assert listed(rows) == "bedca"
+    assert [index.data() for index in chosen.selectedIndexes()] == ["e"]
+
+
+def test_that_a_filter_follows_what_becomes_known(rows):
+    rows.set_filter(lambda entry: entry.descriptors["volume"] > 1.0)
+    assert listed(rows) == ""
+    rows.set_entries(entries("xyxyx", c=2.0, a=3.0))
+    assert listed(rows) == "ca"
+    rows.set_filter(None)
+    assert listed(rows) == "edcba"
+
+
+def test_that_a_thousand_changes_leave_a_sound_model(rows):
+    draw = random.Random(1)
+    for _ in range(1000):
+        match draw.randrange(3):
+            case 0:
+                rows.sort(draw.randrange(-1, 3), draw.choice(list(Qt.SortOrder)))
+            case 1:
+                least = draw.random()
+                rows.set_filter(lambda entry, least=least: entry.descriptors["volume"] > least)
+            case 2:
+                volumes = {name: draw.random() for name in "abcde"}
+                rows.set_entries(entries("xyxyx", **volumes)[: draw.randrange(6)])
+        assert set(listed(rows)) <= {entry.id for entry in rows.entries}
