@@ -10,7 +10,7 @@ from regolith_studio.ui.page import PageWidget
 
 Steps = Generator[None, None, PageWidget]
 
-SLICE = 0.012
+SLICE = 0.006
 """Seconds after which no further step is taken before others have had their turn; one always is."""
 POLISHED_AT_ONCE = 25
 """Widgets that take their style between two steps."""

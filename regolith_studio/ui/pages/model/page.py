@@ -36,8 +36,9 @@ from regolith_studio.ui.pages.model.files import ask_card, ask_model
 from regolith_studio.ui.pages.model.judgement import JudgementPanel
 from regolith_studio.ui.pages.model.sources import Sources, usual_sizes
 from regolith_studio.ui.pages.model.views import Gallery, LiveShape
-from regolith_studio.ui.theme import Theme
+from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.views.factory import make_view
 
 SOURCE_FILTER = mark("Fits, models and material cards (*.json *.npz);;All files (*)")
 DRAWN = mark("A drawn particle")
@@ -62,14 +63,18 @@ class ModelPage(PageWidget):
         self._following = Following(context, tr("Drawing particles"), "live")
 
     def assemble(self) -> Iterator[None]:
-        views, wiring = self._context.views, self._context.wiring
+        views, wiring, surroundings = self._context.views, self._context.wiring, current_theme().surroundings
         self.source = SourceControls()
         yield
         self.drawing = DrawControls()
         yield
-        self.live = LiveShape(views)
+        view = make_view(views, surroundings)
         yield
-        self.gallery = Gallery(views)
+        self.live = LiveShape(view)
+        yield
+        view = make_view(views, surroundings)
+        yield
+        self.gallery = Gallery(view)
         yield
         self.distributions = DistributionsPanel()
         yield

@@ -7,9 +7,9 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.scene import surfaces
 from regolith_studio.scene.cameras import framing_pose
 from regolith_studio.scene.gallery import gallery_pose, show_gallery
-from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import mark, tr
-from regolith_studio.ui.views.factory import make_view
+from regolith_studio.ui.views.protocol import SceneView
 from regolith_studio.ui.views.view_frame import ViewFrame
 from regolith_studio.ui.widgets.spectrum_editor import SpectrumEditor
 
@@ -17,19 +17,13 @@ NO_MODEL = mark("The spectrum appears when a model is fitted.")
 
 
 class LiveShape(QWidget):
-    """Spectrum on the left, one drawn particle on the right.
+    """Spectrum on the left, one drawn particle in a view on the right."""
 
-    Parameters
-    ----------
-    kind
-        ``live`` or ``image``, of the view.
-    """
-
-    def __init__(self, kind: str, parent: QWidget | None = None) -> None:
+    def __init__(self, view: SceneView, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.spectrum = SpectrumEditor(tr(NO_MODEL))
         self.spectrum.setObjectName("model_spectrum")
-        self.frame = ViewFrame(make_view(kind, current_theme().surroundings), "drawn")
+        self.frame = ViewFrame(view, "drawn")
         self.reset, self.another = QPushButton(tr("Reset the spectrum")), QPushButton(tr("Another particle"))
         self.reset.setObjectName("model_reset_spectrum")
         self.another.setObjectName("model_another")
@@ -82,9 +76,9 @@ class LiveShape(QWidget):
 class Gallery(QWidget):
     """Measured particles above, drawn ones below."""
 
-    def __init__(self, kind: str, parent: QWidget | None = None) -> None:
+    def __init__(self, view: SceneView, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self.frame = ViewFrame(make_view(kind, current_theme().surroundings), "gallery")
+        self.frame = ViewFrame(view, "gallery")
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(self.frame)

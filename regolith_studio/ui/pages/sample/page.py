@@ -58,6 +58,7 @@ class SamplePage(PageWidget):
         self.scatter = ScatterPanel()
         yield
         self.health = HealthPanel()
+        yield
         self.frame = ViewFrame(make_view(self._context.views, current_theme().surroundings), "sample_view")
         self._camera = CameraLink([self.frame.view])
         yield

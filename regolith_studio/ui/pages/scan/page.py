@@ -67,10 +67,13 @@ class ScanPage(PageWidget):
     def assemble(self) -> Iterator[None]:
         self.overview = Overview()
         yield
-        self.controls, self.steps = SegmentationControls(), StepsPanel()
+        self.controls = SegmentationControls()
+        yield
+        self.steps = StepsPanel()
         yield
         self._timer = QTimer(self, interval=PREVIEW_DELAY, singleShot=True)
-        self._arrange()
+        yield from self._arrange()
+        yield
         self._connect()
         self._show_state()
 
@@ -358,11 +361,12 @@ class ScanPage(PageWidget):
         self.steps.particlesRequested.connect(self.make_particles)
         self.steps.showRequested.connect(lambda: self._context.go("sample"))
 
-    def _arrange(self) -> None:
+    def _arrange(self) -> Iterator[None]:
         controls = scrolled_column([self.steps, self.controls])
         parts = [padded(self.overview, 10, 10, 2, 8), controls]
         columns = side_by_side(parts, [1100, CONTROLS_WIDTH + 20], stretch=0)
         columns.setObjectName("scan_columns")
+        yield
         layout = QHBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(columns)

@@ -58,7 +58,8 @@ class StudiesPage(PageWidget):
             self.variations[key] = VariationPanel(key)
         yield
         self.tabs = self._tabs()
-        self._place()
+        yield
+        yield from self._place()
         yield
         self.desk = VariationDesk(self._context, self.variations, self.bar)
         self._wire(Kind.LMAX_STUDY, self.lmax_study)
@@ -195,7 +196,7 @@ class StudiesPage(PageWidget):
         pages = [(self.variations[key], tr(title)) for key, title in TABS.items()]
         return tabs("studies_coarsening", [(self.coarsening_study, tr("Losses (Fig. 8)")), *pages])
 
-    def _place(self) -> None:
+    def _place(self) -> Iterator[None]:
         above = side_by_side(
             [_titled(tr(LMAX_TITLE), _framed(self.lmax_study)), _titled(tr(COARSENING_TITLE), self.tabs)],
             [480, 900],
@@ -205,6 +206,7 @@ class StudiesPage(PageWidget):
         below = _titled(tr("What the polyhedra look like (Fig. 7)"), _framed(self.gallery))
         rows = stacked([above, below], [370, 500], stretch=1)
         rows.setObjectName("studies_rows")
+        yield
         layout = QVBoxLayout(self)
         layout.setContentsMargins(10, 10, 10, 8)
         layout.setSpacing(0)
