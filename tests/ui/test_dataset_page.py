@@ -25,7 +25,7 @@ from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.dataset import PAGE
 from regolith_studio.ui.theme import DARK, LIGHT
-from regolith_studio.ui.widgets.thumbnails import picture_of
+from regolith_studio.ui.widgets.thumbnails import AT_ONCE, painted, picture_of
 from regolith_studio.ui.widgets.toast import Toast
 from regolith_studio.ui.wiring import Wiring
 
@@ -291,6 +291,13 @@ def test_that_a_picture_shows_a_lit_solid_on_a_clear_ground() -> None:
     assert image.pixelColor(32, 32).alpha() == 255
     tones = {image.pixelColor(x, y).rgb() for x in range(16, 48) for y in range(16, 48)}
     assert len(tones) > 5
+
+
+@pytest.mark.usefixtures("app")
+def test_that_the_window_answers_while_a_picture_is_painted() -> None:
+    fine = icosphere(4)
+    steps = list(painted(fine, "#c08040"))
+    assert len(steps) == -(-len(fine.faces) // 2 // AT_ONCE), "half of its triangles face the eye"
 
 
 def tree(folder):

@@ -1,5 +1,7 @@
 """Small pictures of solids without any graphics hardware: facets that face the eye, from back to front."""
 
+from collections.abc import Generator
+
 import numpy as np
 from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QColor, QImage, QPainter, QPixmap, QPolygonF
@@ -13,20 +15,41 @@ _VIEW = np.array([[0.88, 0.48, 0.0], [-0.24, 0.43, 0.87], [0.42, -0.76, 0.49]])
 _LIGHT = np.array([-0.35, 0.55, 0.76])
 
 
+AT_ONCE = 300
+"""Triangles that are painted between two steps: 5 ms."""
+
+Painting = Generator[None, None, QPixmap]
+
+
 def picture_of(mesh: Mesh, colour: str, size: int = 96) -> QPixmap:
     """The mesh as a lit solid on a clear ground, `size` pixels wide and high."""
+    painting = painted(mesh, colour, size)
+    while True:
+        try:
+            next(painting)
+        except StopIteration as end:
+            made: QPixmap = end.value
+            return made
+
+
+def painted(mesh: Mesh, colour: str, size: int = 96) -> Painting:
+    """:func:`picture_of` step by step, so that the window answers in between; returns the picture."""
     wide = size * OVERSAMPLING
     image = QImage(wide, wide, QImage.Format.Format_ARGB32_Premultiplied)
     image.fill(Qt.GlobalColor.transparent)
     corners, shades = _seen(mesh)
-    painter = QPainter(image)
-    painter.setPen(Qt.PenStyle.NoPen)
+    painter = QPainter()
     tones = [_tone(colour, level) for level in np.linspace(0.35, 1.15, 64)]
     places = np.clip(((shades + 1) / 2 * 63).astype(int), 0, 63)
-    for triangle, place in zip(corners * wide, places, strict=True):
-        painter.setBrush(tones[place])
-        painter.drawPolygon(QPolygonF([QPointF(x, y) for x, y in triangle]))
-    painter.end()
+    for first in range(0, len(places), AT_ONCE):
+        part = slice(first, first + AT_ONCE)
+        painter.begin(image)
+        painter.setPen(Qt.PenStyle.NoPen)
+        for triangle, place in zip(corners[part] * wide, places[part], strict=True):
+            painter.setBrush(tones[place])
+            painter.drawPolygon(QPolygonF([QPointF(x, y) for x, y in triangle]))
+        painter.end()
+        yield
     smooth = Qt.TransformationMode.SmoothTransformation
     return QPixmap.fromImage(image.scaled(size, size, Qt.AspectRatioMode.KeepAspectRatio, smooth))
 

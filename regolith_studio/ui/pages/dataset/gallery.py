@@ -10,7 +10,7 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import heading
-from regolith_studio.ui.widgets.thumbnails import picture_of
+from regolith_studio.ui.widgets.thumbnails import Painting, painted
 
 SIZE, CELL = 92, QSize(128, 136)
 """Of a picture, and of a picture with its words, in pixels."""
@@ -34,6 +34,7 @@ class RepresentativesGallery(QWidget):
         self._theme = current_theme()
         self._shown: tuple[Shown, ...] = ()
         self._next = 0
+        self._painting: Painting | None = None
         self._timer = QTimer(self, interval=0)
         self._timer.timeout.connect(self._draw_next)
         self.title = heading(tr("Representatives"))
@@ -88,9 +89,10 @@ class RepresentativesGallery(QWidget):
     def release(self) -> None:
         """Draw no more."""
         self._timer.stop()
+        self._painting = None
 
     def _redraw(self) -> None:
-        self._next = 0
+        self._next, self._painting = 0, None
         if self._shown:
             self._timer.start()
 
@@ -98,9 +100,13 @@ class RepresentativesGallery(QWidget):
         if self._next >= len(self._shown):
             self._timer.stop()
             return
-        each = self._shown[self._next]
-        colour = self._theme.polyhedron if each.coarsened else self._theme.particle
-        item = self.list.item(self._next)
-        if item is not None:
-            item.setIcon(picture_of(each.mesh, colour, SIZE))
-        self._next += 1
+        if self._painting is None:
+            each = self._shown[self._next]
+            colour = self._theme.polyhedron if each.coarsened else self._theme.particle
+            self._painting = painted(each.mesh, colour, SIZE)
+        try:
+            next(self._painting)
+        except StopIteration as end:
+            self.list.item(self._next).setIcon(end.value)
+            self._painting = None
+            self._next += 1
