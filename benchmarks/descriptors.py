@@ -106,7 +106,7 @@ def main() -> None:
     fine_hull = fine.hull
     compare(
         "bounding box, hull of the particle (exact | heuristic)",
-        lambda: minimum_volume_box(fine_hull),
+        lambda: minimum_volume_box(fresh(fine_hull)),
         lambda: trimesh.bounds.oriented_bounds(fine_hull.vertices),
     )
     compare(

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from scipy.sparse import coo_array
@@ -85,18 +86,30 @@ class OrientedBox:
         return np.asarray(self.centre + (signs * self.extents) @ self.axes)
 
 
+_of_meshes: WeakKeyDictionary[Mesh, OrientedBox] = WeakKeyDictionary()
+
+
 def minimum_volume_box(solid: Mesh | ConvexPolyhedron) -> OrientedBox:
     """The oriented bounding box of least volume.
 
     Found by the branch and bound of :mod:`regolith_studio.geometry.box_search` (O'Rourke 1985: two adjacent
     sides are flush with edges of the hull), and independent of unit and orientation. Of boxes that
-    tie in volume, the one with the least sum of edges is taken.
+    tie in volume, the one with the least sum of edges is taken. That of a mesh is looked for once: who draws
+    it need not wait for what has been measured.
 
     Raises
     ------
     GeometryError
         If the vertices lie in one plane.
     """
+    known = _of_meshes.get(solid) if isinstance(solid, Mesh) else None
+    found = known or _searched(solid)
+    if isinstance(solid, Mesh):
+        _of_meshes[solid] = found
+    return found
+
+
+def _searched(solid: Mesh | ConvexPolyhedron) -> OrientedBox:
     hull = solid.mesh if isinstance(solid, ConvexPolyhedron) else solid.hull
     low, high = hull.bounds
     size = float((high - low).max())

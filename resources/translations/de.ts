@@ -3090,6 +3090,11 @@
    <translation>Vermessung</translation>
   </message>
   <message>
+   <location filename="ui/pages/explore/page.py" />
+   <source>Measuring distances</source>
+   <translation>Abstände werden gemessen</translation>
+  </message>
+  <message>
    <location filename="jobs/examining.py" />
    <source>Measuring particles</source>
    <translation>Partikel werden vermessen</translation>

@@ -1,5 +1,8 @@
 """The minimum-volume box: closed forms, an independent optimiser, invariance."""
 
+import gc
+import weakref
+
 import numpy as np
 import pytest
 from scipy.optimize import minimize
@@ -8,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from benchmarks.independent import least_box
 from regolith_studio.errors import GeometryError
-from regolith_studio.geometry import ConvexPolyhedron, HalfSpaces, Mesh
+from regolith_studio.geometry import ConvexPolyhedron, HalfSpaces, Mesh, oriented_box
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.heuristic_box import heuristic_box
@@ -217,3 +220,16 @@ def split_edge(faces: list[list[int]], corners: FloatArray) -> list[list[int]]:
         else:
             split.append(face)
     return [*split, [8, left, 9], [right, 8, 9]]
+
+
+def test_that_the_box_of_a_mesh_is_looked_for_once_and_does_not_keep_the_mesh(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    stone = rough_stone(3)
+    first = minimum_volume_box(stone)
+    monkeypatch.setattr(oriented_box, "minimum_box", None)
+    assert minimum_volume_box(stone) is first
+    alive = weakref.ref(stone)
+    del stone
+    gc.collect()
+    assert alive() is None

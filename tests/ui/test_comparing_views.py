@@ -103,12 +103,12 @@ def test_that_the_section_draws_and_measures_what_the_plane_cuts(window):
     assert window.page.plots.left.currentIndex() == 0, "what was in front before is in front again"
 
 
-def test_that_the_fit_says_its_size_again_when_the_distances_go(window):
+def test_that_the_fit_says_its_size_again_when_the_distances_go(window, wait):
     frame = window.page.triptych.frames["fit"]
     before = frame.detail.text()
     assert before.startswith("121 coefficients")
     switch(window, "heat")
-    assert frame.detail.text().startswith("at most")
+    wait(lambda: frame.detail.text().startswith("at most"))
     switch(window, "heat")
     assert frame.detail.text() == before
 
@@ -190,15 +190,17 @@ def test_that_the_picture_of_what_is_seen_has_bar_line_and_titles_at_any_scale(w
     assert max(inked) == 255  # the title
 
 
-def test_that_another_theme_measures_no_distances_again(window, wait, monkeypatch):
+def test_that_another_theme_measures_no_distances_again(window, wait, settled, monkeypatch):
     asked = []
 
     def counted(*arguments):
         asked.append(arguments)
         return signed_distances(*arguments)
 
-    monkeypatch.setattr("regolith_studio.ui.views.triptych.signed_distances", counted)
+    monkeypatch.setattr("regolith_studio.ui.views.distances.signed_distances", counted)
     switch(window, "heat")
+    wait(lambda: len(asked) == 1)
+    settled(window)
     for theme in (DARK, LIGHT):
         window.page.triptych.set_theme(theme)
         edges = actor(window, "polyhedron", OUTLINE).prop.color

@@ -14,7 +14,6 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.oriented_box import minimum_volume_box
 from regolith_studio.harmonics.visibility import hidden_faces
 from regolith_studio.scene import extras, surfaces
-from regolith_studio.scene.distance import signed_distances
 from regolith_studio.scene.shapes import FIT, NAMES, PARTICLE, POLYHEDRON, Shape
 from regolith_studio.scene.sight import Sight
 from regolith_studio.session.results import ParticleEntry, Results
@@ -22,6 +21,7 @@ from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.camera_link import CameraLink
 from regolith_studio.ui.views.comparison import COMPARE, Comparison, partners_of
+from regolith_studio.ui.views.distances import Distances, Follow
 from regolith_studio.ui.views.facet_pointer import FacetPointer
 from regolith_studio.ui.views.factory import make_view
 from regolith_studio.ui.views.sections import Sections
@@ -36,11 +36,13 @@ class Triptych(QSplitter):
     ----------
     kind
         ``live`` or ``image``.
+    follow
+        Does in the background what must be measured before it is drawn.
     """
 
     whispered = Signal(str)
 
-    def __init__(self, kind: str, parent: QWidget | None = None) -> None:
+    def __init__(self, kind: str, follow: Follow, parent: QWidget | None = None) -> None:
         super().__init__(Qt.Orientation.Horizontal, parent)
         self.setObjectName("triptych")
         self.setChildrenCollapsible(False)
@@ -62,7 +64,9 @@ class Triptych(QSplitter):
         self._extras: dict[str, bool] = {}
         self._star_point: FloatArray | None = None
         self._hidden: BoolArray | None = None
-        self._measured: tuple[Mesh, Mesh, FloatArray] | None = None
+        self._distances = Distances(follow, self)
+        self._distances.measured.connect(self._draw_fit)
+        self._distances.refused.connect(self._whisper)
         self.sections = Sections(self)
         self.comparison = Comparison(self.frames, self.sections)
         self.pointer = FacetPointer(
@@ -223,7 +227,9 @@ class Triptych(QSplitter):
         if mesh is None or particle is None:
             return
         ink = self._theme.surroundings
-        distances = self._distances(mesh, particle) if self._heat else None
+        distances = self._distances.between(mesh, particle) if self._heat else None
+        if self._heat and distances is None:
+            return  # what is shown stays until they are measured
         self.views[FIT].draw(lambda plotter: surfaces.show_fit(plotter, mesh, distances, None, ink))
         if distances is None:
             self.frames[FIT].set_detail(self._size_of_fit)
@@ -231,12 +237,6 @@ class Triptych(QSplitter):
             reach = float(np.abs(distances).max(initial=0.0))
             self.frames[FIT].set_detail(tr("at most {reach:.3g} µm from the particle", reach=reach))
         self._draw_extras(FIT)
-
-    def _distances(self, fit: Mesh, particle: Mesh) -> FloatArray:
-        """Of the fit from the particle; measured once, another theme only writes the scale anew."""
-        if self._measured is None or self._measured[0] is not fit or self._measured[1] is not particle:
-            self._measured = (fit, particle, signed_distances(fit.vertices, particle))
-        return self._measured[2]
 
     def _draw_polyhedron(self) -> None:
         solid = self._shapes.get(POLYHEDRON)

@@ -7,6 +7,7 @@ from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QHBoxLayout, QMainWindow
 
 from regolith_studio.scene.cameras import DIRECTIONS
+from regolith_studio.ui.following import Following
 from regolith_studio.ui.layout import CONTROLS_WIDTH, padded, scrolled_column, side_by_side, stacked
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.explore.pictures import Pictures
@@ -16,6 +17,7 @@ from regolith_studio.ui.panels.fit import FitPanel
 from regolith_studio.ui.panels.loss import LossPanel
 from regolith_studio.ui.panels.particle_list import ParticleListPanel
 from regolith_studio.ui.theme import Theme
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.triptych import Triptych
 
 LIST_WIDTH = 40
@@ -39,7 +41,8 @@ class ExplorePage(PageWidget):
         self._session = context.session
         self.particles, self.fit = ParticleListPanel(), FitPanel()
         self.coarsening, self.loss = CoarseningPanel(), LossPanel()
-        self.triptych = Triptych(context.views)
+        measuring = Following(context, tr("Measuring distances"), "distances")
+        self.triptych = Triptych(context.views, measuring.want)
         self.plots = PlotArea(self.triptych)
         self.triptych.whispered.connect(self._whisper)
         self.pictures = Pictures(context, self.triptych, self)

@@ -1,0 +1,53 @@
+"""How far the fit is from the particle: measured in the background, and kept while both are on screen."""
+
+from collections.abc import Callable
+from typing import Any
+
+from PySide6.QtCore import QObject, Signal
+
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.jobs.events import Job, Started, Steps
+from regolith_studio.scene.distance import signed_distances
+
+Follow = Callable[[Job, Callable[[Any], None], Callable[[str], None]], None]
+"""Does a job as soon as what is under way has ended; told who shows its result, or says why there is none."""
+
+
+class Distances(QObject):
+    """What was measured last; ``measured`` tells that it is another, ``refused`` why it is none.
+
+    Parameters
+    ----------
+    follow
+        Does the work.
+    """
+
+    measured = Signal()
+    refused = Signal(str)
+
+    def __init__(self, follow: Follow, parent: QObject) -> None:
+        super().__init__(parent)
+        self._follow = follow
+        self._known: tuple[Mesh, Mesh, FloatArray] | None = None
+        self._wanted: tuple[Mesh, Mesh] | None = None
+
+    def between(self, fit: Mesh, particle: Mesh) -> FloatArray | None:
+        """Of each vertex of the fit, shape (n,), positive outside; nothing while they are being measured."""
+        if self._known is not None and self._known[0] is fit and self._known[1] is particle:
+            return self._known[2]
+        if self._wanted is None or self._wanted[0] is not fit or self._wanted[1] is not particle:
+            self._wanted = fit, particle
+            job = Job(measure_distances, (fit, particle))
+            self._follow(job, lambda found: self._take(fit, particle, found), self.refused.emit)
+        return None
+
+    def _take(self, fit: Mesh, particle: Mesh, found: FloatArray) -> None:
+        self._known = fit, particle, found
+        self.measured.emit()
+
+
+def measure_distances(fit: Mesh, particle: Mesh) -> Steps:
+    """A job: :func:`~regolith_studio.scene.distance.signed_distances` of a fit's vertices."""
+    yield Started("Measuring distances")
+    return signed_distances(fit.vertices, particle)
