@@ -147,7 +147,7 @@ def test_that_a_dragged_bar_changes_the_field_and_a_button_draws_it_anew(page):
     assert np.abs(field.drawn.values - first).max() > 0.01
     spread = field.drawn.values.std()
     editor = field.spectrum
-    view = editor.canvas.plotItem.vb
+    view = editor.canvas.getViewBox()
     place = editor.canvas.mapFromScene(view.mapViewToScene(QPointF(2, np.log10(30.0))))
     viewport = editor.canvas.viewport()
     QTest.mousePress(viewport, Qt.MouseButton.LeftButton, pos=place)

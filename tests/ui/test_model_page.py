@@ -82,7 +82,7 @@ def take(page, sample):
 
 
 def place(editor, degree, percent):
-    seen = editor.canvas.plotItem.vb.mapViewToScene(QPointF(degree, np.log10(percent)))
+    seen = editor.canvas.getViewBox().mapViewToScene(QPointF(degree, np.log10(percent)))
     return editor.canvas.mapFromScene(seen)
 
 

@@ -83,7 +83,7 @@ def test_that_what_cannot_be_saved_is_one_sentence(curves, tmp_path):
 
 
 def test_that_a_point_of_a_curve_tells_its_values_when_pointed_at(curves):
-    view = curves.canvas.plotItem.vb
+    view = curves.canvas.getViewBox()
     QApplication.processEvents()
     there = view.mapViewToScene(QPointF(2.0, 0.25))
     assert curves.value_at(there) == "Dmin\nDegree lmax: 2\nRMSRE [%]: 0.25"
@@ -98,4 +98,4 @@ def test_that_a_curve_on_a_logarithmic_axis_tells_its_values_too(shown):
     plot.resize(400, 260)
     shown(plot)
     QApplication.processEvents()
-    assert plot.value_at(plot.canvas.plotItem.vb.mapViewToScene(QPointF(2.0, 2.0))).endswith("y: 100")
+    assert plot.value_at(plot.canvas.getViewBox().mapViewToScene(QPointF(2.0, 2.0))).endswith("y: 100")

@@ -147,7 +147,7 @@ def test_that_a_section_tells_surface_models_and_grains_under_the_mouse(page, tm
     plot, section = page.x_z, page.x_z.section
     at = np.flatnonzero(section.used & (section.profile.u < section.asymmetric.apex[0]))[3]
     u, z = section.profile.u[at], section.profile.height[at]
-    words = plot.value_at(plot.canvas.plotItem.vb.mapViewToScene(QPointF(1e3 * u, 1e3 * z)))
+    words = plot.value_at(plot.canvas.getViewBox().mapViewToScene(QPointF(1e3 * u, 1e3 * z)))
     left = section.asymmetric.left
     assert words.splitlines()[0] == f"surface at {1e3 * u:.3g} mm: {1e3 * z:.3g} mm (between the cuts)"
     assert words.splitlines()[1] == (
@@ -159,10 +159,10 @@ def test_that_a_section_tells_surface_models_and_grains_under_the_mouse(page, tm
     assert grain_words(
         Discs(middle[deep : deep + 1, 0], pile.points[deep : deep + 1, 2], np.array([1e-3])), x, high
     ) == (f"grain 1: 2 mm at {1e3 * x:.3g}, {1e3 * high:.3g} mm")
-    assert plot.value_at(plot.canvas.plotItem.vb.mapViewToScene(QPointF(1e3 * x, 1e3 * high))).startswith(
+    assert plot.value_at(plot.canvas.getViewBox().mapViewToScene(QPointF(1e3 * x, 1e3 * high))).startswith(
         "grain "
     )
-    assert plot.value_at(plot.canvas.plotItem.vb.mapViewToScene(QPointF(0.0, 1e6))) == ""
+    assert plot.value_at(plot.canvas.getViewBox().mapViewToScene(QPointF(0.0, 1e6))) == ""
     columns, rows = plot.numbers()
     assert columns[0] == "x [mm]"
     assert sum(row[2] == "yes" for row in rows) == section.used.sum()

@@ -24,7 +24,7 @@ class SpectrumPlot(Plot):
     shares: np.ndarray[tuple[int], np.dtype[np.float64]] = np.empty(0)
 
     def value_at(self, place: QPointF) -> str:
-        degree = round(self.canvas.plotItem.vb.mapSceneToView(place).x())
+        degree = round(self.canvas.getViewBox().mapSceneToView(place).x())
         return f"l = {degree}: {self.shares[degree - 1]:.3g} %" if 1 <= degree <= len(self.shares) else ""
 
     def numbers(self) -> Numbers:

@@ -143,7 +143,7 @@ class BarPlot(Plot):
         self._items.append(line)
 
     def value_at(self, place: QPointF) -> str:
-        here = self.canvas.plotItem.vb.mapSceneToView(place)
+        here = self.canvas.getViewBox().mapSceneToView(place)
         category = round(here.x())
         if not 0 <= category < len(self._categories) or here.y() < 0:
             return ""

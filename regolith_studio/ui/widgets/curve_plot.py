@@ -121,7 +121,7 @@ class CurvePlot(Plot):
 
     def value_at(self, place: QPointF) -> str:
         """The nearest point of a curve, in words; empty if it is far."""
-        view = self.canvas.plotItem.vb
+        view = self.canvas.getViewBox()
         best, words = REACH, ""
         for curve in self._curves:
             x, y = np.asarray(curve.x, dtype=float), np.asarray(curve.y, dtype=float)

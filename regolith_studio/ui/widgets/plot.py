@@ -22,6 +22,7 @@ from regolith_studio.errors import RegolithError
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.axes import CountAxis, FittedAxis
+from regolith_studio.ui.widgets.canvas import PlotCanvas
 from regolith_studio.ui.widgets.labels import unbroken
 from regolith_studio.ui.widgets.plot_files import DRAWN, plain_text, save_figure, save_numbers
 
@@ -50,12 +51,7 @@ class Plot(QWidget):
         self._legend_entries: list[tuple[str, str]] = []
         self.count_axis = CountAxis("bottom")
         self.axes = {"bottom": self.count_axis, "left": FittedAxis("left")}
-        self.canvas = pg.PlotWidget(background=None, enableMenu=False, axisItems=self.axes)
-        self.canvas.setFrameShape(self.canvas.Shape.NoFrame)
-        self.canvas.setMouseEnabled(x=False, y=False)
-        self.canvas.hideButtons()
-        self.canvas.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        self.canvas.setContextMenuPolicy(Qt.ContextMenuPolicy.NoContextMenu)
+        self.canvas = PlotCanvas(self.axes)
         self.legend = QLabel()
         self.legend.setTextFormat(Qt.TextFormat.RichText)
         self.legend.setWordWrap(True)

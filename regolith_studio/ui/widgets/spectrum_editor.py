@@ -111,7 +111,7 @@ class SpectrumEditor(Plot):
         self.set_legend([*entries, (self.theme.border, tr("as fitted"))] if self.is_changed() else entries)
 
     def value_at(self, place: QPointF) -> str:
-        seen = self.canvas.plotItem.vb.mapSceneToView(place)
+        seen = self.canvas.getViewBox().mapSceneToView(place)
         degree = round(seen.x())
         if not 1 <= degree <= len(self._values):
             return ""
@@ -163,7 +163,7 @@ class SpectrumEditor(Plot):
         self._put(10.0 ** float(np.clip(self._seen(place).y(), LOWEST, HIGHEST)) / 100)
 
     def _seen(self, place: QPointF) -> QPointF:
-        seen: QPointF = self.canvas.plotItem.vb.mapSceneToView(self.canvas.mapToScene(place.toPoint()))
+        seen: QPointF = self.canvas.getViewBox().mapSceneToView(self.canvas.mapToScene(place.toPoint()))
         return seen
 
     def _put(self, value: float) -> None:

@@ -73,9 +73,9 @@ class SectionPlot(Plot):
         """The surface point that is nearest, the models below or above it; a grain elsewhere in the pile."""
         if self._pile is None or self._section is None:
             return ""
-        here = self.canvas.plotItem.vb.mapSceneToView(place)
+        here = self.canvas.getViewBox().mapSceneToView(place)
         u, z = here.x() / MILLIMETRE, here.y() / MILLIMETRE
-        reach = REACH / MILLIMETRE * self.canvas.plotItem.vb.viewPixelSize()[0]
+        reach = REACH / MILLIMETRE * self.canvas.getViewBox().viewPixelSize()[0]
         return surface_words(self._section, u, z, reach) or grain_words(self._discs, u, z)
 
     def numbers(self) -> Numbers:
@@ -96,7 +96,7 @@ class SectionPlot(Plot):
         self._draw_models(self._section)
         self._draw_cuts(self._section)
         reach, top = framed(self._section)
-        box = self.canvas.plotItem.vb
+        box = self.canvas.getViewBox()
         box.setRange(
             xRange=(-MILLIMETRE * reach, MILLIMETRE * reach), yRange=(0.0, MILLIMETRE * top), padding=0.02
         )

@@ -101,7 +101,7 @@ class BandPlot(CurvePlot):
         """Where a point is drawn, in the coordinates of the scene."""
         with np.errstate(divide="ignore", invalid="ignore"):
             high = float(np.log10(y)) if self._log_y else y
-        place: QPointF = self.canvas.plotItem.vb.mapViewToScene(QPointF(x, high))
+        place: QPointF = self.canvas.getViewBox().mapViewToScene(QPointF(x, high))
         return place
 
     def _words(self, s: Series, n: int) -> str:

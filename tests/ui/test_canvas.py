@@ -1,0 +1,84 @@
+"""The canvas of plots draws what pyqtgraph's own plot widget draws, without what that carries beside it."""
+
+import numpy as np
+import pyqtgraph as pg
+import pytest
+from PySide6.QtCore import QSize
+from PySide6.QtWidgets import QApplication, QCheckBox, QMenu, QSpinBox
+
+from regolith_studio.ui.widgets.axes import CountAxis, FittedAxis
+from regolith_studio.ui.widgets.canvas import PlotCanvas
+from regolith_studio.ui.widgets.curve_plot import CurvePlot
+
+STEPS = np.arange(1.0, 9.0)
+
+
+def axes():
+    return {"bottom": CountAxis("bottom"), "left": FittedAxis("left")}
+
+
+def theirs():
+    widget = pg.PlotWidget(background=None, enableMenu=False, axisItems=axes())
+    widget.setMouseEnabled(x=False, y=False)
+    widget.hideButtons()
+    return widget
+
+
+def filled(canvas, log):
+    """The picture of a canvas with a curve, bars and a line, in one size and colour."""
+    canvas.setBackground("w")
+    canvas.getAxis("left").setGrid(60)
+    canvas.plot(STEPS, 10.0**STEPS, pen="b", symbol="o")
+    canvas.setLogMode(x=False, y=log)
+    canvas.plot(STEPS, 5.0**STEPS, pen="r")
+    canvas.addItem(pg.BarGraphItem(x=STEPS, height=STEPS, width=0.5, brush="g"))
+    canvas.addItem(pg.InfiniteLine(40.0), ignoreBounds=True)
+    return canvas
+
+
+def shot(canvas):
+    canvas.resize(QSize(420, 260))
+    canvas.grab()  # the axes take their room
+    return canvas.grab().toImage()
+
+
+@pytest.mark.parametrize("log", [False, True])
+@pytest.mark.parametrize("act", ["follows", "is set", "is locked"])
+def test_that_the_same_is_drawn_as_by_the_widget_of_pyqtgraph(shown, log, act):
+    pictures, ranges = [], []
+    for canvas in (shown(theirs()), shown(PlotCanvas(axes()))):
+        filled(canvas, log)
+        if act == "is set":
+            canvas.setRange(xRange=(0.0, 12.0), yRange=(1.0, 7.0), padding=0.0, disableAutoRange=True)
+        if act == "is locked":
+            canvas.setAspectLocked(True)
+            canvas.setLimits(xMin=-0.5)
+        pictures.append(shot(canvas))
+        ranges.append(canvas.viewRange())
+    assert np.allclose(*ranges)
+    assert pictures[0] == pictures[1]
+
+
+def test_that_curves_that_come_after_the_scale_take_it(shown):
+    canvas = shown(PlotCanvas(axes()))
+    canvas.setLogMode(x=False, y=True)
+    curve = canvas.plot(STEPS, 10.0**STEPS)
+    assert np.allclose(curve.getData()[1], STEPS)
+    canvas.setLogMode(x=True, y=False)
+    assert np.allclose(curve.getData()[0], np.log10(STEPS))
+    assert np.allclose(curve.getData()[1], 10.0**STEPS)
+
+
+def test_that_what_is_removed_is_seen_no_longer_and_what_never_was_there_does_no_harm(shown):
+    canvas = shown(PlotCanvas(axes()))
+    curve = canvas.plot(STEPS, STEPS)
+    canvas.removeItem(curve)
+    canvas.removeItem(curve)
+    canvas.removeItem(pg.PlotDataItem(STEPS, STEPS))
+    assert curve.scene() is None
+
+
+def test_that_a_plot_carries_no_form_of_options(shown):
+    plot = shown(CurvePlot("x", "y", "nothing yet"))
+    assert not [each for each in plot.canvas.scene().items() if isinstance(each, pg.PlotItem)]
+    assert not [each for each in QApplication.allWidgets() if isinstance(each, QMenu | QCheckBox | QSpinBox)]
