@@ -64,3 +64,37 @@ def pack_loaded_kernels() -> None:
 
     library._unserialize = classmethod(load_packed)
     library._get_module_for_linking = link_unpacked
+
+
+@cache
+def load_runtime_of_kernels() -> None:
+    """Take the few functions that count references for kernels from the disk cache, not from the compiler.
+
+    Numba compiles them in each process when the first kernel is loaded, which brings the optimiser and the
+    code generator into memory for nothing else: 20 MB. They are kept beside the kernels, for this processor
+    and version. Where numba has changed inside, nothing is done. To be called before the first kernel.
+    """
+    caching: Any = import_module("numba.core.caching")
+    runtime: Any = import_module("numba.core.runtime.nrtdynmod")
+    inside = hasattr(caching, "make_library_cache") and hasattr(caching.Cache, "_load_overload")
+    if not (inside and hasattr(runtime, "create_nrt_module") and hasattr(runtime, "compile_nrt_functions")):
+        return
+    kept = caching.make_library_cache("runtime.")(_compiled_runtime)
+
+    def load_or_compile(context: Any) -> Any:
+        library = kept._load_overload((), context)
+        if library is None:
+            library = _compiled_runtime(context)
+            kept.save_overload((), library)
+        return library
+
+    runtime.compile_nrt_functions = load_or_compile
+
+
+def _compiled_runtime(context: Any) -> Any:
+    """What numba does itself, with the code kept so that it can be saved."""
+    module, library = import_module("numba.core.runtime.nrtdynmod").create_nrt_module(context)
+    library.enable_object_caching()
+    library.add_ir_module(module)
+    library.finalize()
+    return library

@@ -13,6 +13,7 @@ from regolith_studio.jobs.batch import call, value_of
 from regolith_studio.jobs.crew import Crew, hired
 from regolith_studio.jobs.events import Job, Started, Steps
 from regolith_studio.jobs.examining import examine
+from regolith_studio.jobs.thrift import load_runtime_of_kernels
 
 
 def warm_up(workers: int | Crew = 0) -> Steps:
@@ -40,9 +41,11 @@ def _body() -> Mesh:
 
 
 def _measure_and_fit(_name: str) -> None:
+    load_runtime_of_kernels()
     examine(Particle("body", _body()))
     reconstruct(fit_harmonics(_body(), 4, sampling_degree=8), 2, level=1)
 
 
 def _coarsen(method: str) -> None:
+    load_runtime_of_kernels()
     coarsen(_body(), 12, method)

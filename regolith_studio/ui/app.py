@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QApplication
 from regolith_studio.errors import RegolithError
 from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.runners.thread import ThreadRunner
-from regolith_studio.jobs.thrift import give_back, pack_loaded_kernels
+from regolith_studio.jobs.thrift import give_back, load_runtime_of_kernels, pack_loaded_kernels
 from regolith_studio.jobs.warming import warm_up
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.session.session import Session
@@ -44,6 +44,7 @@ def open_window(
 ) -> MainWindow:
     """A window with its own session; the particles arrive a moment later."""
     pack_loaded_kernels()
+    load_runtime_of_kernels()
     poster = Poster()
     runner = ThreadRunner(poster.post)
     session = Session(runner)
