@@ -12,10 +12,14 @@ from PySide6.QtWidgets import QApplication
 
 from regolith_studio.jobs.thrift import share_one_heap
 from regolith_studio.resources import resource
+from regolith_studio.ui.asked_modules import load_when_asked
 from regolith_studio.ui.views.factory import surface_format
 
 NUMBERS = QLocale(QLocale.Language.C)
 """Numbers have a point in every language, as in the paper and in all files."""
+
+UNASKED = ("numpy.f2py", "pooch")
+"""Modules that others import and nobody asks in the window: for Fortran, and for pyvista's examples."""
 
 TURN = 0.001
 """Seconds for which a thread that computes keeps the interpreter while that of the window waits for it.
@@ -33,6 +37,7 @@ def make_application(arguments: Sequence[str]) -> QApplication:
     share_one_heap()
     sys.setswitchinterval(TURN)
     leave_sources_unread()
+    load_when_asked(UNASKED)
     QCoreApplication.setAttribute(Qt.ApplicationAttribute.AA_ShareOpenGLContexts)
     QCoreApplication.setAttribute(Qt.ApplicationAttribute.AA_UseStyleSheetPropagationInWidgetStyles)
     QSurfaceFormat.setDefaultFormat(surface_format())

@@ -11,6 +11,9 @@ import sys
 from regolith_studio.ui import start
 heavy = {"numba", "scipy", "pyvista", "matplotlib"} & set(sys.modules)
 assert not heavy, heavy
+from regolith_studio.ui.application import UNASKED
+from regolith_studio.ui.asked_modules import load_when_asked
+load_when_asked(UNASKED)  # as the start does before it loads the window
 import regolith_studio.ui.app as app
 heavy = {"scipy.stats", "skimage", "sklearn", "h5py", "dask", "matplotlib.figure"} & set(sys.modules)
 assert not heavy, heavy
@@ -28,6 +31,7 @@ read = {name.split(".")[0] for name, module in sys.modules.items()
         if getattr(module, "__file__", None) in linecache.cache}
 assert not read & {"pyvista", "pyqtgraph", "matplotlib"}, f"sources are kept in memory: {read}"
 assert not {"mypy", "matplotlib.figure", "matplotlib.pyplot"} & set(sys.modules)
+assert not {"numpy.f2py.crackfortran", "pooch.core", "tqdm"} & set(sys.modules), "loaded and never asked for"
 from matplotlib.figure import Figure
 from pyvista import Chart2D, ChartMPL
 from pyvista.plotting.colors import get_cycler
@@ -35,6 +39,8 @@ assert len(get_cycler("matplotlib")) == 10
 figure = Figure()
 figure.add_subplot().plot([1, 2], [3, 4])
 assert ChartMPL(figure).size == (1, 1) and Chart2D().line([1, 2], [3, 4]).x.tolist() == [1, 2]
+import numpy, pooch
+assert callable(numpy.f2py.get_include) and callable(pooch.retrieve)
 sys.exit(code)
 """
 
