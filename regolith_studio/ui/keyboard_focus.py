@@ -5,11 +5,11 @@ from typing import cast
 import shiboken6
 from PySide6.QtCore import QEvent, QObject, Qt
 from PySide6.QtGui import QGuiApplication, QKeyEvent, QWindow
-from PySide6.QtWidgets import QAbstractButton, QApplication, QTabBar, QTableView, QWidget
+from PySide6.QtWidgets import QAbstractButton, QApplication, QScrollArea, QTabBar, QTableView, QWidget
 
 FOCUSED = "focused"
 """Property that the style sheet asks for; parts around a widget that have it are framed with it."""
-FRAMED = (QAbstractButton, QTabBar, QTableView)
+FRAMED = (QAbstractButton, QScrollArea, QTabBar, QTableView)
 """Kinds of widgets whose frame is the style sheet's; all others are framed by Qt's own style."""
 AROUND = 2
 """Levels above a widget that may frame it."""

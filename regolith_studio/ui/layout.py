@@ -3,7 +3,10 @@
 from collections.abc import Sequence
 
 from PySide6.QtCore import QEvent, QObject, QSize, Qt
-from PySide6.QtWidgets import QScrollArea, QSizePolicy, QSplitter, QTabWidget, QVBoxLayout, QWidget
+from PySide6.QtGui import QResizeEvent
+from PySide6.QtWidgets import QLabel, QScrollArea, QSizePolicy, QSplitter, QTabWidget, QVBoxLayout, QWidget
+
+from regolith_studio.ui.translation import tr
 
 CONTROLS_WIDTH = 290
 
@@ -56,7 +59,13 @@ def scrolled_column(panels: Sequence[QWidget]) -> QScrollArea:
 
 
 class _Column(QScrollArea):
-    """As wide as what is in it needs, in any language and size of letters."""
+    """As wide as what is in it needs, in any language and size of letters.
+
+    What height is left when it gets its size is for texts that have use for it; later, nothing moves.
+    """
+
+    _shared = 0
+    """Height that has been shared among the texts."""
 
     def minimumSizeHint(self) -> QSize:
         inside = self.widget()
@@ -68,6 +77,99 @@ class _Column(QScrollArea):
         if event.type() == QEvent.Type.LayoutRequest:
             self.updateGeometry()
         return super().eventFilter(watched, event)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._share_height()
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() in (QEvent.Type.FontChange, QEvent.Type.StyleChange):
+            self._shared = 0
+            self._share_height()
+
+    def _share_height(self) -> None:
+        inside = self.widget()
+        if self.height() == self._shared or inside is None:
+            return
+        self._shared = self.height()
+        texts = inside.findChildren(SteadyTexts)
+        for each in texts:
+            each.take_spare(0)
+        left = self.height() - inside.sizeHint().height()
+        for each in texts:
+            left -= each.line * each.take_spare(left // each.line)
+
+
+class SteadyTexts(QScrollArea):
+    """Texts in the room of so many lines, whatever they say: no control moves when they change.
+
+    More lines than that are scrolled to, by the mouse or, with the focus, by the arrow keys.
+
+    Parameters
+    ----------
+    texts
+        Below each other; those that are hidden take no room.
+    lines
+        That are seen at once.
+    most
+        Lines that are seen where a column is high enough for them, see :func:`scrolled_column`.
+    """
+
+    def __init__(self, texts: Sequence[QLabel], lines: int, most: int = 0) -> None:
+        super().__init__()
+        self._lines, self._spare, self._most = lines, 0, max(lines, most)
+        self._inside = QWidget()
+        column = QVBoxLayout(self._inside)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(2)
+        for text in texts:
+            text.setAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop)
+            column.addWidget(text)
+        column.addStretch(1)
+        self.setProperty("role", "texts")
+        self.setWidgetResizable(True)
+        self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
+        self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self.setAccessibleName(tr("Remarks"))
+        self.setWidget(self._inside)
+        self.verticalScrollBar().rangeChanged.connect(self._overflow)
+
+    @property
+    def line(self) -> int:
+        """Height of one line."""
+        return self.fontMetrics().lineSpacing()
+
+    def take_spare(self, lines: int) -> int:
+        """Show more lines than usual, if that many are of use; returns how many are taken."""
+        taken = max(0, min(lines, self._most - self._lines))
+        if taken != self._spare:
+            self._spare = taken
+            self.updateGeometry()
+        return taken
+
+    def sizeHint(self) -> QSize:
+        lines = (self._lines + self._spare) * self.line
+        return QSize(super().sizeHint().width(), lines + 2 * self.frameWidth())
+
+    def minimumSizeHint(self) -> QSize:
+        bar = self.verticalScrollBar().sizeHint().width()
+        return QSize(self._inside.minimumSizeHint().width() + bar, self.sizeHint().height())
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() in (QEvent.Type.FontChange, QEvent.Type.StyleChange):
+            self.updateGeometry()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._overflow()
+
+    def _overflow(self, *_range: int) -> None:
+        """Tab comes here only where there is something to scroll."""
+        more = self.verticalScrollBar().maximum() > 0
+        self.setFocusPolicy(Qt.FocusPolicy.TabFocus if more else Qt.FocusPolicy.NoFocus)
 
 
 def padded(part: QWidget, left: int, top: int, right: int, bottom: int) -> QWidget:

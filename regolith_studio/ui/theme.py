@@ -248,6 +248,8 @@ QTabBar[focused="true"]::tab:focus {{ color: palette(highlight); border-color: p
 QToolButton[role="fold"] {{ border: 1px solid transparent; border-radius: 4px; padding: 1px 3px; }}
 QToolButton[role="fold"][focused="true"] {{ border-color: palette(highlight); }}
 QScrollArea {{ border: none; }}
+QScrollArea[role="texts"] {{ border: 1px solid transparent; border-radius: 4px; }}
+QScrollArea[role="texts"][focused="true"] {{ border-color: palette(highlight); }}
 QCheckBox::indicator {{ width: 1.05em; height: 1.05em; border: 1px solid palette(placeholder-text);
     border-radius: 3px; background: palette(base); }}
 QCheckBox::indicator:hover {{ border-color: palette(highlight); }}

@@ -4204,6 +4204,11 @@
    <translation>Relative Fehler von Volumen, Sphärizität, Durchmessern, Seitenverhältnis und Hülle (Gl. 8): blau für den Fit, orange für das Polyeder. Der zweite Reiter hat die Zahlen mit ihren Einheiten.</translation>
   </message>
   <message>
+   <location filename="ui/layout.py" />
+   <source>Remarks</source>
+   <translation>Anmerkungen</translation>
+  </message>
+  <message>
    <location filename="ui/translation/health_sentences.py" />
    <source>Removed 1 double face.</source>
    <translation>1 doppelte Fläche wurde entfernt.</translation>
@@ -7034,6 +7039,11 @@
    <location filename="ui/pages/lecture/words.py" />
    <source>nearly an ellipsoid</source>
    <translation>fast ein Ellipsoid</translation>
+  </message>
+  <message>
+   <location filename="ui/pages/dataset/controls.py" />
+   <source>needs no numbers</source>
+   <translation>braucht keine Zahlen</translation>
   </message>
   <message>
    <location filename="ui/pages/sample/health.py" />

@@ -3,7 +3,8 @@
 from collections.abc import Mapping
 from typing import Any
 
-from PySide6.QtCore import QSignalBlocker, Signal
+from PySide6.QtCore import QEvent, QSignalBlocker, Signal
+from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import (
     QFormLayout,
     QHBoxLayout,
@@ -16,6 +17,7 @@ from PySide6.QtWidgets import (
 from regolith_studio.coarsening.coarsen import FACES_LIMITS
 from regolith_studio.coarsening.methods import METHODS
 from regolith_studio.ui.icons import icon
+from regolith_studio.ui.layout import SteadyTexts
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.translation.sentences import retold
@@ -57,6 +59,8 @@ ERROR = NumberSpec(
 )
 TARGET_LABELS = {"fit": mark("Spherical-harmonics fit"), "particle": mark("CT particle")}
 SEED_LIMIT = 2**31 - 1
+LINES = 2
+"""Of why a request could not be met, that are seen without scrolling."""
 
 
 class CoarseningPanel(QWidget):
@@ -139,6 +143,23 @@ class CoarseningPanel(QWidget):
         """Take the colours of a theme."""
         self.dice.setIcon(icon("dice", theme.text, theme.muted))
 
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._fold()
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() in (QEvent.Type.FontChange, QEvent.Type.StyleChange):
+            self._fold()
+
+    def _fold(self) -> None:
+        """Boxes stand below their labels where beside them their own would end in dots."""
+        labels = [self._form.labelForField(box) for box in (self.method, self.target)]
+        beside = max(label.sizeHint().width() for label in labels) + self._form.horizontalSpacing()
+        narrow = self.width() < beside + max(box.whole_width() for box in (self.method, self.target))
+        wrap = QFormLayout.RowWrapPolicy
+        self._form.setRowWrapPolicy(wrap.WrapAllRows if narrow else wrap.DontWrapRows)
+
     def _arrange(self) -> None:
         amount = QHBoxLayout()
         amount.addWidget(self.stop_at)
@@ -147,7 +168,7 @@ class CoarseningPanel(QWidget):
         seed = QHBoxLayout()
         seed.addWidget(self.seed, 1)
         seed.addWidget(self.dice)
-        form = QFormLayout()
+        form = self._form = QFormLayout()
         form.setContentsMargins(0, 0, 0, 0)
         form.addRow(tr("Method"), self.method)
         form.addRow(tr("Imitate"), self.target)
@@ -158,7 +179,7 @@ class CoarseningPanel(QWidget):
         layout.addLayout(amount)
         layout.addLayout(form)
         layout.addWidget(self.more)
-        layout.addWidget(self.outcome)
+        layout.addWidget(SteadyTexts((self.outcome,), LINES, 4))
 
     def _connect(self) -> None:
         self.n_faces.valueChanged.connect(lambda n: self.valueChanged.emit({"n_faces": int(n)}))
@@ -199,7 +220,10 @@ class CoarseningPanel(QWidget):
             self._settings.addWidget(form)
         for name, form in self._forms.items():
             form.setVisible(name == key)
-        self.more.setVisible(bool(key) and not self._forms[key].is_empty())
+        settable = bool(key) and not self._forms[key].is_empty()
+        self.more.setEnabled(settable)
+        if not settable:
+            self.more.set_open(False)
 
 
 def _amount(spec: NumberSpec, name: str) -> NumberSlider:

@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QFormLayout, QVBoxLayout, QWidget
 
 from regolith_studio.harmonics.expansion import AUTOMATIC
 from regolith_studio.session.choices import L_MAX_LIMIT
+from regolith_studio.ui.layout import SteadyTexts
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.choice_box import ChoiceBox
@@ -50,6 +51,9 @@ TIPS = {
     ),
 }
 
+LINES, MOST_LINES = 4, 9
+"""Of what the fit cannot keep, that are seen without scrolling: in low windows, and in high ones."""
+
 
 class FitPanel(QWidget):
     """Edits l_max and how radii are taken."""
@@ -76,7 +80,7 @@ class FitPanel(QWidget):
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(heading(tr("Spherical-harmonics fit")))
-        for widget in (self.l_max, self.more, self.findings, self.warnings):
+        for widget in (self.l_max, self.more, SteadyTexts((self.findings, self.warnings), LINES, MOST_LINES)):
             layout.addWidget(widget)
         self.set_findings(None)
         self.l_max.valueChanged.connect(lambda degree: self.valueChanged.emit({"l_max": int(degree)}))

@@ -52,6 +52,12 @@ class ChoiceBox(ElidedBox):
             words = tr(label)
             self.addItem(words[:1].upper() + words[1:], key)
 
+    def whole_width(self) -> int:
+        """Pixels in which no label ends in dots."""
+        labels = (self.itemText(row) for row in range(self.count()))
+        widest = max(map(self.fontMetrics().horizontalAdvance, labels), default=0)
+        return widest + self.width() - letters_room(self)
+
     def value(self) -> str:
         """The key that is chosen."""
         key: str = self.currentData()

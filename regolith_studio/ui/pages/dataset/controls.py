@@ -12,11 +12,14 @@ from regolith_studio.dataset.size_spec import Sizing, parse_sizes
 from regolith_studio.errors import InputError
 from regolith_studio.jobs.representing import RepresentativesOrder
 from regolith_studio.session.recipe_dataset import Representatives
+from regolith_studio.ui.layout import SteadyTexts
 from regolith_studio.ui.translation import mark, tr, tr_count
 from regolith_studio.ui.widgets.labels import heading, remark
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
 
 MOST = 200
+POPULATION_LINES, SIZES_LINES, DATASET_LINES = 2, 2, 3
+"""Of texts between the controls, that are seen without scrolling."""
 COUNT = NumberSpec("N", mark("Number of representatives"), 1, MOST, tip=mark("The paper has 10."))
 WEIGHTINGS = {
     "number": mark("Each particle counts the same"),
@@ -64,7 +67,7 @@ class RepresentativesPanel(QWidget):
         layout.setContentsMargins(0, 0, 0, 0)
         for widget in (
             heading(tr("1  Representatives")),
-            self.population,
+            SteadyTexts((self.population,), POPULATION_LINES),
             self.weighting,
             self.start,
             self.count,
@@ -135,7 +138,8 @@ class SizesPanel(QWidget):
         self.numbers.setAccessibleName(tr("Numbers of the size distribution"))
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        for widget in (heading(tr("2  Sizes")), self.kind, self.numbers, self.hint, self.problem):
+        texts = SteadyTexts((self.hint, self.problem), SIZES_LINES)
+        for widget in (heading(tr("2  Sizes")), self.kind, self.numbers, texts):
             layout.addWidget(widget)
         self.kind.currentIndexChanged.connect(lambda _: self._show_kind())
         self.numbers.textEdited.connect(lambda _: self._tell())
@@ -176,8 +180,9 @@ class SizesPanel(QWidget):
     def _show_kind(self) -> None:
         key = self.kind.currentData()
         example = SIZES[key][1]
-        self.numbers.setVisible(bool(example))
+        self.numbers.setEnabled(bool(example))
         self.numbers.setText(example)
+        self.numbers.setPlaceholderText("" if example else tr("needs no numbers"))
         self.hint.setText(tr(HINTS.get(key, "")))
         self.hint.setVisible(key in HINTS)
         self._tell()
@@ -205,13 +210,14 @@ class FolderPanel(QWidget):
         self.open.setObjectName("dataset_open")
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        for widget in (heading(tr("3  Dataset")), self.name, self.shapes):
+        asked, there = SteadyTexts((self.shapes,), DATASET_LINES), SteadyTexts((self.state,), DATASET_LINES)
+        for widget in (heading(tr("3  Dataset")), self.name, asked):
             layout.addWidget(widget)
         buttons = QHBoxLayout()
         for button in (self.build, self.open):
             buttons.addWidget(button, 1)
         layout.addLayout(buttons)
-        layout.addWidget(self.state)
+        layout.addWidget(there)
         self.build.clicked.connect(self.buildRequested)
         self.open.clicked.connect(self.openRequested)
         self.show_dataset("")

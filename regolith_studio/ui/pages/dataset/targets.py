@@ -60,6 +60,9 @@ class TargetsPanel(QWidget):
         self.times = ParameterForm(ScriptTimes, "export")
         self.lossy = QCheckBox(tr("Shapes may be changed"))
         self.lossy.setObjectName("dataset_lossy")
+        kept = self.lossy.sizePolicy()
+        kept.setRetainSizeWhenHidden(True)  # Export stays where it is
+        self.lossy.setSizePolicy(kept)
         self.export = QPushButton(tr("Export …"))
         self.export.setObjectName("dataset_export")
         form = QFormLayout()

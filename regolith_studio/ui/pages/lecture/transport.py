@@ -1,6 +1,6 @@
 """Play, pause, one step, speed: the same row under every lesson."""
 
-from PySide6.QtCore import QSignalBlocker, Qt, QTimer, Signal
+from PySide6.QtCore import QEvent, QSignalBlocker, Qt, QTimer, Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QSlider, QWidget
 
 from regolith_studio.ui.translation import mark, tr
@@ -86,6 +86,7 @@ class Transport(QWidget):
             self.slider.setValue(at)
         for part in (self.first, self.back, self.play, self.forward, self.slider):
             part.setEnabled(count > 1)
+        self._keep_room()
         self._tell()
 
     def extend(self, count: int) -> None:
@@ -125,10 +126,25 @@ class Transport(QWidget):
         self._tell()
         self.stepChanged.emit(step)
 
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() in (QEvent.Type.FontChange, QEvent.Type.StyleChange):
+            self._keep_room()
+
+    def _keep_room(self) -> None:
+        """The slider stays where it is when the number of the step has more digits, and while it plays."""
+        last = self.slider.maximum()
+        widest = self._words("0" * len(str(last)))
+        self.clock.setMinimumWidth(self.clock.fontMetrics().horizontalAdvance(widest) + 4)
+        metrics, now = self.play.fontMetrics(), self.play.text()
+        longest = max(metrics.horizontalAdvance(text) for text in (tr("Play"), tr("Pause")))
+        self.play.setMinimumWidth(self.play.sizeHint().width() - metrics.horizontalAdvance(now) + longest)
+
     def _tell(self) -> None:
-        self.clock.setText(
-            tr("{noun} {at} of {last}", noun=tr(self._noun), at=self.step, last=self.slider.maximum())
-        )
+        self.clock.setText(self._words(self.step))
+
+    def _words(self, at: object) -> str:
+        return tr("{noun} {at} of {last}", noun=tr(self._noun), at=at, last=self.slider.maximum())
 
     def _arrange(self) -> None:
         row = QHBoxLayout(self)

@@ -23,6 +23,7 @@ from PySide6.QtWidgets import (
 from regolith_studio.errors import InputError
 from regolith_studio.jobs.generating import CARD_MODEL, GenerateOrder
 from regolith_studio.model.models import DEFAULT_MODEL, MODELS
+from regolith_studio.ui.layout import SteadyTexts
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.labels import heading, remark
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
@@ -93,7 +94,7 @@ class SourceControls(QWidget):
         self.findings.setText(words)
         self.model.setEnabled(not brings_model)
         for widget in (self.half, self._forms):
-            widget.setVisible(not brings_model)
+            widget.setEnabled(not brings_model)
         if brings_model:
             self.model.setCurrentIndex(self.model.findData(brings_model))
         self.fit.setText(tr("Use the model") if brings_model else tr("Fit the model"))
@@ -159,10 +160,11 @@ class SourceControls(QWidget):
         row.addWidget(self.open)
         layout.addWidget(heading(tr("Sample or material")))
         layout.addLayout(row)
-        layout.addWidget(self.findings)
+        layout.addWidget(SteadyTexts((self.findings,), 3))
         layout.addSpacing(8)
         layout.addWidget(heading(tr("Model")))
-        for widget in (self.model, self.summary, self.l_max, self._forms, self.half, self.fit):
+        summary = SteadyTexts((self.summary,), 3)
+        for widget in (self.model, summary, self.l_max, self._forms, self.half, self.fit):
             layout.addWidget(widget)
 
 
@@ -266,7 +268,6 @@ class DrawControls(QWidget):
         form = QFormLayout()
         form.addRow(tr("Particles"), self.number)
         form.addRow(tr("Seed"), self.seed)
-        form.addRow(self._names_label, self.names)
         sizes = QHBoxLayout()
         sizes.addWidget(self.smallest, 1)
         sizes.addWidget(self.largest, 1)
@@ -276,8 +277,11 @@ class DrawControls(QWidget):
         layout.addLayout(form)
         layout.addWidget(self.limited)
         layout.addLayout(sizes)
-        for widget in (self.draw, self.findings, self.adopt):
+        for widget in (self.draw, SteadyTexts((self.findings,), 2), self.adopt):
             layout.addWidget(widget)
+        parts = QFormLayout()  # last, because only mixtures have them
+        parts.addRow(self._names_label, self.names)
+        layout.addLayout(parts)
 
 
 def order_from(source: Mapping[str, Any], drawing: Mapping[str, Any], brings_model: str) -> GenerateOrder:

@@ -39,6 +39,7 @@ from regolith_studio.ui.pages.model.views import Gallery, LiveShape
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.views.factory import make_view
+from regolith_studio.ui.widgets.labels import rich_symbol
 
 SOURCE_FILTER = mark("Fits, models and material cards (*.json *.npz);;All files (*)")
 DRAWN = mark("A drawn particle")
@@ -260,7 +261,7 @@ class ModelPage(PageWidget):
             words += ", " + tr("r_eq {low:.3g} to {high:.3g} µm", low=low, high=high)
         if drawn.draws.rejected:
             words += "; " + tr("{count:,} draws thrown away", count=drawn.draws.rejected)
-        self.drawing.findings.setText(f"{words}.")
+        self.drawing.findings.setText(rich_symbol(f"{words}."))
         self.gallery.show_shapes(self._fitted.examples if self._fitted else (), drawn.examples)
         job = Job(compare_distributions, (self._sample(), drawn.draws))
         show = self.distributions.show_compared

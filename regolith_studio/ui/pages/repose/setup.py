@@ -21,6 +21,7 @@ from regolith_studio.dem.engines import ENGINES, engine_named
 from regolith_studio.dem.evaluation.settings import EvaluationSettings
 from regolith_studio.errors import InputError
 from regolith_studio.jobs.repose import ReposeOrder
+from regolith_studio.ui.layout import SteadyTexts
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.choice_box import ElidedBox
 from regolith_studio.ui.widgets.collapsible import Collapsible
@@ -35,6 +36,9 @@ COHESION = {
     mark("As given (experimental)"): "given",
     mark("Scaled with the size (experimental)"): "scaled",
 }
+
+LINES, MOST_LINES = 6, 14
+"""Of what the choices lead to, that are seen without scrolling: in low windows, and in high ones."""
 
 
 class SetupPanel(QWidget):
@@ -205,8 +209,7 @@ class SetupPanel(QWidget):
         form.addRow(tr("Gravity of"), self.gravity)
         column.addLayout(form)
         column.addWidget(self.run)
-        column.addWidget(self.problem)
-        column.addWidget(self.told)
+        column.addWidget(SteadyTexts((self.problem, self.told), LINES, MOST_LINES))
         column.addWidget(Collapsible(tr("Test (Table 2)"), self.test))
         column.addWidget(Collapsible(tr("Contact (Table 1)"), self.contact))
         column.addWidget(Collapsible(tr("Evaluation (section 3.3)"), self.evaluation))

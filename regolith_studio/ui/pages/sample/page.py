@@ -16,7 +16,7 @@ from regolith_studio.session.outputs.staging import write_bytes
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import filter_of, sample_table
 from regolith_studio.studies.tables import csv_text
-from regolith_studio.ui.layout import side_by_side, stacked, tabs
+from regolith_studio.ui.layout import SteadyTexts, side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.sample.health import HealthPanel, retold_health
 from regolith_studio.ui.pages.sample.scatter import ScatterPanel
@@ -128,7 +128,7 @@ class SamplePage(PageWidget):
         left = QWidget()
         column = QVBoxLayout(left)
         column.setContentsMargins(10, 10, 2, 8)
-        for widget in (self.title, self.filter, self.verdict):
+        for widget in (self.title, self.filter, SteadyTexts((self.verdict,), 1)):
             column.addWidget(widget)
         self.reports = tabs(
             "sample_tabs", [(self.health, tr("Health of the mesh")), (self.statistics, tr("Statistics"))]

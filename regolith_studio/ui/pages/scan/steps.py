@@ -5,6 +5,7 @@ from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout, QWidget
 
 from regolith_studio.imaging.segmentation.segment import Segmentation
 from regolith_studio.jobs.scanning import Scan
+from regolith_studio.ui.layout import SteadyTexts
 from regolith_studio.ui.translation import tr, tr_count
 from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.labels import WholeLabel, heading
@@ -41,17 +42,20 @@ class StepsPanel(QWidget):
         self.volume, self.found, self.made = _words(), _words(), _words()
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        for title, buttons, words in (
-            (tr("1  Volume"), (self.browse, self.sample), self.volume),
-            (tr("2  Grains"), (self.search,), self.found),
-            (tr("3  Particles"), (self.convert, self.show_them), self.made),
+        kept = self.show_them.sizePolicy()
+        kept.setRetainSizeWhenHidden(True)  # the button beside it stays as wide
+        self.show_them.setSizePolicy(kept)
+        for title, buttons, words, lines, most in (
+            (tr("1  Volume"), (self.browse, self.sample), self.volume, 2, 3),
+            (tr("2  Grains"), (self.search,), self.found, 4, 7),
+            (tr("3  Particles"), (self.convert, self.show_them), self.made, 2, 3),
         ):
             layout.addWidget(heading(title))
             row = QHBoxLayout()
             for button in buttons:
                 row.addWidget(button)
             layout.addLayout(row)
-            layout.addWidget(words)
+            layout.addWidget(SteadyTexts((words,), lines, most))
         self.browse.clicked.connect(self.openRequested)
         self.sample.clicked.connect(self.sampleRequested)
         self.search.clicked.connect(self.findRequested)
