@@ -10,9 +10,12 @@ from regolith_studio.session.session import Session
 from regolith_studio.ui.dialogs.preferences import LETTERS
 from regolith_studio.ui.main_window import MainWindow
 from regolith_studio.ui.pages import pages
+from regolith_studio.ui.pages.explore.plot_area import LETTERS as LETTERS_OF_TWO
 from regolith_studio.ui.room import Room
 from regolith_studio.ui.sidebar import Sidebar
 from regolith_studio.ui.theme import LIGHT, choose_letters
+from regolith_studio.ui.widgets.choice_box import letters_room
+from regolith_studio.ui.widgets.plot_files import plain_text
 
 SCREEN = QSize(960, 540)
 FRAME = 40
@@ -130,3 +133,44 @@ def test_that_bodies_are_framed_again_when_the_window_or_a_border_is_moved(shown
     assert views["particle"].widget.width() < views["polyhedron"].widget.width() / 2
     assert [framed(view) for view in views.values()] == pytest.approx([usual] * 3, rel=0.02)
     assert {view.pose.position for view in views.values()} == {turned.position}
+
+
+@pytest.mark.usefixtures("usual_letters")
+@pytest.mark.parametrize("letters", [100, 200])
+@pytest.mark.parametrize("width", [1280, 1920])
+def test_that_boxes_and_legends_of_explore_are_whole(shown, preferences, settled, app, letters, width):
+    preferences.window = preferences.window | {LETTERS: letters}
+    session = Session(InlineRunner(), Choices(method="quadric"))
+    window = MainWindow(session, preferences, "image")
+    window.resize(width, 800 if width == 1280 else 1080)
+    shown(window)
+    session.open_sample()
+    settled(window)
+    for _ in range(3):
+        app.processEvents()
+    page = window.page
+    for box in (page.coarsening.target, page.coarsening.method):
+        metrics = box.fontMetrics()
+        assert all(
+            metrics.horizontalAdvance(box.itemText(at)) <= letters_room(box) for at in range(box.count())
+        )
+    for panel in (page.plots.error_bars, page.plots.loss_curve):
+        legend = panel.plot.legend
+        panel.parentWidget().setCurrentWidget(panel)
+        app.processEvents()
+        entries = plain_text(legend.text()).replace("\xa0", "_").split()
+        assert entries
+        assert max(map(legend.fontMetrics().horizontalAdvance, entries)) <= legend.width()
+
+
+def test_that_plots_stand_behind_each_other_only_where_two_have_no_room(shown, preferences):
+    window = shown(MainWindow(Session(InlineRunner()), preferences, "image"))
+    plots = window.page.plots
+    everything = {plots.error_bars, plots.table, plots.section, plots.loss_curve, plots.spectrum}
+    least = LETTERS_OF_TWO * plots.fontMetrics().horizontalAdvance("0")
+    for width, beside in ((least, 2), (least - 1, 0), (least, 2)):
+        plots.resize(width, 300)
+        tabs = [[group.widget(at) for at in range(group.count())] for group in (plots.left, plots.right)]
+        assert {panel for group in tabs for panel in group} == everything
+        assert len(tabs[1]) == beside
+        assert plots.right.isVisible() == bool(beside)

@@ -5,6 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QFileDialog, QHBoxLayout, QMessageBox
 
 from regolith_studio.dataset.build import ShapeClass, own_class
@@ -20,7 +21,7 @@ from regolith_studio.jobs.exporting import export_dataset_folder
 from regolith_studio.jobs.representing import ChosenParticles, Survey, choose_one, survey
 from regolith_studio.session.recipe_dataset import OPENED, STANDING, Standing
 from regolith_studio.ui.dialogs.folder import FolderDialog
-from regolith_studio.ui.layout import padded, scrolled_column, side_by_side, stacked, tabs
+from regolith_studio.ui.layout import equal_parts, padded, scrolled_column, side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.dataset.controls import FolderPanel, RepresentativesPanel, SizesPanel
 from regolith_studio.ui.pages.dataset.gallery import RepresentativesGallery
@@ -382,7 +383,7 @@ class DatasetPage(PageWidget):
 
     def _place(self) -> Iterator[None]:
         left = scrolled_column((self.representatives, self.sizes, self.folder, self.targets))
-        upper = side_by_side((self.quality, self.distribution), (600, 460), stretch=0)
+        upper = equal_parts(Qt.Orientation.Horizontal, (self.quality, self.distribution))
         upper.setObjectName("dataset_upper")
         yield
         told = [(self.losses, tr("What formats lose")), (self.exports, tr("Exported"))]

@@ -1,6 +1,7 @@
 """The plots below the views: errors and descriptors on the left, loss and spectrum on the right."""
 
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QEvent, Qt
+from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QSplitter, QWidget
 
 from regolith_studio.session.session import Session
@@ -15,9 +16,12 @@ from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.triptych import Triptych
 from regolith_studio.ui.wiring import Wiring
 
+LETTERS = 48
+"""Width of two plots side by side, in digits; where there is less, all stand behind each other."""
+
 
 class PlotArea(QSplitter):
-    """Two groups of pages side by side."""
+    """Two groups of pages side by side, or one where there is no room for two."""
 
     def __init__(self, triptych: Triptych, parent: QWidget | None = None) -> None:
         super().__init__(Qt.Orientation.Horizontal, parent)
@@ -30,12 +34,36 @@ class PlotArea(QSplitter):
             "plots_left",
             [(self.error_bars, tr("Errors")), (self.table, tr("Descriptors")), (self.section, tr("Section"))],
         )
-        self.right = tabs("plots_right", [(self.loss_curve, tr("Loss")), (self.spectrum, tr("Spectrum"))])
+        self._second = [(self.loss_curve, tr("Loss")), (self.spectrum, tr("Spectrum"))]
+        self.right = tabs("plots_right", self._second)
         self._before = 0
         for number, group in enumerate((self.left, self.right)):
             self.addWidget(group)
             self.setStretchFactor(number, 1)
         self.setSizes([1000, 1000])
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._group()
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() in (QEvent.Type.FontChange, QEvent.Type.StyleChange):
+            self._group()
+
+    def _group(self) -> None:
+        """Beside each other where there is room for two plots with their legends."""
+        narrow = self.width() < LETTERS * self.fontMetrics().horizontalAdvance("0")
+        if narrow == self.right.isHidden():
+            return
+        shown = (self.left.currentWidget(), self.right.currentWidget())
+        group = self.left if narrow else self.right
+        for panel, title in self._second:
+            group.addTab(panel, title)
+        self.right.setHidden(narrow)
+        for now, panel in zip((self.left, self.right), shown, strict=True):
+            if now.indexOf(panel) >= 0:
+                now.setCurrentWidget(panel)
 
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
