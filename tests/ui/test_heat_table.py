@@ -27,3 +27,22 @@ def test_that_rows_with_intervals_are_a_line_higher_and_become_low_again():
     assert table.table.rowHeight(0) == low + table.table.fontMetrics().height()
     table.set_values(["all"], ["V"], [[0.02]])
     assert (table.table.rowHeight(0), texts(table)) == (low, [["2.0"]])
+
+
+@pytest.mark.parametrize("width", [250, 420, 900])
+@pytest.mark.parametrize("points", [9.0, 18.0])
+def test_that_a_narrow_table_is_scrolled_and_cuts_neither_names_nor_numbers(shown, width, points):
+    table = HeatTable("nothing yet")
+    font = table.font()
+    font.setPointSizeF(points)
+    table.setFont(font)
+    columns = ["V", "S", "Dmin", "Dmax", "AR", "CH", "Jaccard"]
+    bands = ([[0.011] * 7], [[0.131] * 7])
+    table.set_values(["All descriptors and overlap"], columns, [[0.0204] * 7], bands)
+    table.resize(width, 200)
+    shown(table)
+    head, cells = table.table.horizontalHeader(), table.table.fontMetrics()
+    for at, name in enumerate(columns):
+        assert head.sectionSize(at) > head.fontMetrics().horizontalAdvance(name)
+        assert head.sectionSize(at) > cells.horizontalAdvance("1.1\N{EN DASH}13")
+    assert head.length() >= table.table.viewport().width() - 7  # of which none is left empty

@@ -81,10 +81,11 @@ class LmaxStudyPanel(QWidget):
         self._question = QWidget()
         row = QHBoxLayout(self._question)
         row.setContentsMargins(8, 0, 8, 6)
-        row.addWidget(QLabel(tr("Smallest l<sub>max</sub> with every error below")))
-        row.addWidget(self.tolerance)
-        row.addWidget(self.answer)
-        row.addStretch(1)
+        words = QLabel(tr("Smallest l<sub>max</sub> with every error below"))
+        for label, share in ((words, 2), (self.answer, 1)):
+            label.setWordWrap(True)  # on two lines where letters are large
+            row.addWidget(label, share)
+        row.insertWidget(1, self.tolerance)
         return self._question
 
     def _answer(self) -> None:

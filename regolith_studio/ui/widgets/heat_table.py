@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QEvent, Qt
 from PySide6.QtGui import QColor, QResizeEvent
 from PySide6.QtWidgets import (
     QAbstractItemView,
@@ -21,6 +21,8 @@ from regolith_studio.ui.widgets.table import LetterRows
 
 _ROWS_SHARE = 0.33
 """Of the width, that the names of the rows take at most."""
+LEAST, MARGINS = 24, 8
+"""Pixels of the narrowest column, and of what is free around its name or number."""
 SPARE = 11
 """Pixels between two rows."""
 Bands = tuple[Sequence[Sequence[float]], Sequence[Sequence[float]]]
@@ -85,6 +87,11 @@ class HeatTable(QWidget):
         super().resizeEvent(event)
         self.table.verticalHeader().setMaximumWidth(round(_ROWS_SHARE * self.width()))
 
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.FontChange:
+            keep_legible(self.table)
+
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
         self._theme = theme
@@ -97,6 +104,7 @@ class HeatTable(QWidget):
                 text = percentage(value) + self._band(at, column)
                 heat = math.sqrt(value / top) if top > 0.0 else 0.0
                 self.table.setItem(at, column, self._cell(text, heat))
+        keep_legible(self.table)
 
     def _band(self, row: int, column: int) -> str:
         """A second line with the interval, where it has a width that can be read."""
@@ -130,11 +138,22 @@ def numbers_table(name: str) -> QTableWidget:
     table.setFocusPolicy(Qt.FocusPolicy.NoFocus)
     table.setShowGrid(False)
     table.setFrameShape(table.Shape.NoFrame)
-    table.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+    table.setHorizontalScrollMode(QTableWidget.ScrollMode.ScrollPerPixel)
     table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
-    table.horizontalHeader().setMinimumSectionSize(24)
+    table.horizontalHeader().setMinimumSectionSize(LEAST)
     table.verticalHeader().setTextElideMode(Qt.TextElideMode.ElideRight)
     return table
+
+
+def keep_legible(table: QTableWidget) -> None:
+    """Columns that have room for their names and numbers; a table that is too narrow is scrolled."""
+    names, cells = table.horizontalHeader().fontMetrics(), table.fontMetrics()
+    heads = [table.horizontalHeaderItem(column) for column in range(table.columnCount())]
+    widths = [names.horizontalAdvance(head.text()) for head in heads if head is not None]
+    items = (table.item(row, at) for row in range(table.rowCount()) for at in range(table.columnCount()))
+    lines = {line for item in items if item is not None for line in item.text().splitlines()}
+    widest = max([*widths, *map(cells.horizontalAdvance, lines)], default=0)
+    table.horizontalHeader().setMinimumSectionSize(max(LEAST, widest + MARGINS))
 
 
 def remark_in_the_middle(text: str) -> QLabel:

@@ -10,7 +10,7 @@ from regolith_studio.studies.variations import beyond_chance, change_text, chang
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.translation.sentences import retold
-from regolith_studio.ui.widgets.heat_table import numbers_table, remark_in_the_middle
+from regolith_studio.ui.widgets.heat_table import keep_legible, numbers_table, remark_in_the_middle
 from regolith_studio.ui.widgets.table import LetterRows
 
 ROWS_SHARE = 0.33
@@ -85,6 +85,7 @@ class ChangeTable(QWidget):
                     + ("" if sure[r, k] else "\n" + tr("This may be chance."))
                 )
                 self.table.setItem(r, k, item)
+        keep_legible(self.table)
 
     def _ground(self, share: float) -> QColor:
         colour = QColor(self._theme.bad if share > 0 else self._theme.fit)
