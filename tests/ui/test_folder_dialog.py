@@ -3,7 +3,7 @@
 import pytest
 from PySide6.QtCore import Qt, QTimer
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication, QLineEdit, QMessageBox
+from PySide6.QtWidgets import QApplication, QLineEdit, QMessageBox, QPushButton
 
 from regolith_studio.ui.dialogs.folder import FolderDialog
 
@@ -12,7 +12,7 @@ from regolith_studio.ui.dialogs.folder import FolderDialog
 def answered(app, tmp_path):  # noqa: ARG001  # the dialog needs one
     """What comes of typing a name into the dialog, and what is said against it."""
 
-    def run(typed):
+    def run(typed, by="key"):
         said, begun = [], []
 
         def look():
@@ -24,7 +24,12 @@ def answered(app, tmp_path):  # noqa: ARG001  # the dialog needs one
                 line = dialog.findChild(QLineEdit, "fileNameEdit")
                 line.setText(typed)
                 begun.append(dialog)
-                QTimer.singleShot(0, line, lambda: QTest.keyClick(line, Qt.Key.Key_Return))
+                button = next(each for each in dialog.findChildren(QPushButton) if "hoose" in each.text())
+                answers = {
+                    "key": lambda: QTest.keyClick(line, Qt.Key.Key_Return),
+                    "mouse": lambda: QTest.mouseClick(button, Qt.MouseButton.LeftButton),
+                }
+                QTimer.singleShot(0, line, answers[by])
             elif dialog is not None and said:
                 dialog.reject()
 
@@ -38,9 +43,10 @@ def answered(app, tmp_path):  # noqa: ARG001  # the dialog needs one
     return run
 
 
+@pytest.mark.parametrize("by", ["key", "mouse"])
 @pytest.mark.parametrize("name", ["figures", "two/deep"])
-def test_that_a_new_folder_is_made_by_its_name(answered, tmp_path, name):
-    chosen, said = answered(str(tmp_path / name))
+def test_that_a_new_folder_is_made_by_its_name(answered, tmp_path, name, by):
+    chosen, said = answered(str(tmp_path / name), by)
     assert (chosen, said) == (str(tmp_path / name), [])
     assert (tmp_path / name).is_dir()
 

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from PySide6.QtWidgets import QDialog, QFileDialog, QLineEdit, QWidget
+from PySide6.QtWidgets import QDialog, QDialogButtonBox, QFileDialog, QLineEdit, QWidget
 
 from regolith_studio.ui.translation import tr
 
@@ -26,6 +26,8 @@ class FolderDialog(QFileDialog):
         self.setFileMode(QFileDialog.FileMode.Directory)
         self.setOption(QFileDialog.Option.ShowDirsOnly)
         self.setLabelText(QFileDialog.DialogLabel.FileName, tr("Folder, may be new:"))
+        if (line := self._line()) is not None:
+            line.textChanged.connect(self._allow)  # after Qt, which greys the button out for a new one
 
     @staticmethod
     def ask(parent: QWidget | None, title: str, start: str = "") -> str:
@@ -39,10 +41,20 @@ class FolderDialog(QFileDialog):
 
     def accept(self) -> None:
         """Make what was typed, if there is no such folder; where it cannot be, Qt says that there is none."""
-        line = self.findChild(QLineEdit, "fileNameEdit")  # not there where the desktop has its own dialog
+        line = self._line()
         if line is not None and line.text().strip():
             self._make(self.directory().absolutePath(), line.text().strip())
         super().accept()
+
+    def _line(self) -> QLineEdit | None:
+        """Where a name is typed; not there where the desktop has its own dialog."""
+        return self.findChild(QLineEdit, "fileNameEdit")
+
+    def _allow(self, typed: str) -> None:
+        for box in self.findChildren(QDialogButtonBox):
+            for button in box.buttons():
+                if typed.strip() and box.buttonRole(button) == QDialogButtonBox.ButtonRole.AcceptRole:
+                    button.setEnabled(True)
 
     @staticmethod
     def _make(shown: str, typed: str) -> None:
