@@ -17,18 +17,21 @@ from PySide6.QtWidgets import (
     QPlainTextEdit,
     QScrollBar,
     QTableView,
+    QVBoxLayout,
     QWidget,
 )
 
 from regolith_studio.jobs.runners.inline import InlineRunner
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.session import Session
+from regolith_studio.session.tasks import Task
 from regolith_studio.ui.app import open_window
 from regolith_studio.ui.dialogs.unit import UnitDialog
 from regolith_studio.ui.main_window import MainWindow
 from regolith_studio.ui.pages import pages
 from regolith_studio.ui.views.camera_mouse import WHEEL_ZOOM
 from regolith_studio.ui.views.view_frame import ViewFrame
+from regolith_studio.ui.widgets.study_frame import StudyFrame
 
 KINDS = (
     *(QAbstractButton, QComboBox, QAbstractSpinBox, QAbstractSlider),
@@ -218,3 +221,19 @@ def test_that_every_dialog_can_be_used_without_a_mouse(shown, preferences, wait,
         wait(lambda checked=checked: checked, 20.0)
         assert checked == [None], (name, checked)
     check_dialog(shown(UnitDialog([tmp_path / "grain.stl"], "um", window)), "unit", wait)
+
+
+def test_that_the_keys_stay_with_a_study_while_it_runs(shown):
+    frame = StudyFrame("some_study", QWidget())
+    window = QWidget()
+    column = QVBoxLayout(window)
+    column.addWidget(frame)
+    column.addWidget(QLineEdit())
+    shown(window)
+    window.activateWindow()
+    assert QTest.qWaitForWindowActive(window, 5000)
+    frame.start.setFocus()
+    frame.show_task(Task(1, "study", "Study", 12))
+    assert frame.stop.hasFocus()
+    frame.show_task(None)
+    assert frame.start.hasFocus()

@@ -58,9 +58,13 @@ class StudyFrame(QWidget):
     def show_task(self, task: Task | None) -> None:
         """Show how far the study is, or that it does not run."""
         running = task is not None
-        self.start.setVisible(not running)
+        seen, hidden = (self.stop, self.start) if running else (self.start, self.stop)
+        focused = hidden.hasFocus()
+        seen.show()
+        if focused:  # else it would go to whatever is next
+            seen.setFocus()
+        hidden.hide()
         self.remark.setVisible(not running)
-        self.stop.setVisible(running)
         self.bar.setVisible(running)
         if task is not None:
             self._task = task.id
