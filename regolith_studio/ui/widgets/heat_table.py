@@ -19,9 +19,9 @@ from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.table import LetterRows
 
-_ROWS_SHARE = 0.33
-"""Of the width, that the names of the rows take at most."""
-LEAST, MARGINS = 24, 8
+_ROWS_SHARE, _ROWS_LEAST = 0.33, 0.2
+"""Of the width, that the names of the rows take at most, and that they keep where columns need the rest."""
+LEAST, MARGINS = 24, 6
 """Pixels of the narrowest column, and of what is free around its name or number."""
 SPARE = 11
 """Pixels between two rows."""
@@ -85,12 +85,12 @@ class HeatTable(QWidget):
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
-        self.table.verticalHeader().setMaximumWidth(round(_ROWS_SHARE * self.width()))
+        self._keep_legible()
 
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
         if event.type() == QEvent.Type.FontChange:
-            keep_legible(self.table)
+            self._keep_legible()
 
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
@@ -104,7 +104,10 @@ class HeatTable(QWidget):
                 text = percentage(value) + self._band(at, column)
                 heat = math.sqrt(value / top) if top > 0.0 else 0.0
                 self.table.setItem(at, column, self._cell(text, heat))
-        keep_legible(self.table)
+        self._keep_legible()
+
+    def _keep_legible(self) -> None:
+        keep_legible(self.table, self.width())
 
     def _band(self, row: int, column: int) -> str:
         """A second line with the interval, where it has a width that can be read."""
@@ -145,15 +148,24 @@ def numbers_table(name: str) -> QTableWidget:
     return table
 
 
-def keep_legible(table: QTableWidget) -> None:
-    """Columns that have room for their names and numbers; a table that is too narrow is scrolled."""
+def keep_legible(table: QTableWidget, width: int) -> None:
+    """Columns that have room for their names and numbers; a table that is too narrow is scrolled.
+
+    Parameters
+    ----------
+    width
+        Of the table. The names of the rows give way first, and end in dots.
+    """
     names, cells = table.horizontalHeader().fontMetrics(), table.fontMetrics()
     heads = [table.horizontalHeaderItem(column) for column in range(table.columnCount())]
     widths = [names.horizontalAdvance(head.text()) for head in heads if head is not None]
     items = (table.item(row, at) for row in range(table.rowCount()) for at in range(table.columnCount()))
     lines = {line for item in items if item is not None for line in item.text().splitlines()}
     widest = max([*widths, *map(cells.horizontalAdvance, lines)], default=0)
-    table.horizontalHeader().setMinimumSectionSize(max(LEAST, widest + MARGINS))
+    least = max(LEAST, widest + MARGINS)
+    table.horizontalHeader().setMinimumSectionSize(least)
+    left = width - least * table.columnCount() - MARGINS
+    table.verticalHeader().setMaximumWidth(round(min(max(left, _ROWS_LEAST * width), _ROWS_SHARE * width)))
 
 
 def remark_in_the_middle(text: str) -> QLabel:

@@ -13,9 +13,6 @@ from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.heat_table import keep_legible, numbers_table, remark_in_the_middle
 from regolith_studio.ui.widgets.table import LetterRows
 
-ROWS_SHARE = 0.33
-"""Of the width, that the names of the rows take at most."""
-
 
 class ChangeTable(QWidget):
     """A row a change, a column a descriptor; a sentence where there is nothing yet."""
@@ -45,7 +42,7 @@ class ChangeTable(QWidget):
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
-        self.table.verticalHeader().setMaximumWidth(round(ROWS_SHARE * self.width()))
+        keep_legible(self.table, self.width())
 
     def _fill(self) -> None:
         study = self._study
@@ -85,7 +82,7 @@ class ChangeTable(QWidget):
                     + ("" if sure[r, k] else "\n" + tr("This may be chance."))
                 )
                 self.table.setItem(r, k, item)
-        keep_legible(self.table)
+        keep_legible(self.table, self.width())
 
     def _ground(self, share: float) -> QColor:
         colour = QColor(self._theme.bad if share > 0 else self._theme.fit)
