@@ -9,6 +9,8 @@ from PySide6.QtWidgets import QLabel, QScrollArea, QSizePolicy, QSplitter, QTabW
 from regolith_studio.ui.translation import tr
 
 CONTROLS_WIDTH = 290
+FOLDED = 32
+"""Pixels of height that are kept for buttons which find no room beside a box."""
 
 
 def side_by_side(parts: Sequence[QWidget], sizes: Sequence[int], stretch: int) -> QSplitter:
@@ -96,7 +98,7 @@ class _Column(QScrollArea):
         texts = inside.findChildren(SteadyTexts)
         for each in texts:
             each.take_spare(0)
-        left = self.height() - inside.sizeHint().height()
+        left = self.height() - inside.sizeHint().height() - FOLDED
         for each in texts:
             left -= each.line * each.take_spare(left // each.line)
 

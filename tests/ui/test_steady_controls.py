@@ -1,12 +1,14 @@
 """A control never moves under the mouse because a text beside it has changed."""
 
 import pytest
-from PySide6.QtCore import QPoint, QRect
+from PySide6.QtCore import QPoint, QRect, Qt
+from PySide6.QtTest import QTest
 from PySide6.QtWidgets import (
     QAbstractButton,
     QAbstractSpinBox,
     QApplication,
     QComboBox,
+    QLabel,
     QLineEdit,
     QScrollBar,
     QSlider,
@@ -16,6 +18,7 @@ from regolith_studio.jobs.runners.inline import InlineRunner
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.plan import Kind
 from regolith_studio.session.session import Session
+from regolith_studio.ui.layout import SteadyTexts, scrolled_column
 from regolith_studio.ui.main_window import MainWindow
 
 KINDS = (QAbstractButton, QAbstractSpinBox, QComboBox, QLineEdit, QSlider)
@@ -87,6 +90,8 @@ def test_that_no_control_of_explore_moves_with_particle_degree_method_and_outcom
         watched.does(entry.id, session.select, entry.id)
     for changes in ({"l_max": 2}, {"l_max": 15}, {"target": "particle"}, {"method": "exact"}):
         watched.does(str(changes), lambda changes=changes: session.choose(**changes))
+    for at in range(page.loss.preset.count()):
+        watched.does(page.loss.preset.itemText(at), page.loss.bar.chosen.emit, page.loss.preset.itemData(at))
     watched.does("a reason", page.coarsening.set_outcome, "None has so few facets. " * 20)
     watched.does("no reason", page.coarsening.set_outcome, None)
     watched.does("no fit", page.fit.set_findings, None)
@@ -159,3 +164,36 @@ def test_that_no_control_of_the_lecture_moves_with_its_sentences(window, watched
     settled(window, SECONDS)
     for step in (1, 2, 8):
         watched.does(f"degree {step}", page.degrees.transport.go, step)
+
+
+def test_that_long_texts_are_scrolled_by_keys_and_short_ones_are_passed_by(shown, app):
+    label = QLabel("short")
+    label.setWordWrap(True)
+    texts = SteadyTexts((label,), 3)
+    texts.resize(200, texts.sizeHint().height())
+    shown(texts)
+    assert texts.focusPolicy() == Qt.FocusPolicy.NoFocus
+    usual = texts.sizeHint()
+    label.setText("a text of many words " * 40)
+    for _ in range(3):
+        app.processEvents()
+    assert texts.sizeHint().height() == usual.height()
+    assert texts.focusPolicy() & Qt.FocusPolicy.TabFocus
+    for _ in range(200):
+        QTest.keyClick(texts, Qt.Key.Key_Down)
+    bar = texts.verticalScrollBar()
+    assert bar.value() == bar.maximum() > 0
+    assert label.visibleRegion().boundingRect().bottom() >= label.height() - 2
+
+
+def test_that_a_high_column_shows_more_lines_and_a_low_one_no_fewer_than_usual(shown, app):
+    label = QLabel("one\ntwo")
+    texts = SteadyTexts((label,), 2, 5)
+    column = scrolled_column([texts])
+    shown(column)
+    line = texts.fontMetrics().lineSpacing()
+    for height, lines in ((800, 5), (60, 2), (800, 5)):
+        column.resize(300, height)
+        for _ in range(3):
+            app.processEvents()
+        assert texts.height() // line == lines

@@ -179,7 +179,7 @@ class CoarseningPanel(QWidget):
         layout.addLayout(amount)
         layout.addLayout(form)
         layout.addWidget(self.more)
-        layout.addWidget(SteadyTexts((self.outcome,), LINES, 4))
+        layout.addWidget(SteadyTexts((self.outcome,), LINES))
 
     def _connect(self) -> None:
         self.n_faces.valueChanged.connect(lambda n: self.valueChanged.emit({"n_faces": int(n)}))

@@ -51,7 +51,7 @@ TIPS = {
     ),
 }
 
-LINES, MOST_LINES = 4, 9
+LINES, MOST_LINES = 4, 7
 """Of what the fit cannot keep, that are seen without scrolling: in low windows, and in high ones."""
 
 

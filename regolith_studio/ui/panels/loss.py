@@ -10,6 +10,7 @@ from regolith_studio.coarsening.weights import JACCARD, WEIGHT_KEYS, LossWeights
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.errors import InputError
 from regolith_studio.session.own_presets import OwnPresets
+from regolith_studio.ui.layout import SteadyTexts
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.labels import heading, remark, rich_symbol
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec, align_labels
@@ -19,6 +20,8 @@ OWN = "own:"
 """Begins the keys of own presets."""
 SLIDER_END = 2.0
 LARGEST = 100.0
+LINES = 3
+"""Of where a preset comes from, that are seen without scrolling."""
 
 
 def weight_spec(key: str) -> NumberSpec:
@@ -154,7 +157,7 @@ class LossPanel(QWidget):
         layout.addWidget(heading(tr("Weights of the loss (Eq. 9)")))
         layout.addWidget(self.bar)
         layout.addLayout(grid)
-        layout.addWidget(self.origin)
+        layout.addWidget(SteadyTexts((self.origin,), LINES))
 
     def _connect(self) -> None:
         self.bar.chosen.connect(self._take)

@@ -61,6 +61,7 @@ class Plot(QWidget):
         self._placeholder.setProperty("role", "remark")
         self._placeholder.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self._placeholder.setWordWrap(True)
+        self._placeholder.setMargin(12)
         self.canvas.scene().sigMouseMoved.connect(self._point)
         self._arrange()
         self.set_theme(self.theme)

@@ -208,12 +208,14 @@ class LossesLabel(QScrollArea):
         super().__init__(parent)
         self.setObjectName("dataset_losses")
         self.setWidgetResizable(True)
-        self.setFrameShape(self.Shape.NoFrame)
+        self.setProperty("role", "texts")
         self.label = remark()
         self.label.setTextFormat(Qt.TextFormat.RichText)
         self.label.setAlignment(Qt.AlignmentFlag.AlignTop)
         self.label.setContentsMargins(8, 6, 8, 6)
         self.setWidget(self.label)
+        for ground in (self.viewport(), self.label):
+            ground.setAutoFillBackground(False)  # that of the tab is seen
 
     def show_formats(self, keys: Sequence[str]) -> None:
         """Say what these lose."""

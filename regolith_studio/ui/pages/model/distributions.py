@@ -11,7 +11,7 @@ from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.choice_box import ChoiceBox
 from regolith_studio.ui.widgets.curve_plot import Curve, CurvePlot
-from regolith_studio.ui.widgets.labels import ElidedLabel, plain_symbol
+from regolith_studio.ui.widgets.labels import ElidedLabel, rich_symbol
 from regolith_studio.ui.widgets.number_text import short_number
 
 WEIGHTINGS = {
@@ -61,7 +61,7 @@ class DistributionsPanel(QWidget):
 
     def _show(self) -> None:
         row = CATALOGUE[self.key.value()]
-        symbol, unit = plain_symbol(row.symbol), _UNITS.get(row.dimension, "")
+        symbol, unit = rich_symbol(row.symbol), _UNITS.get(row.dimension, "")
         self.plot.set_labels(f"{tr(row.label)} {symbol}{f' [{unit}]' if unit else ''}", tr(SHARE))
         if self._compared is None:
             self.plot.set_curves([])

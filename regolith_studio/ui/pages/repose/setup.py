@@ -37,7 +37,7 @@ COHESION = {
     mark("Scaled with the size (experimental)"): "scaled",
 }
 
-LINES, MOST_LINES = 6, 14
+LINES, MOST_LINES = 6, 11
 """Of what the choices lead to, that are seen without scrolling: in low windows, and in high ones."""
 
 

@@ -137,7 +137,7 @@ class HealthPanel(QWidget):
         column.addStretch(1)
         scrolled = QScrollArea()
         scrolled.setWidgetResizable(True)
-        scrolled.setFrameShape(QScrollArea.Shape.NoFrame)
+        scrolled.setProperty("role", "texts")
         scrolled.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         scrolled.setWidget(right)
         layout = QHBoxLayout(self)
