@@ -10,6 +10,7 @@ from regolith_studio.session.preferences import Preferences
 from regolith_studio.ui.dialogs.preferences import LETTERS, PreferencesDialog
 from regolith_studio.ui.keyboard_focus import KeyboardFocus
 from regolith_studio.ui.theme import apply_letters, choose_letters, choose_theme
+from regolith_studio.ui.undo_keys import UndoKeys
 
 
 class Looks(QObject):
@@ -29,6 +30,7 @@ class Looks(QObject):
         super().__init__(window)
         self._preferences, self._apply, self._window = preferences, apply, window
         self.focus = KeyboardFocus(self)
+        self.undo_keys = UndoKeys(self)
         self._take()
         apply_letters(cast(QApplication, QApplication.instance()))
 

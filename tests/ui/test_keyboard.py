@@ -237,3 +237,47 @@ def test_that_the_keys_stay_with_a_study_while_it_runs(shown):
     assert frame.stop.hasFocus()
     frame.show_task(None)
     assert frame.start.hasFocus()
+
+
+def chord(window, key, modifiers=Qt.KeyboardModifier.NoModifier):
+    QTest.keyClick(window.windowHandle(), key, modifiers)
+    QApplication.processEvents()
+
+
+def test_that_undo_and_redo_work_while_a_number_box_has_the_keys(window, settled):
+    page, session = window.page, window.session
+    control, shift = Qt.KeyboardModifier.ControlModifier, Qt.KeyboardModifier.ShiftModifier
+    field = page.fit.l_max.field
+    field.setFocus()
+    for _ in range(5):
+        chord(window, Qt.Key.Key_Up)
+        settled(window)
+    assert session.choices.l_max == field.value() == 15
+    for _ in range(5):
+        chord(window, Qt.Key.Key_Z, control)
+        settled(window)
+    assert field.hasFocus()
+    assert session.choices.l_max == field.value() == 10
+    for _ in range(5):
+        chord(window, Qt.Key.Key_Z, control | shift)
+        settled(window)
+    assert session.choices.l_max == field.value() == 15
+    field.selectAll()
+    chord(window, Qt.Key.Key_3)
+    chord(window, Qt.Key.Key_Z, control)  # what is being typed is the box's
+    assert field.text() == "15"
+    assert session.choices.l_max == 15
+
+
+def test_that_a_typed_number_is_undone_by_the_window_once_it_counts(window, settled):
+    field, session = window.page.coarsening.seed, window.session
+    before = session.choices.seed
+    field.setFocus()
+    field.selectAll()
+    for key in (Qt.Key.Key_4, Qt.Key.Key_2, Qt.Key.Key_Return):
+        chord(window, key)
+    settled(window)
+    assert session.choices.seed == 42
+    chord(window, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
+    settled(window)
+    assert session.choices.seed == field.value() == before
