@@ -13,6 +13,7 @@ from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.ui.app import open_window
+from regolith_studio.ui.pages.sample.scatter import ScatterPanel
 from regolith_studio.ui.pages.sample.statistics import StatisticsPanel
 
 SECONDS = 120.0
@@ -157,3 +158,15 @@ def test_that_a_logarithmic_plot_cannot_be_dragged_to_where_numbers_end(shown):
     plot.canvas.setXRange(0, 1e4)
     assert plot.canvas.getAxis("bottom").range[1] >= 1e4
     plot.set_theme(plot.theme)
+
+
+@pytest.mark.parametrize(("width", "rows"), [(900, 1), (330, 2)])
+def test_that_what_is_beside_the_axes_stands_below_them_where_it_has_no_room(shown, width, rows):
+    panel = ScatterPanel()
+    panel.resize(width, 400)
+    shown(panel)
+    controls = (panel.up, panel.across, panel.log, panel.zingg)
+    assert len({each.geometry().center().y() // 12 for each in controls}) == rows
+    for each in (panel.log, panel.zingg):
+        assert each.width() >= each.sizeHint().width()
+        assert panel.rect().contains(each.mapTo(panel, each.rect().bottomRight()))

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from PySide6.QtCore import Qt, Signal
+from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import (
     QAbstractItemView,
     QCheckBox,
@@ -128,18 +129,25 @@ class HealthPanel(QWidget):
         header.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
         return table
 
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        words, bar = self._right.minimumSizeHint(), self._scrolled.verticalScrollBar().sizeHint()
+        self._scrolled.setMinimumWidth(min(words.width() + bar.width(), self.width() // 2))
+
     def _place(self) -> None:
-        right = QWidget()
+        right = self._right = QWidget()
         column = QVBoxLayout(right)
         column.setContentsMargins(8, 4, 4, 4)
         for widget in (self.where, self.legend, self.words):
             column.addWidget(widget)
         column.addStretch(1)
-        scrolled = QScrollArea()
+        scrolled = self._scrolled = QScrollArea()
         scrolled.setWidgetResizable(True)
         scrolled.setProperty("role", "texts")
         scrolled.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         scrolled.setWidget(right)
+        for ground in (scrolled.viewport(), right):
+            ground.setAutoFillBackground(False)  # that of the tab is seen
         layout = QHBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(self.table, 3)

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QApplication, QFileDialog, QHBoxLayout, QLineEdit, QVBoxLayout, QWidget
 
 from regolith_studio.errors import RegolithError
@@ -16,7 +17,7 @@ from regolith_studio.session.outputs.staging import write_bytes
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import filter_of, sample_table
 from regolith_studio.studies.tables import csv_text
-from regolith_studio.ui.layout import SteadyTexts, side_by_side, stacked, tabs
+from regolith_studio.ui.layout import SteadyTexts, equal_parts, side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.sample.health import HealthPanel, retold_health
 from regolith_studio.ui.pages.sample.scatter import ScatterPanel
@@ -136,7 +137,7 @@ class SamplePage(PageWidget):
         parts = stacked([self.table, self.reports], [490, 300], stretch=0)
         parts.setObjectName("sample_rows")
         column.addWidget(parts, 1)
-        right = stacked([self.frame, self.scatter], [420, 420], stretch=1)
+        right = equal_parts(Qt.Orientation.Vertical, [self.frame, self.scatter])
         right.setObjectName("sample_pictures")
         right.setContentsMargins(2, 10, 10, 8)
         columns = side_by_side([left, right], [1150, 600], stretch=0)

@@ -7,12 +7,13 @@ import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QSignalBlocker, Qt, Signal
 from PySide6.QtGui import QColor
-from PySide6.QtWidgets import QCheckBox, QComboBox, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QCheckBox, QComboBox, QLabel, QToolButton, QVBoxLayout, QWidget
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.descriptors.zingg import THRESHOLD
 from regolith_studio.scene.palette import DESCRIPTOR_COLOURS
 from regolith_studio.session.results import ParticleEntry
+from regolith_studio.ui.layout import TwoParts
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import mark, tr, tr_count
 from regolith_studio.ui.widgets.labels import rich_symbol
@@ -74,16 +75,11 @@ class ScatterPanel(QWidget):
         self._draw()
 
     def _arrange(self) -> None:
-        row = QHBoxLayout()
-        row.setContentsMargins(8, 6, 8, 0)
-        row.addWidget(self.up, 1)
-        row.addWidget(QLabel(tr("against")))
-        row.addWidget(self.across, 1)
-        row.addWidget(self.log)
-        row.addWidget(self.zingg)
+        against = QLabel(tr("against"))
+        row = TwoParts((self.up, against, self.across), (self.log, self.zingg), margins=(8, 6, 8, 0))
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        layout.addLayout(row)
+        layout.addWidget(row)
         layout.addWidget(self.plot, 1)
         for box in (self.across, self.up):
             box.currentIndexChanged.connect(lambda _at: self._draw())
