@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
 import numpy as np
-from scipy.optimize import linprog, minimize
+from scipy import optimize
 
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray
@@ -42,7 +42,9 @@ def kernel_centre(mesh: Mesh) -> FloatArray:
     corners = (mesh.triangles[keep, 0] - mesh.centroid) / size
     offsets = np.einsum("ij,ij->i", normals, corners)
     rows = np.column_stack([normals, np.ones(len(normals))])
-    found = linprog([0, 0, 0, -1], A_ub=rows, b_ub=offsets, bounds=[(None, None)] * 4, method="highs")
+    found = optimize.linprog(
+        [0, 0, 0, -1], A_ub=rows, b_ub=offsets, bounds=[(None, None)] * 4, method="highs"
+    )
     if found.x is None or not found.x[3] > 1e-9:
         raise GeometryError("No point inside the particle sees its whole surface: its kernel is empty.")
     return np.asarray(mesh.centroid + found.x[:3] * size)
@@ -81,7 +83,7 @@ def least_hidden_volume(mesh: Mesh) -> FloatArray:
         return start
     simplex = np.vstack([np.zeros(3), 0.4 * np.eye(3)])
     with np.errstate(invalid="ignore"):  # costs of two points outside are both infinite
-        found = minimize(
+        found = optimize.minimize(
             cost,
             np.zeros(3),
             method="Nelder-Mead",

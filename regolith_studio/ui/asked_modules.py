@@ -8,8 +8,6 @@ from threading import RLock
 from types import ModuleType
 from typing import Any
 
-_lock = RLock()
-
 
 def load_when_asked(names: Sequence[str]) -> None:
     """Do so with these modules, where they have not been imported before.
@@ -37,16 +35,31 @@ class _Finder(MetaPathFinder):
 
 
 class _Waiting(Loader):
-    """Loads a module at its first question."""
+    """Loads one module at its first question."""
 
     def __init__(self, loader: Loader) -> None:
         self._loader = loader
+        self._lock = RLock()
+        self._run = False
 
     def create_module(self, spec: ModuleSpec) -> ModuleType:
         return _Unasked(spec.name)
 
     def exec_module(self, module: ModuleType) -> None:
-        module.__dict__["_run"] = self._loader.exec_module
+        module.__dict__["__waiting__"] = self
+
+    def asked(self, module: ModuleType) -> None:
+        """Run the module; another thread waits for that, and the module itself may ask meanwhile."""
+        with self._lock:
+            if self._run:
+                return
+            self._run = True
+            try:
+                self._loader.exec_module(module)
+            except BaseException:
+                self._run = False
+                raise
+            module.__class__ = ModuleType
 
 
 class _Unasked(ModuleType):
@@ -55,9 +68,5 @@ class _Unasked(ModuleType):
     def __getattr__(self, name: str) -> Any:
         if name.startswith("__"):
             raise AttributeError(name)
-        with _lock:  # another thread waits until the module has run; the module itself may ask meanwhile
-            run = self.__dict__.pop("_run", None)
-            if run is not None:
-                run(self)
-                self.__class__ = ModuleType  # type: ignore[assignment]
+        self.__dict__["__waiting__"].asked(self)
         return ModuleType.__getattribute__(self, name)

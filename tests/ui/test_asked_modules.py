@@ -63,3 +63,10 @@ def test_that_two_threads_that_ask_at_once_both_get_their_answer(waiting):
         each.join()
     assert answers == [42, 42]
     assert sys.asked == 1
+
+
+def test_that_a_module_that_fails_says_so_each_time_and_not_that_something_is_missing(waiting, tmp_path):
+    (tmp_path / "regolith_waiting" / "part.py").write_text("raise ValueError('broken')")
+    for _ in range(2):
+        with pytest.raises(ValueError, match="broken"):
+            _ = waiting.answer

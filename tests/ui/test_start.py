@@ -31,7 +31,8 @@ read = {name.split(".")[0] for name, module in sys.modules.items()
         if getattr(module, "__file__", None) in linecache.cache}
 assert not read & {"pyvista", "pyqtgraph", "matplotlib"}, f"sources are kept in memory: {read}"
 assert not {"mypy", "matplotlib.figure", "matplotlib.pyplot"} & set(sys.modules)
-assert not {"numpy.f2py.crackfortran", "pooch.core", "tqdm"} & set(sys.modules), "loaded and never asked for"
+early = {"numpy.f2py.crackfortran", "pooch.core", "tqdm", "scipy.optimize._minimize"} & set(sys.modules)
+assert not early, f"loaded and never asked for: {early}"
 from matplotlib.figure import Figure
 from pyvista import Chart2D, ChartMPL
 from pyvista.plotting.colors import get_cycler
