@@ -207,10 +207,11 @@ def test_that_a_formula_is_drawn_in_ink_and_shrinks_to_its_room(shown, wait):
     ]
     assert len(inked) > 100
     assert max(x for x, _ in inked) > 0.8 * wide.width()
-    label.resize(label.sizeHint().width() * 2 // 3, label.sizeHint().height())
-    narrow = label.grab().toImage()
-    right = [narrow.pixelColor(narrow.width() - 1, y) for y in range(narrow.height())]
-    assert all(colour == ground for colour in right)
+    for share in (0.67, 0.4):
+        label.resize(round(share * label.sizeHint().width()), label.sizeHint().height())
+        narrow = label.grab().toImage()
+        right = [narrow.pixelColor(narrow.width() - 1, y) for y in range(narrow.height())]
+        assert all(colour == ground for colour in right)
 
 
 def test_that_formulas_are_set_one_line_at_a_time_and_shown_when_all_are(shown, wait, monkeypatch):
@@ -251,3 +252,12 @@ def test_that_a_stopped_lesson_says_so_and_begins_again_at_the_next_visit(page):
     page.left()
     page.entered()
     assert "start" in page.annealing.sentence.text()
+
+
+def test_that_plots_of_annealing_are_high_enough_for_their_letters_in_a_low_window(page, app):
+    page.resize(900, 420)
+    for _ in range(3):
+        app.processEvents()
+    for plot in (page.annealing.loss, page.annealing.chance, page.annealing.terms):
+        assert plot.height() >= 11 * plot.fontMetrics().height()
+        assert plot.legend.height() + 4 * plot.fontMetrics().height() < plot.height()

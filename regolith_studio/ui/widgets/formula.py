@@ -15,7 +15,7 @@ EM = 100.0
 LEADING = 0.62
 """Space between two lines in units of the letters."""
 SMALLEST = 0.55
-"""A formula shrinks to the room it has, but not below this share of its size."""
+"""A formula shrinks to the height it has, but not below this share of its size; to the width, as it must."""
 LEAST_HEIGHT = 0.75
 """Share of its height that a formula asks for at least."""
 MOST_KEPT = 512
@@ -102,7 +102,7 @@ class FormulaLabel(QWidget):
         widest = max(outline(line).boundingRect().right() for line in self._lines)
         wide = (self.width() - 2) / max(widest * natural, 1.0)
         high = (self.height() - 2) / max(self._height() * natural, 1.0)
-        scale = natural * max(SMALLEST, min(1.0, wide, high))
+        scale = natural * min(max(SMALLEST, min(1.0, high)), wide)
         painter.translate(1, (self.height() - self._height() * scale) / 2)
         painter.scale(scale, scale)
         for line in self._lines:

@@ -5,6 +5,8 @@ from functools import partial
 from typing import Any
 
 import numpy as np
+from PySide6.QtCore import QEvent
+from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QLabel, QSplitter, QVBoxLayout, QWidget
 
 from regolith_studio.jobs.lecturing import AnnealingLesson, AnnealingStep
@@ -24,10 +26,13 @@ from regolith_studio.ui.widgets.bar_plot import BarPlot, BarSeries
 from regolith_studio.ui.widgets.curve_plot import Curve, CurvePlot
 from regolith_studio.ui.widgets.formula import FormulaLabel
 from regolith_studio.ui.widgets.labels import WholeLabel
+from regolith_studio.ui.widgets.plot import Plot
 
 SEEN_THROUGH = 0.6
 """Opacity of a polyhedron with the edges of another one about it."""
 WAIT = mark("The particle is annealed …")
+PLOT_LINES = 11
+"""Height of a plot in lines, at least: legend, curves and axis."""
 
 
 class AnnealingView(QWidget):
@@ -45,6 +50,7 @@ class AnnealingView(QWidget):
         self._theme = current_theme()
         self._lesson: AnnealingLesson | None = None
         self._kind = kind
+        self._plots: tuple[Plot, ...] = ()
 
     def assemble(self) -> Iterator[None]:
         """Make the parts, right after construction; the window answers at each ``yield``."""
@@ -63,7 +69,8 @@ class AnnealingView(QWidget):
         self.chance = CurvePlot(tr("Step k"), tr("Probability"), tr(WAIT))
         yield
         self.terms = BarPlot(tr("Term of Eq. 9"), "α ε", tr(WAIT), unit="")
-        for plot, name in ((self.loss, "loss"), (self.chance, "chance"), (self.terms, "terms")):
+        self._plots = (self.loss, self.chance, self.terms)
+        for plot, name in zip(self._plots, ("loss", "chance", "terms"), strict=True):
             plot.setObjectName(f"annealing_{name}")
         self.frames["annealing"].set_texts(tr("Annealing"))
         self.frames["exact"].set_texts(tr("Exact method"))
@@ -253,6 +260,20 @@ class AnnealingView(QWidget):
             exact = words.exact_terms(lesson)
             series.append(BarSeries(tr("exact method"), theme.polyhedron, tuple(exact.values())))
         self.terms.set_bars([words.plain(key) for key in before], series)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._make_room()
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() in (QEvent.Type.FontChange, QEvent.Type.StyleChange):
+            self._make_room()
+
+    def _make_room(self) -> None:
+        """For legend, curves and axis of each plot, in letters of the present size; the page is scrolled."""
+        for plot in self._plots:
+            plot.setMinimumHeight(PLOT_LINES * plot.fontMetrics().height())
 
     def _arrange(self) -> None:
         said = QWidget()
