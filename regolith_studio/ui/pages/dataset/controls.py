@@ -18,8 +18,8 @@ from regolith_studio.ui.widgets.labels import heading, remark
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
 
 MOST = 200
-POPULATION_LINES, SIZES_LINES, DATASET_LINES = 2, 2, 3
-"""Of texts between the controls, that are seen without scrolling."""
+POPULATION_LINES, SIZES_LINES, ASKED_LINES, STATE_LINES = (1, 2), (1, 3), (3, 3), (2, 3)
+"""Of texts between the controls, that are seen without scrolling: in low windows, and in high ones."""
 COUNT = NumberSpec("N", mark("Number of representatives"), 1, MOST, tip=mark("The paper has 10."))
 WEIGHTINGS = {
     "number": mark("Each particle counts the same"),
@@ -67,7 +67,7 @@ class RepresentativesPanel(QWidget):
         layout.setContentsMargins(0, 0, 0, 0)
         for widget in (
             heading(tr("1  Representatives")),
-            SteadyTexts((self.population,), POPULATION_LINES),
+            SteadyTexts((self.population,), *POPULATION_LINES),
             self.weighting,
             self.start,
             self.count,
@@ -138,7 +138,7 @@ class SizesPanel(QWidget):
         self.numbers.setAccessibleName(tr("Numbers of the size distribution"))
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        texts = SteadyTexts((self.hint, self.problem), SIZES_LINES)
+        texts = SteadyTexts((self.hint, self.problem), *SIZES_LINES)
         for widget in (heading(tr("2  Sizes")), self.kind, self.numbers, texts):
             layout.addWidget(widget)
         self.kind.currentIndexChanged.connect(lambda _: self._show_kind())
@@ -210,7 +210,7 @@ class FolderPanel(QWidget):
         self.open.setObjectName("dataset_open")
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        asked, there = SteadyTexts((self.shapes,), DATASET_LINES), SteadyTexts((self.state,), DATASET_LINES)
+        asked, there = SteadyTexts((self.shapes,), *ASKED_LINES), SteadyTexts((self.state,), *STATE_LINES)
         for widget in (heading(tr("3  Dataset")), self.name, asked):
             layout.addWidget(widget)
         buttons = QHBoxLayout()

@@ -60,9 +60,6 @@ class TargetsPanel(QWidget):
         self.times = ParameterForm(ScriptTimes, "export")
         self.lossy = QCheckBox(tr("Shapes may be changed"))
         self.lossy.setObjectName("dataset_lossy")
-        kept = self.lossy.sizePolicy()
-        kept.setRetainSizeWhenHidden(True)  # Export stays where it is
-        self.lossy.setSizePolicy(kept)
         self.export = QPushButton(tr("Export …"))
         self.export.setObjectName("dataset_export")
         form = QFormLayout()
@@ -70,6 +67,7 @@ class TargetsPanel(QWidget):
         form.addRow(tr("Particles drawn"), self.particles)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
+        layout.setSpacing(4)
         layout.addWidget(heading(tr("4  Export to")))
         for box in self.boxes.values():
             layout.addWidget(box)
@@ -80,8 +78,10 @@ class TargetsPanel(QWidget):
                 _column((self.contact, self.test, self.times, remark(f"* {tr(NOT_GIVEN)}"))),
             )
         )
-        layout.addWidget(self.lossy)
-        layout.addWidget(self.export)
+        last = QHBoxLayout()
+        last.addWidget(self.lossy)
+        last.addWidget(self.export, 1)
+        layout.addLayout(last)
         self.coarse_graining.setValue(10)
         self.particles.setValue(200)
         for slider in (self.coarse_graining, self.particles):
@@ -180,7 +180,7 @@ class TargetsPanel(QWidget):
 
     def _show(self) -> None:
         altering = [key for key in self.chosen() if EXPORTERS[key].alters]
-        self.lossy.setVisible(bool(altering))
+        self.lossy.setEnabled(bool(altering))
         allowed = self._allowed()
         self.export.setEnabled(getattr(self, "_ready", False) and bool(self.chosen()) and allowed)
         self.export.setToolTip(
