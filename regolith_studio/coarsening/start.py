@@ -1,10 +1,10 @@
 """The start of every method: the convex hull, decimated by quadric error (section 2.4)."""
 
-import fast_simplification
 import numpy as np
 
 from regolith_studio.coarsening.target import Target
 from regolith_studio.errors import GeometryError, InputError
+from regolith_studio.geometry.decimation import decimated
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
 
@@ -25,10 +25,7 @@ def decimated_hull(target: Target, n_faces: int) -> Mesh:
             f"The particle's convex hull has {len(hull.faces)} triangles only, fewer than the {n_faces} faces"
             " asked for."
         )
-    points, faces = fast_simplification.simplify(
-        hull.vertices.copy(), hull.faces.astype(np.int32), target_count=n_faces
-    )
-    return Mesh(points, faces)
+    return decimated(hull, n_faces)
 
 
 def quadric_half_spaces(target: Target, n_faces: int) -> HalfSpaces:

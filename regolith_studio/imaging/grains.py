@@ -8,11 +8,11 @@ set: melted-together balls with vesicles bitten out of its surface.
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import fast_simplification
 import numpy as np
 from scipy import ndimage
 
 from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.decimation import decimated
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.imaging.contour import contour
 from regolith_studio.imaging.waves import SphereField, power_law
@@ -273,10 +273,7 @@ def _reduced(mesh: Mesh, n_faces: int) -> Mesh:
     """The mesh with about `n_faces` triangles (quadric edge collapse), still closed and of one piece."""
     for goal in (n_faces, 1.1 * n_faces, 1.3 * n_faces):
         share = max(0.0, 1.0 - goal / len(mesh.faces))
-        vertices, faces = fast_simplification.simplify(
-            np.array(mesh.vertices), np.array(mesh.faces), target_reduction=share
-        )
-        reduced = Mesh(vertices, faces)
+        reduced = decimated(mesh, int((1.0 - share) * len(mesh.faces)))
         if _is_closed(reduced):
             return reduced
     return mesh
