@@ -1,6 +1,5 @@
 """For the window: a model with examples of its sample, drawn particles, judged models as pictures."""
 
-import io
 from collections.abc import Callable, Generator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -186,12 +185,9 @@ def judged(study: PopulationStudy, shown: Progress) -> Generator[Step, None, Jud
 
 def png_of(figure: "Figure") -> bytes:
     """The figure as PNG."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from regolith_studio.studies.figure_files import png_bytes
 
-    FigureCanvasAgg(figure)
-    stream = io.BytesIO()
-    figure.savefig(stream, format="png", dpi=DOTS_PER_INCH)
-    return stream.getvalue()
+    return png_bytes(figure, DOTS_PER_INCH)
 
 
 def draw_live(model: FittedModel, seed: int) -> Steps:

@@ -1,10 +1,13 @@
 """Figures as files: PNG to look at, SVG to edit; the same bytes each time."""
 
+from io import BytesIO
 from pathlib import Path
 
 import matplotlib
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+
+from regolith_studio.studies.one_at_a_time import DRAWING
 
 DOTS_PER_INCH = 150
 
@@ -14,7 +17,17 @@ def write_figure(figure: Figure, folder: Path, stem: str) -> tuple[Path, Path]:
     folder.mkdir(parents=True, exist_ok=True)
     FigureCanvasAgg(figure)
     picture, drawing = folder / f"{stem}.png", folder / f"{stem}.svg"
-    figure.savefig(picture, dpi=DOTS_PER_INCH)
-    with matplotlib.rc_context({"svg.hashsalt": "regolith-studio"}):
-        figure.savefig(drawing, metadata={"Date": None})
+    with DRAWING:
+        figure.savefig(picture, dpi=DOTS_PER_INCH)
+        with matplotlib.rc_context({"svg.hashsalt": "regolith-studio"}):
+            figure.savefig(drawing, metadata={"Date": None})
     return picture, drawing
+
+
+def png_bytes(figure: Figure, dots_per_inch: int = DOTS_PER_INCH) -> bytes:
+    """A figure as a PNG file in memory."""
+    FigureCanvasAgg(figure)
+    stream = BytesIO()
+    with DRAWING:
+        figure.savefig(stream, format="png", dpi=dots_per_inch)
+    return stream.getvalue()

@@ -10,6 +10,8 @@ from PySide6.QtCore import QCoreApplication, QObject, QRectF, QSize, Qt, QTimer
 from PySide6.QtGui import QPainter, QPainterPath, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
+from regolith_studio.studies.one_at_a_time import DRAWING
+
 EM = 100.0
 """Size at which outlines are made; they are scaled when drawn."""
 LEADING = 0.62
@@ -18,6 +20,8 @@ SMALLEST = 0.55
 """A formula shrinks to the height it has, but not below this share of its size; to the width, as it must."""
 LEAST_HEIGHT = 0.75
 """Share of its height that a formula asks for at least."""
+AGAIN = 20
+"""Milliseconds until a formula is set that has to wait for a figure."""
 MOST_KEPT = 512
 """Lines whose outlines are at hand."""
 
@@ -137,14 +141,25 @@ class _Setting(QObject):
         self._timer.start()
 
     def _go_on(self) -> None:
+        """Set a line, or come again in a moment where another thread draws a figure."""
+        free = DRAWING.acquire(blocking=False)
+        self._timer.setInterval(0 if free else AGAIN)
+        if not free:
+            return
+        try:
+            self._set_one()
+        finally:
+            DRAWING.release()
+        if not self._labels:
+            self._timer.stop()
+
+    def _set_one(self) -> None:
         for label in list(self._labels):
             del self._labels[label]
             if shiboken6.isValid(label):
                 if label.set_next():
                     self._labels[label] = None
                 break
-        if not self._labels:
-            self._timer.stop()
 
 
 @cache
@@ -173,7 +188,9 @@ def _outlined(line: str) -> QPainterPath:
     made.setFillRule(Qt.FillRule.WindingFill)
     if not line:
         return made
-    for points, code in TextPath((0, 0), line, size=EM).iter_segments():
+    with DRAWING:
+        letters = TextPath((0, 0), line, size=EM)
+    for points, code in letters.iter_segments():
         x = [float(each) for each in points[0::2]]
         y = [-float(each) for each in points[1::2]]
         if code == OutlinePath.MOVETO:
