@@ -4,20 +4,9 @@ from collections.abc import Sequence
 
 from PySide6.QtCore import QEvent, QObject, QSize, Qt
 from PySide6.QtGui import QResizeEvent
-from PySide6.QtWidgets import (
-    QBoxLayout,
-    QComboBox,
-    QHBoxLayout,
-    QLabel,
-    QScrollArea,
-    QSizePolicy,
-    QSplitter,
-    QTabWidget,
-    QVBoxLayout,
-    QWidget,
-)
+from PySide6.QtWidgets import QScrollArea, QSizePolicy, QSplitter, QTabWidget, QVBoxLayout, QWidget
 
-from regolith_studio.ui.translation import tr
+from regolith_studio.ui.widgets.steady_texts import SteadyTexts
 
 CONTROLS_WIDTH = 290
 FOLDED = 32
@@ -112,114 +101,6 @@ class _Column(QScrollArea):
         left = self.height() - inside.sizeHint().height() - FOLDED
         for each in texts:
             left -= each.line * each.take_spare(left // each.line)
-
-
-class TwoParts(QWidget):
-    """Controls in a row, of which the last ones stand below the first ones where there is no room.
-
-    Parameters
-    ----------
-    first, last
-        Boxes among the first ones take what room there is.
-    margins
-        Left, top, right, bottom.
-    """
-
-    def __init__(
-        self, first: Sequence[QWidget], last: Sequence[QWidget], margins: tuple[int, int, int, int]
-    ) -> None:
-        super().__init__()
-        self._box = QBoxLayout(QBoxLayout.Direction.LeftToRight, self)
-        self._box.setContentsMargins(*margins)
-        self._parts = [QHBoxLayout(), QHBoxLayout()]
-        for part, row in zip((first, last), self._parts, strict=True):
-            for each in part:
-                row.addWidget(each, int(isinstance(each, QComboBox)))
-        self._box.addLayout(self._parts[0], 1)
-        self._box.addLayout(self._parts[1])
-
-    def minimumSizeHint(self) -> QSize:
-        least, margins = [part.minimumSize().width() for part in self._parts], self._box.contentsMargins()
-        return QSize(max(least) + margins.left() + margins.right(), super().minimumSizeHint().height())
-
-    def resizeEvent(self, event: QResizeEvent) -> None:
-        super().resizeEvent(event)
-        margins = self._box.contentsMargins()
-        needed = sum(part.sizeHint().width() for part in self._parts) + self._box.spacing()
-        narrow = self.width() < needed + margins.left() + margins.right()
-        way = QBoxLayout.Direction
-        self._box.setDirection(way.TopToBottom if narrow else way.LeftToRight)
-
-
-class SteadyTexts(QScrollArea):
-    """Texts in the room of so many lines, whatever they say: no control moves when they change.
-
-    More lines than that are scrolled to, by the mouse or, with the focus, by the arrow keys.
-
-    Parameters
-    ----------
-    texts
-        Below each other; those that are hidden take no room.
-    lines
-        That are seen at once.
-    most
-        Lines that are seen where a column is high enough for them, see :func:`scrolled_column`.
-    """
-
-    def __init__(self, texts: Sequence[QLabel], lines: int, most: int = 0) -> None:
-        super().__init__()
-        self._lines, self._spare, self._most = lines, 0, max(lines, most)
-        self._inside = QWidget()
-        column = QVBoxLayout(self._inside)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(2)
-        for text in texts:
-            text.setAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop)
-            column.addWidget(text)
-        column.addStretch(1)
-        self.setProperty("role", "texts")
-        self.setWidgetResizable(True)
-        self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
-        self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        self.setAccessibleName(tr("Remarks"))
-        self.setWidget(self._inside)
-        self.verticalScrollBar().rangeChanged.connect(self._overflow)
-
-    @property
-    def line(self) -> int:
-        """Height of one line."""
-        return self.fontMetrics().lineSpacing()
-
-    def take_spare(self, lines: int) -> int:
-        """Show more lines than usual, if that many are of use; returns how many are taken."""
-        taken = max(0, min(lines, self._most - self._lines))
-        if taken != self._spare:
-            self._spare = taken
-            self.updateGeometry()
-        return taken
-
-    def sizeHint(self) -> QSize:
-        lines = (self._lines + self._spare) * self.line
-        return QSize(super().sizeHint().width(), lines + 2 * self.frameWidth())
-
-    def minimumSizeHint(self) -> QSize:
-        bar = self.verticalScrollBar().sizeHint().width()
-        return QSize(self._inside.minimumSizeHint().width() + bar, self.sizeHint().height())
-
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() in (QEvent.Type.FontChange, QEvent.Type.StyleChange):
-            self.updateGeometry()
-
-    def resizeEvent(self, event: QResizeEvent) -> None:
-        super().resizeEvent(event)
-        self._overflow()
-
-    def _overflow(self, *_range: int) -> None:
-        """Tab comes here only where there is something to scroll."""
-        more = self.verticalScrollBar().maximum() > 0
-        self.setFocusPolicy(Qt.FocusPolicy.TabFocus if more else Qt.FocusPolicy.NoFocus)
 
 
 def padded(part: QWidget, left: int, top: int, right: int, bottom: int) -> QWidget:

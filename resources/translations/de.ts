@@ -4204,7 +4204,7 @@
    <translation>Relative Fehler von Volumen, Sphärizität, Durchmessern, Seitenverhältnis und Hülle (Gl. 8): blau für den Fit, orange für das Polyeder. Der zweite Reiter hat die Zahlen mit ihren Einheiten.</translation>
   </message>
   <message>
-   <location filename="ui/layout.py" />
+   <location filename="ui/widgets/steady_texts.py" />
    <source>Remarks</source>
    <translation>Anmerkungen</translation>
   </message>

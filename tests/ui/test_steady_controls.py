@@ -18,8 +18,9 @@ from regolith_studio.jobs.runners.inline import InlineRunner
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.plan import Kind
 from regolith_studio.session.session import Session
-from regolith_studio.ui.layout import SteadyTexts, scrolled_column
+from regolith_studio.ui.layout import scrolled_column
 from regolith_studio.ui.main_window import MainWindow
+from regolith_studio.ui.widgets.steady_texts import SteadyTexts
 
 KINDS = (QAbstractButton, QAbstractSpinBox, QComboBox, QLineEdit, QSlider)
 SECONDS = 170.0

@@ -17,7 +17,6 @@ from PySide6.QtWidgets import (
 from regolith_studio.coarsening.coarsen import FACES_LIMITS
 from regolith_studio.coarsening.methods import METHODS
 from regolith_studio.ui.icons import icon
-from regolith_studio.ui.layout import SteadyTexts
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.translation.sentences import retold
@@ -26,6 +25,7 @@ from regolith_studio.ui.widgets.collapsible import Collapsible
 from regolith_studio.ui.widgets.labels import heading, remark
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
 from regolith_studio.ui.widgets.settings_form import SettingsForm
+from regolith_studio.ui.widgets.steady_texts import SteadyTexts
 
 STOPS = {"faces": mark("Facets n"), "triangles": mark("Triangles"), "error": mark("Error ≤")}
 FACES = NumberSpec(

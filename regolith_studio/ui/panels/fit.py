@@ -9,13 +9,13 @@ from PySide6.QtWidgets import QFormLayout, QVBoxLayout, QWidget
 
 from regolith_studio.harmonics.expansion import AUTOMATIC
 from regolith_studio.session.choices import L_MAX_LIMIT
-from regolith_studio.ui.layout import SteadyTexts
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.choice_box import ChoiceBox
 from regolith_studio.ui.widgets.collapsible import Collapsible
 from regolith_studio.ui.widgets.labels import heading, remark, with_subscripts
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
+from regolith_studio.ui.widgets.steady_texts import SteadyTexts
 
 L_MAX = NumberSpec(
     "l<sub>max</sub>",

@@ -10,11 +10,11 @@ from regolith_studio.coarsening.weights import JACCARD, WEIGHT_KEYS, LossWeights
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.errors import InputError
 from regolith_studio.session.own_presets import OwnPresets
-from regolith_studio.ui.layout import SteadyTexts
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.labels import heading, remark, rich_symbol
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec, align_labels
 from regolith_studio.ui.widgets.preset_bar import PresetBar, PresetEntry
+from regolith_studio.ui.widgets.steady_texts import SteadyTexts
 
 OWN = "own:"
 """Begins the keys of own presets."""

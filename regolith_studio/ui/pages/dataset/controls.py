@@ -12,10 +12,10 @@ from regolith_studio.dataset.size_spec import Sizing, parse_sizes
 from regolith_studio.errors import InputError
 from regolith_studio.jobs.representing import RepresentativesOrder
 from regolith_studio.session.recipe_dataset import Representatives
-from regolith_studio.ui.layout import SteadyTexts
 from regolith_studio.ui.translation import mark, tr, tr_count
 from regolith_studio.ui.widgets.labels import heading, remark
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
+from regolith_studio.ui.widgets.steady_texts import SteadyTexts
 
 MOST = 200
 POPULATION_LINES, SIZES_LINES, ASKED_LINES, STATE_LINES = (1, 2), (1, 3), (3, 3), (2, 3)

@@ -21,13 +21,13 @@ from regolith_studio.dem.engines import ENGINES, engine_named
 from regolith_studio.dem.evaluation.settings import EvaluationSettings
 from regolith_studio.errors import InputError
 from regolith_studio.jobs.repose import ReposeOrder
-from regolith_studio.ui.layout import SteadyTexts
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.choice_box import ElidedBox
 from regolith_studio.ui.widgets.collapsible import Collapsible
 from regolith_studio.ui.widgets.labels import ElidedLabel, heading, remark
 from regolith_studio.ui.widgets.preset_form import PresetForm
 from regolith_studio.ui.widgets.settings_form import SettingsForm
+from regolith_studio.ui.widgets.steady_texts import SteadyTexts
 
 PRESETS = {mark("Teaching"): 300, mark("Usual"): 1000, mark("Fine"): 5000}
 SHAPES = {mark("The dataset's polyhedra"): "polyhedra", mark("Spheres of the same volumes"): "spheres"}

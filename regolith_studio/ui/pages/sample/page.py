@@ -17,7 +17,7 @@ from regolith_studio.session.outputs.staging import write_bytes
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import filter_of, sample_table
 from regolith_studio.studies.tables import csv_text
-from regolith_studio.ui.layout import SteadyTexts, equal_parts, side_by_side, stacked, tabs
+from regolith_studio.ui.layout import equal_parts, side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.sample.health import HealthPanel, retold_health
 from regolith_studio.ui.pages.sample.scatter import ScatterPanel
@@ -29,6 +29,7 @@ from regolith_studio.ui.views.camera_link import CameraLink
 from regolith_studio.ui.views.factory import make_view
 from regolith_studio.ui.views.view_frame import ViewFrame
 from regolith_studio.ui.widgets.labels import heading, remark
+from regolith_studio.ui.widgets.steady_texts import SteadyTexts
 
 
 class SamplePage(PageWidget):

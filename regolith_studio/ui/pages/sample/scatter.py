@@ -13,12 +13,12 @@ from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.descriptors.zingg import THRESHOLD
 from regolith_studio.scene.palette import DESCRIPTOR_COLOURS
 from regolith_studio.session.results import ParticleEntry
-from regolith_studio.ui.layout import TwoParts
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import mark, tr, tr_count
 from regolith_studio.ui.widgets.labels import rich_symbol
 from regolith_studio.ui.widgets.log_axes import set_log_mode
 from regolith_studio.ui.widgets.plot import Plot
+from regolith_studio.ui.widgets.two_parts import TwoParts
 
 ZINGG = ("flatness", "elongation")
 SYMBOLS = ("o", "s", "t", "d", "star", "p", "h", "+")

@@ -5,10 +5,10 @@ from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout, QWidget
 
 from regolith_studio.imaging.segmentation.segment import Segmentation
 from regolith_studio.jobs.scanning import Scan
-from regolith_studio.ui.layout import SteadyTexts
 from regolith_studio.ui.translation import tr, tr_count
 from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.labels import WholeLabel, heading
+from regolith_studio.ui.widgets.steady_texts import SteadyTexts
 
 _DENSEST, _LARGEST = 0.7, 0.4
 """Shares of the voxels that the grains of no packing have, and that no single grain has."""
