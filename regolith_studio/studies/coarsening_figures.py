@@ -14,7 +14,7 @@ from regolith_studio.studies.coarsening import (
     particle_table,
     rmsre_table,
 )
-from regolith_studio.studies.figure_files import write_figure
+from regolith_studio.studies.figure_files import with_subscript, write_figure
 from regolith_studio.studies.tables import write_table
 
 PAPER_SYMBOLS = {JACCARD: "IoU"}
@@ -88,8 +88,8 @@ def write_coarsening_study(
 
 
 def column_symbol(key: str) -> str:
-    """Of a descriptor, or IoU as the paper has it."""
-    return PAPER_SYMBOLS.get(key) or CATALOGUE[key].symbol
+    """Of a descriptor, or IoU as the paper has it, as matplotlib sets it."""
+    return PAPER_SYMBOLS.get(key) or with_subscript(CATALOGUE[key].symbol)
 
 
 def _described(study: CoarseningStudy, r: int) -> str:

@@ -1,5 +1,6 @@
 """Figures as files: PNG to look at, SVG to edit; the same bytes each time."""
 
+import re
 from io import BytesIO
 from pathlib import Path
 
@@ -22,6 +23,11 @@ def write_figure(figure: Figure, folder: Path, stem: str) -> tuple[Path, Path]:
         with matplotlib.rc_context({"svg.hashsalt": "regolith-studio"}):
             figure.savefig(drawing, metadata={"Date": None})
     return picture, drawing
+
+
+def with_subscript(symbol: str) -> str:
+    """A symbol such as ``D_min`` as matplotlib sets it, with a real subscript."""
+    return re.sub(r"_(\w+)", r"$_\\mathrm{\1}$", symbol)
 
 
 def png_bytes(figure: Figure, dots_per_inch: int = DOTS_PER_INCH) -> bytes:

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
-from regolith_studio.studies.figure_files import write_figure
+from regolith_studio.studies.figure_files import with_subscript, write_figure
 from regolith_studio.studies.lmax import LmaxStudy, particle_table, rmsre_table
 from regolith_studio.studies.tables import write_table
 
@@ -52,7 +52,7 @@ def _draw_group(axis: Axes, study: LmaxStudy, group: str) -> None:
         axis.plot(
             study.degrees,
             values[:, k],
-            label=CATALOGUE[key].symbol,
+            label=with_subscript(CATALOGUE[key].symbol),
             color=colour,
             marker=MARKERS[k % len(MARKERS)],
             markersize=3.5,

@@ -1,6 +1,7 @@
 """Fig. 8 for small samples."""
 
 import pickle
+import re
 from collections.abc import Generator
 from pathlib import Path
 from typing import Any
@@ -20,7 +21,7 @@ from regolith_studio.studies.coarsening import (
     particle_table,
     rmsre_table,
 )
-from regolith_studio.studies.coarsening_figures import write_coarsening_study
+from regolith_studio.studies.coarsening_figures import coarsening_figure, write_coarsening_study
 from regolith_studio.studies.loss_rows import StudyRow, face_count_rows, paper_rows, sensitivity_rows
 from regolith_studio.studies.progress import StudyProgress
 
@@ -84,6 +85,12 @@ def test_that_tables_and_figures_are_written(study: CoarseningStudy, tmp_path: P
     paths = write_coarsening_study(study, tmp_path)
     assert {path.name for path in paths} >= {"coarsening_rmsre.csv", "coarsening_rmsre.png"}
     assert all(path.stat().st_size > 0 for path in paths)
+
+
+def test_that_symbols_have_real_subscripts_in_figures(study: CoarseningStudy) -> None:
+    marks = [label.get_text() for label in coarsening_figure(study).axes[0].get_xticklabels()]
+    assert r"D$_\mathrm{min}$" in marks
+    assert not any(re.search(r"\w_", mark) for mark in marks)
 
 
 def test_that_a_study_travels_between_processes(study: CoarseningStudy) -> None:
