@@ -24,6 +24,7 @@ from regolith_studio.session.preferences import Preferences
 from regolith_studio.ui import main_window
 from regolith_studio.ui.application import make_application
 from regolith_studio.ui.translation.language import Translator, fall_silent, speak
+from regolith_studio.ui.widgets.formula import FORMULAS
 from regolith_studio.ui.wiring import Wiring
 
 
@@ -49,6 +50,9 @@ def nothing_left_behind(request):
     threads, windows = set(threading.enumerate()), set(QApplication.topLevelWidgets())
     yield
     request.node.funcargs.clear()  # pytest holds on to them longer than it needs
+    for each in threading.enumerate():
+        if each.name == FORMULAS:  # one line may be under way
+            each.join(20.0)
     _settle()
     left = _newcomers() + [each.name for each in threading.enumerate() if each not in threads]
     left += [_name(each) for each in QApplication.topLevelWidgets() if each not in windows]

@@ -1,12 +1,14 @@
 """Formulas set by matplotlib's mathtext and drawn as outlines: sharp at any size, in the theme's ink."""
 
+from contextlib import suppress
 from functools import cache
+from threading import Thread
 from weakref import WeakKeyDictionary
 
 import shiboken6
 from matplotlib.path import Path as OutlinePath
 from matplotlib.textpath import TextPath
-from PySide6.QtCore import QCoreApplication, QObject, QRectF, QSize, Qt, QTimer
+from PySide6.QtCore import QCoreApplication, QObject, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QPainter, QPainterPath, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
@@ -20,8 +22,8 @@ SMALLEST = 0.55
 """A formula shrinks to the height it has, but not below this share of its size; to the width, as it must."""
 LEAST_HEIGHT = 0.75
 """Share of its height that a formula asks for at least."""
-AGAIN = 20
-"""Milliseconds until a formula is set that has to wait for a figure."""
+FORMULAS = "formulas"
+"""Name of the thread that sets them."""
 MOST_KEPT = 512
 """Lines whose outlines are at hand."""
 
@@ -31,8 +33,8 @@ _outlines: dict[str, QPainterPath] = {}
 class FormulaLabel(QWidget):
     """Lines of mathtext, one below the other, as large as the font of the widget says.
 
-    A line takes up to 40 ms to set: lines that are not at hand are set between the events of the window, one
-    at a time, and what was there before is seen until all are.
+    A line takes up to 40 ms to set: lines that are not at hand are set by a thread, one at a time, and what
+    was there before is seen until all are.
 
     Parameters
     ----------
@@ -62,27 +64,16 @@ class FormulaLabel(QWidget):
         self.setToolTip(self._words)
         self.setAccessibleDescription("; ".join(lines).replace("$", ""))
         if all(line in _outlines for line in lines):
-            self._take()
+            self.take()
         else:
             _setting().want(self)
 
-    def set_next(self) -> bool:
-        """Set one line that is missing; whether there are more.
+    def missing(self) -> str | None:
+        """A line that is not at hand, if there is one."""
+        return next((line for line in self._asked if line not in _outlines), None)
 
-        Raises
-        ------
-        ValueError
-            If the line is no mathtext.
-        """
-        missing = [line for line in self._asked if line not in _outlines]
-        if missing:
-            outline(missing[0])
-        if len(missing) > 1:
-            return True
-        self._take()
-        return False
-
-    def _take(self) -> None:
+    def take(self) -> None:
+        """Show what was asked for."""
         self._lines = self._asked
         self.updateGeometry()
         self.update()
@@ -127,39 +118,47 @@ class FormulaLabel(QWidget):
 
 
 class _Setting(QObject):
-    """Sets the lines of all labels, one of them between two events of the window."""
+    """Sets the lines of all labels, one after the other, in a thread: the window goes on answering."""
+
+    _ended = Signal(str)
+    """A line has been set, or cannot be."""
 
     def __init__(self, parent: QObject | None) -> None:
         super().__init__(parent)
         self._labels: WeakKeyDictionary[FormulaLabel, None] = WeakKeyDictionary()
-        self._timer = QTimer(self, interval=0)
-        self._timer.timeout.connect(self._go_on)
+        self._busy = False
+        self._ended.connect(self._go_on, Qt.ConnectionType.QueuedConnection)
 
     def want(self, label: FormulaLabel) -> None:
         """Set what this label misses."""
         self._labels[label] = None
-        self._timer.start()
+        if not self._busy:
+            self._begin()
 
-    def _go_on(self) -> None:
-        """Set a line, or come again in a moment where another thread draws a figure."""
-        free = DRAWING.acquire(blocking=False)
-        self._timer.setInterval(0 if free else AGAIN)
-        if not free:
-            return
-        try:
-            self._set_one()
-        finally:
-            DRAWING.release()
-        if not self._labels:
-            self._timer.stop()
-
-    def _set_one(self) -> None:
+    def _begin(self) -> None:
         for label in list(self._labels):
+            if shiboken6.isValid(label) and (line := label.missing()) is not None:
+                self._busy = True
+                Thread(target=self._set, args=(line,), daemon=True, name=FORMULAS).start()
+                return
             del self._labels[label]
             if shiboken6.isValid(label):
-                if label.set_next():
-                    self._labels[label] = None
-                break
+                label.take()
+
+    def _set(self, line: str) -> None:
+        """In the thread; nobody hears of the end if the program has ended meanwhile."""
+        try:
+            outline(line)
+        finally:
+            with suppress(RuntimeError):
+                self._ended.emit(line)
+
+    def _go_on(self, line: str) -> None:
+        self._busy = False
+        if line not in _outlines:  # the thread has said why
+            for label in [each for each in self._labels if line in each.lines()]:
+                del self._labels[label]
+        self._begin()
 
 
 @cache
