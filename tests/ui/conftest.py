@@ -24,7 +24,7 @@ from regolith_studio.session.preferences import Preferences
 from regolith_studio.ui import main_window
 from regolith_studio.ui.application import make_application
 from regolith_studio.ui.translation.language import Translator, fall_silent, speak
-from regolith_studio.ui.widgets.formula import FORMULAS
+from regolith_studio.ui.widgets.formula import FORMULAS, all_set
 from regolith_studio.ui.wiring import Wiring
 
 
@@ -79,7 +79,8 @@ def settled(wait):
 
     def run(window, seconds=60.0):
         def rests():
-            return not window.session.tasks and all(each.idle for each in window.findChildren(Wiring))
+            refreshed = all(each.idle for each in window.findChildren(Wiring))
+            return refreshed and not window.session.tasks and all_set()
 
         wait(rests, seconds)
         wait(rests, seconds)  # what the last refreshment has set off

@@ -135,6 +135,11 @@ class _Setting(QObject):
         if not self._busy:
             self._begin()
 
+    @property
+    def idle(self) -> bool:
+        """Whether nothing is being set, nor waits for that."""
+        return not self._busy
+
     def _begin(self) -> None:
         for label in list(self._labels):
             if shiboken6.isValid(label) and (line := label.missing()) is not None:
@@ -164,6 +169,11 @@ class _Setting(QObject):
 @cache
 def _setting() -> _Setting:
     return _Setting(QCoreApplication.instance())
+
+
+def all_set() -> bool:
+    """Whether every formula is seen as it was asked for last."""
+    return _setting().idle
 
 
 def outline(line: str) -> QPainterPath:
