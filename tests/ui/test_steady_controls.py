@@ -26,7 +26,7 @@ KINDS = (QAbstractButton, QAbstractSpinBox, QComboBox, QLineEdit, QSlider)
 SECONDS = 170.0
 
 
-@pytest.fixture(params=[(1280, 800), (1920, 1080)], ids=lambda size: f"{size[0]}x{size[1]}")
+@pytest.fixture(params=[(1280, 800), pytest.param((1920, 1080), marks=pytest.mark.slow)], ids=str)
 def window(request, shown, preferences, settled):
     session = Session(InlineRunner(), Choices(method="quadric"))  # which needs no kernels to be compiled
     made = MainWindow(session, preferences, "image")
