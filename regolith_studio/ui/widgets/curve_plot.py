@@ -2,13 +2,13 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QPointF
 from PySide6.QtWidgets import QWidget
 
-from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.log_axes import set_log_mode
 from regolith_studio.ui.widgets.plot import Numbers, Plot
@@ -66,6 +66,7 @@ class CurvePlot(Plot):
     ) -> None:
         self._curves: tuple[Curve, ...] = ()
         self._items: list[pg.PlotDataItem] = []
+        self._drawn: list[Curve] = []
         self._marker: float | None = None
         self._line: pg.InfiniteLine | None = None
         self._log_y = log_y
@@ -100,24 +101,32 @@ class CurvePlot(Plot):
     def redraw(self) -> None:
         while len(self._items) > len(self._curves):
             self.canvas.removeItem(self._items.pop())
-        while len(self._items) < len(self._curves):
-            self._items.append(self.canvas.plot(antialias=True))
-        for item, curve in zip(self._items, self._curves, strict=True):
-            item.setData(*self._drawable(curve))
-            item.setPen(self.pen(curve.colour, dash=curve.dash) if curve.line else None)
-            item.setSymbol("o" if curve.markers else None)
-            item.setSymbolSize(5)
-            item.setSymbolBrush(curve.colour)
-            item.setSymbolPen(None)
+        del self._drawn[len(self._curves) :]
+        for at, curve in enumerate(self._curves):
+            if at == len(self._drawn):
+                self._items.append(self.canvas.plot(antialias=True, **self._drawable(curve)))
+                self._drawn.append(curve)
+            elif curve != self._drawn[at]:
+                self._items[at].setData(**self._drawable(curve))
+                self._drawn[at] = curve
         self.count_axis.whole = all(float(x).is_integer() for curve in self._curves for x in curve.x)
         self.set_legend([(curve.colour, curve.label) for curve in self._curves if curve.label])
         self._draw_marker()
 
-    def _drawable(self, curve: Curve) -> tuple[FloatArray, FloatArray]:
-        """Points of a curve; none where no point has a place on the axes."""
+    def _drawable(self, curve: Curve) -> dict[str, Any]:
+        """All that pyqtgraph is told of a curve, at once; no points where none has a place on the axes."""
         x, y = np.asarray(curve.x, dtype=float), np.asarray(curve.y, dtype=float)
         placed = np.isfinite(x) & (np.isfinite(y) & (y > 0.0) if self._log_y else np.isfinite(y))
-        return (x, y) if placed.any() else (x[:0], y[:0])
+        seen = slice(None) if placed.any() else slice(0)
+        return {
+            "x": x[seen],
+            "y": y[seen],
+            "pen": self.pen(curve.colour, dash=curve.dash) if curve.line else None,
+            "symbol": "o" if curve.markers else None,
+            "symbolSize": 5,
+            "symbolBrush": pg.mkBrush(curve.colour),
+            "symbolPen": None,
+        }
 
     def value_at(self, place: QPointF) -> str:
         """The nearest point of a curve, in words; empty if it is far."""
@@ -144,9 +153,15 @@ class CurvePlot(Plot):
         return words
 
     def _draw_marker(self) -> None:
-        if self._line is not None:
-            self.canvas.removeItem(self._line)
-            self._line = None
-        if self._marker is not None:
-            self._line = pg.InfiniteLine(self._marker, pen=self.pen(self.theme.muted, dash=True))
+        if self._marker is None:
+            if self._line is not None:
+                self.canvas.removeItem(self._line)
+                self._line = None
+            return
+        pen = self.pen(self.theme.muted, dash=True)
+        if self._line is None:
+            self._line = pg.InfiniteLine(self._marker, pen=pen)
             self.canvas.addItem(self._line, ignoreBounds=True)
+        else:
+            self._line.setPen(pen)
+            self._line.setValue(self._marker)
