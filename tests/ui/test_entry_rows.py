@@ -16,9 +16,8 @@ MESH = icosphere(1)
 
 
 class Rows(EntryRows):
-    def data(self, index, role=Qt.ItemDataRole.DisplayRole):
-        entry = self.rows[index.row()]
-        return str(self.value(entry, index.column())) if role == Qt.ItemDataRole.DisplayRole else None
+    def cell(self, entry, column, role):
+        return str(self.value(entry, column)) if role == Qt.ItemDataRole.DisplayRole else None
 
     def value(self, entry, column):
         return (entry.id, entry.particle.group, entry.descriptors.get("volume", 0.0))[column]
@@ -88,3 +87,11 @@ def test_that_a_thousand_changes_leave_a_sound_model(rows):
                 volumes = {name: draw.random() for name in "abcde"}
                 rows.set_entries(entries("xyxyx", **volumes)[: draw.randrange(6)])
         assert set(listed(rows)) <= {entry.id for entry in rows.entries}
+
+
+def test_that_there_is_no_cell_beyond_the_last_nor_below_another(rows):
+    assert rows.index(4, 2).isValid()
+    for row, column in ((5, 0), (0, 3), (-1, 0), (0, -1)):
+        assert not rows.index(row, column).isValid()
+    assert not rows.index(0, 0, rows.index(0, 0)).isValid()
+    assert rows.index(0, 0).data(Qt.ItemDataRole.FontRole) is None

@@ -12,7 +12,7 @@ from regolith_studio.session.sample_table import health_sentences, health_word
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.translation.sentences import retold
-from regolith_studio.ui.widgets.entry_rows import RIGHT, UNSORTED, EntryRows, Index
+from regolith_studio.ui.widgets.entry_rows import RIGHT, UNSORTED, EntryRows
 from regolith_studio.ui.widgets.health_icons import health_pixmaps
 from regolith_studio.ui.widgets.labels import heading, remark
 from regolith_studio.ui.widgets.number_text import short_number
@@ -81,18 +81,17 @@ class _Model(EntryRows):
     def value(self, entry: ParticleEntry, column: int) -> Any:
         return COLUMNS[column].key(entry)
 
-    def data(self, index: Index, role: int = Qt.ItemDataRole.DisplayRole) -> Any:
-        entry, column = self.rows[index.row()], COLUMNS[index.column()]
+    def cell(self, entry: ParticleEntry, column: int, role: int) -> Any:
         match role:
             case Qt.ItemDataRole.DisplayRole:
-                return column.text(entry)
-            case Qt.ItemDataRole.DecorationRole if index.column() == 0:
+                return COLUMNS[column].text(entry)
+            case Qt.ItemDataRole.DecorationRole if column == 0:
                 return self.icons.get(health_word(entry))
             case Qt.ItemDataRole.ToolTipRole:
                 values = [f"{tr(each.title)} {each.text(entry)}" for each in COLUMNS[WORDS:]]
                 health = map(retold, health_sentences(entry).split("\n"))
                 return "\n".join([entry.id, ", ".join(values), *health])
-            case Qt.ItemDataRole.TextAlignmentRole if index.column() >= WORDS:
+            case Qt.ItemDataRole.TextAlignmentRole if column >= WORDS:
                 return RIGHT
         return None
 

@@ -11,6 +11,18 @@ Index = QModelIndex | QPersistentModelIndex
 NOWHERE = QModelIndex()
 UNSORTED = -1
 RIGHT = int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+_TOLD = frozenset(
+    map(
+        int,
+        (
+            Qt.ItemDataRole.DisplayRole,
+            Qt.ItemDataRole.DecorationRole,
+            Qt.ItemDataRole.ToolTipRole,
+            Qt.ItemDataRole.TextAlignmentRole,
+        ),
+    )
+)
+"""What tables tell of a cell; they are asked for four more things at each paint."""
 
 
 class EntryRows(QAbstractTableModel):
@@ -53,6 +65,20 @@ class EntryRows(QAbstractTableModel):
         """Sort by a column, equal ones as they were given; all as they were given with :data:`UNSORTED`."""
         self._column, self._order = column, order
         self._move(self._arranged())
+
+    def data(self, index: Index, role: int = Qt.ItemDataRole.DisplayRole) -> Any:
+        if role not in _TOLD:
+            return None
+        return self.cell(self.rows[index.row()], index.column(), role)
+
+    def cell(self, entry: ParticleEntry, column: int, role: int) -> Any:
+        """What is told of a cell: its words, picture, alignment or tool tip; nothing where there is none."""
+        raise NotImplementedError
+
+    def index(self, row: int, column: int, parent: Index = NOWHERE) -> QModelIndex:
+        """Qt's own asks how many rows and columns there are, for each cell that is painted or measured."""
+        there = 0 <= row < len(self.rows) and 0 <= column < self._n_columns and not parent.isValid()
+        return self.createIndex(row, column) if there else QModelIndex()
 
     def rowCount(self, parent: Index = NOWHERE) -> int:
         return 0 if parent.isValid() else len(self.rows)

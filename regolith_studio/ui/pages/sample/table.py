@@ -14,7 +14,7 @@ from regolith_studio.session.sample_table import Filter, form_of, has_weights, h
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.translation.sentences import retold
-from regolith_studio.ui.widgets.entry_rows import RIGHT, UNSORTED, EntryRows, Index
+from regolith_studio.ui.widgets.entry_rows import RIGHT, UNSORTED, EntryRows
 from regolith_studio.ui.widgets.health_icons import health_pixmaps
 from regolith_studio.ui.widgets.labels import plain_symbol
 from regolith_studio.ui.widgets.number_text import short_number
@@ -108,16 +108,16 @@ class SampleModel(EntryRows):
     def value(self, entry: ParticleEntry, column: int) -> Any:
         return self.columns[column].value(entry)
 
-    def data(self, index: Index, role: int = Qt.ItemDataRole.DisplayRole) -> Any:
-        entry, column = self.rows[index.row()], self.columns[index.column()]
+    def cell(self, entry: ParticleEntry, column: int, role: int) -> Any:
+        asked = self.columns[column]
         match role:
             case Qt.ItemDataRole.DisplayRole:
-                return tr(column.text(entry)) if column.key in (HEALTH, FORM) else column.text(entry)
-            case Qt.ItemDataRole.DecorationRole if column.key == HEALTH:
+                return tr(asked.text(entry)) if asked.key in (HEALTH, FORM) else asked.text(entry)
+            case Qt.ItemDataRole.DecorationRole if asked.key == HEALTH:
                 return self._icons.get(health_word(entry))
             case Qt.ItemDataRole.ToolTipRole:
-                return _tip(entry) if column.key == HEALTH else column.text(entry)
-            case Qt.ItemDataRole.TextAlignmentRole if index.column() >= WORDS:
+                return _tip(entry) if asked.key == HEALTH else asked.text(entry)
+            case Qt.ItemDataRole.TextAlignmentRole if column >= WORDS:
                 return RIGHT
         return None
 
