@@ -30,8 +30,17 @@ class PageWidget(QWidget):
         """
         return iter(())
 
+    def theme_steps(self, theme: Theme) -> Iterator[None]:  # noqa: ARG002
+        """Take the colours of a theme, once after building and at every change.
+
+        The window answers at each ``yield``, as in :meth:`assemble`; nothing is seen before the end.
+        """
+        return iter(())
+
     def set_theme(self, theme: Theme) -> None:
-        """Take the colours of a theme; called once after building and at every change."""
+        """Take the colours of a theme at once."""
+        for _ in self.theme_steps(theme):
+            pass
 
     def commands(self) -> Mapping[str, Callable[..., object]]:
         """A function for each name in :attr:`Page.actions`; switches are called with their state."""

@@ -1,16 +1,17 @@
 """The sidebar and the page that is seen; a page is built when it is first visited."""
 
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Iterator
 from functools import partial
 
 from PySide6.QtCore import QTimer, Signal
 from PySide6.QtWidgets import QAbstractItemView, QHBoxLayout, QStackedWidget, QWidget
 
 from regolith_studio.ui.page import Page, PageContext, PageWidget
-from regolith_studio.ui.page_building import PageBuilder, Steps, polish
+from regolith_studio.ui.page_building import SLICE, PageBuilder, Steps, polish
 from regolith_studio.ui.room import Room
 from regolith_studio.ui.sidebar import Sidebar
-from regolith_studio.ui.theme import Theme, current_theme, restyle
+from regolith_studio.ui.theme import Theme, current_theme, restyle, restyle_steps
 
 
 class PageStack(QWidget):
@@ -43,7 +44,7 @@ class PageStack(QWidget):
         self._current = self._awaited = ""
         self._builder = PageBuilder(self._steps, self._take, self)
         self._unthemed: list[str] = []
-        self._styled = ""
+        self._themes: dict[str, Iterator[None]] = {}
         self._theming = QTimer(self, interval=0)
         self._theming.timeout.connect(self._theme_next)
         self._stack = QStackedWidget()
@@ -111,7 +112,7 @@ class PageStack(QWidget):
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of the present theme, one page after the other: the one that is seen first."""
         self._bar.set_theme(theme)
-        self._styled = ""
+        self._themes.clear()
         self._unthemed = sorted(self.widgets, key=lambda key: key != self._current)
         if self._current:
             self._rooms[self._current].setUpdatesEnabled(False)  # not seen in both themes at once
@@ -156,8 +157,7 @@ class PageStack(QWidget):
         yield from polish(widget)
         if current_theme() != begun:  # what was polished before has the colours of then
             restyle(widget)
-        widget.set_theme(current_theme())
-        yield
+        yield from widget.theme_steps(current_theme())
         return widget
 
     def _make_room(self, key: str, page: PageWidget) -> None:
@@ -168,23 +168,34 @@ class PageStack(QWidget):
         self._stack.addWidget(self._rooms[key])
 
     def _theme_next(self) -> None:
-        """Style and plots of a page in two turns."""
+        """Style and plots of one page, for no longer than a slice."""
+        end = time.perf_counter() + SLICE
         if not self._unthemed:
             self._theming.stop()
-        elif self._styled == self._unthemed[0]:
-            self._theme(self._styled)
-        else:
-            self._styled = self._unthemed[0]
-            restyle(self._rooms[self._styled])
+            return
+        key = self._unthemed[0]
+        if key not in self._themes:
+            self._themes[key] = self._theme_steps(key)
+        for _ in self._themes[key]:
+            if time.perf_counter() > end:
+                return
+        self._has_theme(key)
 
     def _theme(self, key: str) -> None:
+        """Let a page have the present theme at once."""
         if key in self._unthemed:
-            self._unthemed.remove(key)
-            if self._styled != key:
-                restyle(self._rooms[key])
-            self._styled = ""
-            self.widgets[key].set_theme(current_theme())
-            self._rooms[key].setUpdatesEnabled(True)
+            for _ in self._themes.get(key) or self._theme_steps(key):
+                pass
+            self._has_theme(key)
+
+    def _theme_steps(self, key: str) -> Iterator[None]:
+        yield from restyle_steps(self._rooms[key])
+        yield from self.widgets[key].theme_steps(current_theme())
+
+    def _has_theme(self, key: str) -> None:
+        self._themes.pop(key, None)
+        self._unthemed.remove(key)
+        self._rooms[key].setUpdatesEnabled(True)
 
     def _take(self, key: str, widget: PageWidget) -> None:
         self.widgets[key] = widget

@@ -1,6 +1,6 @@
 """How the window looks: light or dark as the system says, one palette and one style sheet for all of it."""
 
-from collections.abc import Container
+from collections.abc import Container, Iterator
 from dataclasses import dataclass
 
 from PySide6.QtCore import QObject, Qt
@@ -144,10 +144,17 @@ def restyle(widget: QWidget, later: Container[QObject] = ()) -> None:
 
     Qt takes them from the palette only when it polishes a widget.
     """
+    for _ in restyle_steps(widget, later):
+        pass
+
+
+def restyle_steps(widget: QWidget, later: Container[QObject] = ()) -> Iterator[None]:
+    """:func:`restyle` widget by widget."""
     widget.style().polish(widget)
+    yield
     for part in widget.children():
         if isinstance(part, QWidget) and part not in later:
-            restyle(part, later)
+            yield from restyle_steps(part, later)
 
 
 def letters_share() -> float:

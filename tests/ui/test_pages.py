@@ -1,5 +1,6 @@
 """The sidebar and its pages: found by themselves, built when visited, quiet while hidden."""
 
+import time
 from dataclasses import replace
 
 import pytest
@@ -17,6 +18,7 @@ from regolith_studio.ui import page_building
 from regolith_studio.ui.action_spec import PAGE_MENU, ActionSpec
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.page import Page, PageContext, PageWidget
+from regolith_studio.ui.page_building import SLICE
 from regolith_studio.ui.page_stack import PageStack
 from regolith_studio.ui.pages import pages
 from regolith_studio.ui.theme import DARK, LIGHT, apply_theme
@@ -46,8 +48,9 @@ class _Counter(PageWidget):
     def entered(self):
         self.entries += 1
 
-    def set_theme(self, theme):
+    def theme_steps(self, theme):
         self.theme = theme
+        yield
 
     def busy(self):
         return "Something is written." if self.heard else ""
@@ -234,6 +237,34 @@ def test_that_hidden_pages_take_a_theme_later_or_when_they_are_seen(stack, wait,
             assert one.theme is theme
             stack.go("two")
     wait(lambda: one.theme is LIGHT)
+
+
+def test_that_the_window_answers_while_a_page_takes_a_theme(stack, app, monkeypatch):
+    two, seen = stack.go("two"), []
+
+    def slowly(theme):
+        for part in range(4):
+            time.sleep(2 * SLICE)
+            seen.append((part, theme))
+            yield
+
+    monkeypatch.setattr(two, "theme_steps", slowly)
+    stack.set_theme(DARK)
+    assert seen == []
+    turns = 0
+    while len(seen) < 4:
+        before = len(seen)
+        app.processEvents()
+        turns += 1
+        assert len(seen) - before <= 1
+        assert turns < 100
+    stack.set_theme(LIGHT)  # begins anew, and a visit takes what is left at once
+    while len(seen) == 4:
+        app.processEvents()
+    stack.go("one")
+    stack.go("two")
+    assert [part for part, _ in seen] == 2 * [0, 1, 2, 3]
+    assert stack._rooms["two"].updatesEnabled()
 
 
 def test_that_a_page_that_was_being_built_has_the_colours_of_now(pieces, wait, app, monkeypatch):

@@ -35,8 +35,9 @@ and ``page.py``::
         def commands(self):
             return {"count": self.count}
 
-        def set_theme(self, theme):
+        def theme_steps(self, theme):
             self.plot.set_theme(theme)
+            yield
 
         def count(self):
             particles = [entry.particle for entry in self._context.session.particles]

@@ -70,9 +70,10 @@ class DatasetPage(PageWidget):
 
     # --- the page of the window ----------------------------------------------------------------
 
-    def set_theme(self, theme: Theme) -> None:
+    def theme_steps(self, theme: Theme) -> Iterator[None]:
         for part in (self.quality, self.distribution, self.gallery, self.library):
             part.set_theme(theme)
+            yield
 
     def commands(self) -> Mapping[str, Callable[..., object]]:
         return {

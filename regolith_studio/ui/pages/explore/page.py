@@ -1,6 +1,6 @@
 """Particles on the left, three views and plots in the middle, controls on the right."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 
 from PySide6.QtGui import QResizeEvent
@@ -46,13 +46,14 @@ class ExplorePage(PageWidget):
         self.plots = PlotArea(self.triptych)
         self.triptych.whispered.connect(self._whisper)
         self.pictures = Pictures(context, self.triptych, self)
-        self._themed = (self.particles, self.coarsening, self.plots, self.triptych)
         self._place()
         self._wire(context)
 
-    def set_theme(self, theme: Theme) -> None:
-        for part in self._themed:
+    def theme_steps(self, theme: Theme) -> Iterator[None]:
+        for part in (self.particles, self.coarsening, self.triptych):
             part.set_theme(theme)
+            yield
+        yield from self.plots.theme_steps(theme)
 
     def commands(self) -> Mapping[str, Callable[..., object]]:
         views = self.triptych

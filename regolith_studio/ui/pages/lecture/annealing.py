@@ -99,17 +99,20 @@ class AnnealingView(QWidget):
         """The step that is seen."""
         return self._lesson.steps[self.transport.step] if self._lesson is not None else None
 
-    def set_theme(self, theme: Theme) -> None:
-        """Take the colours of a theme."""
+    def theme_steps(self, theme: Theme) -> Iterator[None]:
+        """Take the colours of a theme, step by step."""
         self._theme = theme
         for frame in self.frames.values():
             frame.view.set_surroundings(theme.surroundings)
             frame.set_colour(theme.polyhedron)
         for plot in (self.loss, self.chance, self.terms):
             plot.set_theme(theme)
+            yield
         if self._lesson is not None:
             self._show_exact()
+            yield
             self._show_step(self.transport.step)
+        yield
 
     def release(self) -> None:
         """Stop, and give the graphics memory back."""

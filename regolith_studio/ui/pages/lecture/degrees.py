@@ -80,13 +80,14 @@ class DegreesView(QWidget):
         else:
             self._plot()
 
-    def set_theme(self, theme: Theme) -> None:
-        """Take the colours of a theme."""
+    def theme_steps(self, theme: Theme) -> Iterator[None]:
+        """Take the colours of a theme, step by step."""
         self._theme = theme
         for name, frame in self.frames.items():
             frame.view.set_surroundings(theme.surroundings)
             frame.set_colour(getattr(theme, name))
         self.errors.set_theme(theme)
+        yield
 
     def release(self) -> None:
         """Stop, and give the graphics memory back."""

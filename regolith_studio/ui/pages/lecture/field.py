@@ -101,15 +101,17 @@ class FieldView(QWidget):
             self.sentence.setText,
         )
 
-    def set_theme(self, theme: Theme) -> None:
-        """Take the colours of a theme."""
+    def theme_steps(self, theme: Theme) -> Iterator[None]:
+        """Take the colours of a theme, step by step."""
         self._theme = theme
         for frame in self.frames.values():
             frame.view.set_surroundings(theme.surroundings)
             frame.set_colour(theme.fit)
         self.spectrum.set_theme(theme)
+        yield
         if self.drawn is not None:
             self._show(self.drawn, False)
+            yield
 
     def release(self) -> None:
         """Give the graphics memory back."""

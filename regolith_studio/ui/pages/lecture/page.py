@@ -67,12 +67,11 @@ class LecturePage(PageWidget):
 
     # --- the page of the window ----------------------------------------------------------------
 
-    def set_theme(self, theme: Theme) -> None:
+    def theme_steps(self, theme: Theme) -> Iterator[None]:
         for lesson in (self.annealing, self.degrees, self.field):
-            lesson.set_theme(theme)
+            yield from lesson.theme_steps(theme)
         if self._shown_size not in (0.0, self._size()):  # letters of the whole window have changed
-            for _ in self._show_letters():
-                pass
+            yield from self._show_letters()
 
     def commands(self) -> Mapping[str, Callable[..., object]]:
         return {
@@ -254,7 +253,7 @@ class LecturePage(PageWidget):
         self._shown_size = self._size()
         self.setStyleSheet(f"* {{ font-size: {self._shown_size:.1f}pt; }}")
         yield from polish(self)
-        self.set_theme(current_theme())
+        yield from self.theme_steps(current_theme())
 
     def _size(self) -> float:
         """Of letters in points. What is large in the whole window is not enlarged twice: plots need room."""

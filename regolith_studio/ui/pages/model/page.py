@@ -89,10 +89,10 @@ class ModelPage(PageWidget):
 
     # --- the page of the window ----------------------------------------------------------------
 
-    def set_theme(self, theme: Theme) -> None:
-        self.live.set_theme(theme)
-        self.gallery.set_theme(theme)
-        self.distributions.set_theme(theme)
+    def theme_steps(self, theme: Theme) -> Iterator[None]:
+        for part in (self.live, self.gallery, self.distributions):
+            part.set_theme(theme)
+            yield
 
     def commands(self) -> Mapping[str, Callable[..., object]]:
         return {

@@ -84,10 +84,10 @@ class ReposePage(PageWidget):
 
     # --- the page of the window ----------------------------------------------------------------
 
-    def set_theme(self, theme: Theme) -> None:
-        self.player.set_theme(theme)
-        for plot in (self.x_z, self.y_z, self.runs, self.study):
-            plot.set_theme(theme)
+    def theme_steps(self, theme: Theme) -> Iterator[None]:
+        for part in (self.player, self.x_z, self.y_z, self.runs, self.study):
+            part.set_theme(theme)
+            yield
 
     def commands(self) -> Mapping[str, Callable[..., object]]:
         return {

@@ -71,9 +71,10 @@ class SamplePage(PageWidget):
         yield
         wiring.refresh("choices", self._show_current)
 
-    def set_theme(self, theme: Theme) -> None:
+    def theme_steps(self, theme: Theme) -> Iterator[None]:
         self.table.model_.set_theme(theme)
         self.scatter.set_theme(theme)
+        yield
         self.frame.view.set_surroundings(theme.surroundings)
         self.frame.set_colour(theme.particle)
 

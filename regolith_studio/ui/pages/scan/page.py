@@ -82,8 +82,9 @@ class ScanPage(PageWidget):
         """The grains of the whole volume, once they have been found."""
         return self._whole.segmentation if self._whole else None
 
-    def set_theme(self, theme: Theme) -> None:
+    def theme_steps(self, theme: Theme) -> Iterator[None]:
         self.overview.set_theme(theme)
+        yield
 
     def commands(self) -> Mapping[str, Callable[..., object]]:
         return {

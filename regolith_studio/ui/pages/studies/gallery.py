@@ -1,6 +1,6 @@
 """Fig. 7: a row a loss function, a column a particle, the polyhedron in each cell."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from PySide6.QtCore import QModelIndex, QPersistentModelIndex, QSize, Qt
 from PySide6.QtGui import QIcon
@@ -84,11 +84,13 @@ class SolidGallery(QWidget):
         """What is shown."""
         return self._solids
 
-    def set_theme(self, theme: Theme) -> None:
-        """Take the colours of a theme."""
-        self._colour = theme.polyhedron
-        shown, self._solids = self._solids, ()
-        self.show_solids(shown)
+    def theme_steps(self, theme: Theme) -> Iterator[None]:
+        """Take the colours of a theme, cell by cell."""
+        before, self._colour = self._colour, theme.polyhedron
+        for at, solid in enumerate(self._solids if before != self._colour else ()):
+            if at < len(self._solids) and self._solids[at] is solid:  # others may have begun meanwhile
+                self.table.setItem(solid.row, solid.column, self._cell(solid))
+            yield
 
     def _cell(self, solid: Solid) -> QTableWidgetItem:
         found = solid.outcome.coarsened

@@ -71,11 +71,14 @@ class StudiesPage(PageWidget):
         wiring.refresh("particles", self._name_gallery_button)
         wiring.refresh("choices", self._show_l_max, slow=True)
 
-    def set_theme(self, theme: Theme) -> None:
-        for part in (self.lmax_study, self.coarsening_study, self.gallery):
+    def theme_steps(self, theme: Theme) -> Iterator[None]:
+        for part in (self.lmax_study, self.coarsening_study):
             part.set_theme(theme)
+            yield
         for panel in self.variations.values():
             panel.set_theme(theme)
+            yield
+        yield from self.gallery.theme_steps(theme)
 
     def commands(self) -> Mapping[str, Callable[..., object]]:
         return {"run_all": self.run_all, "save": self.save}
