@@ -1,10 +1,8 @@
 """Whether the thread of the window answers: how long what comes from outside, as mouse and keys do, waits."""
 
+import ctypes
+import os
 import signal
-import socket
-import struct
-import subprocess
-import sys
 import time
 from collections import Counter
 from dataclasses import dataclass, field
@@ -13,14 +11,6 @@ from typing import Any
 
 INTERVAL = 0.005
 """Seconds between two beats."""
-_STAMP = struct.Struct("<d")
-_SENDER = """
-import socket, struct, sys, time
-with socket.create_connection(("127.0.0.1", int(sys.argv[1]))) as line:
-    while True:
-        line.sendall(struct.pack("<d", time.perf_counter()))
-        time.sleep(float(sys.argv[2]))
-"""
 DRAWS = "ImageView._render"
 """Where views draw; live views draw inside VTK's own widget and are not told apart."""
 LATE = 0.050
@@ -35,7 +25,7 @@ class Gap:
     Parameters
     ----------
     began, seconds
-        When it was sent (of :func:`time.perf_counter`), and how long it waited.
+        When it was due (of :func:`time.perf_counter`), and how long it waited.
     drawing
         How much of that views have drawn.
     places
@@ -58,13 +48,13 @@ class Gap:
 
 
 class Heartbeat:
-    """Beats that another process sends to the main thread, that of the window, while an alarm looks whether
-    they are heard; a context.
+    """Beats of a clock of the system that the main thread, the window's, hears when it answers; a context.
 
-    They come the way that mouse and keys come from the X server, and no thread of this process need hold the
-    interpreter to send them. A timer of the window would wait longer than these: between two timers that are
-    due others go first. The alarm is a signal: no other thread may hold frames, as a widget could lose its
-    last reference there. Where there are no such signals the gaps have no places.
+    Meanwhile an alarm looks what the thread does.
+
+    They are heard as mouse and keys are, which come through a socket of the X server. A timer of the window
+    would wait longer: between two timers that are due others go first. The alarm is a signal: no other thread
+    may hold frames, as a widget could lose its last reference there.
     """
 
     def __init__(self) -> None:
@@ -96,15 +86,13 @@ class Heartbeat:
         patched: Any = ImageView
         patched._render = self._render
         self._heard.setEnabled(False)
-        self._sender.kill()
-        self._sender.wait()
-        self._line.close()
+        os.close(self._clock)
         if hasattr(signal, "setitimer"):
             _set_alarm(0.0)
             signal.signal(signal.SIGALRM, signal.SIG_DFL)
 
     def restart(self) -> None:
-        """Forget all gaps, and beats that were sent before."""
+        """Forget all gaps, and what has waited until now."""
         self._gaps, self._since, self._drawing = [], time.perf_counter(), 0.0
         self._seen.clear()
 
@@ -121,29 +109,38 @@ class Heartbeat:
     def _begin(self) -> None:
         from PySide6.QtCore import QSocketNotifier
 
-        with socket.create_server(("127.0.0.1", 0)) as server:
-            asked = [sys.executable, "-c", _SENDER, str(server.getsockname()[1]), str(INTERVAL)]
-            self._sender = subprocess.Popen(asked, stderr=subprocess.DEVNULL)
-            self._line, _ = server.accept()
-        self._line.setblocking(False)
-        self._left = b""
-        self._heard = QSocketNotifier(self._line.fileno(), QSocketNotifier.Type.Read)
+        self._clock, self._next = _clock(INTERVAL)
+        self._heard = QSocketNotifier(self._clock, QSocketNotifier.Type.Read)
         self._heard.activated.connect(self._beat)
 
     def _beat(self) -> None:
-        now = time.perf_counter()
-        sent = self._left + self._line.recv(1 << 16)
-        whole = len(sent) - len(sent) % _STAMP.size
-        self._left = sent[whole:]
-        stamps = [each for (each,) in _STAMP.iter_unpack(sent[:whole]) if each >= self._since]
-        if stamps:
-            self._gaps.append(Gap(stamps[0], now - stamps[0], self._drawing, Counter(self._seen)))
+        missed = int.from_bytes(os.read(self._clock, 8), "little")
+        now, due = time.perf_counter(), self._next
+        self._next += missed * INTERVAL
+        began = max(due, self._since)
+        self._gaps.append(Gap(began, max(0.0, now - began), self._drawing, Counter(self._seen)))
         self._seen.clear()
         self._drawing = 0.0
         _set_alarm(LATE)
 
     def _look(self, _number: int, frame: FrameType | None) -> None:
         self._seen[_place(frame)] += 1
+
+
+def _clock(interval: float) -> tuple[int, float]:
+    """A file of Linux that can be read after each interval, and when it can first (of its monotonic clock).
+
+    What is read is the number of intervals that have passed since it was read last.
+    """
+    system: Any = ctypes.CDLL(None, use_errno=True)
+    descriptor = int(system.timerfd_create(time.CLOCK_MONOTONIC, os.O_NONBLOCK))
+    first = time.clock_gettime(time.CLOCK_MONOTONIC) + interval
+    each, start = (divmod(round(1e9 * seconds), 1_000_000_000) for seconds in (interval, first))
+    times = (ctypes.c_long * 4)(*each, *start)
+    absolute = 1
+    if descriptor < 0 or system.timerfd_settime(descriptor, absolute, times, None) < 0:
+        raise OSError(ctypes.get_errno(), "there is no clock")
+    return descriptor, first
 
 
 def _set_alarm(seconds: float) -> None:
