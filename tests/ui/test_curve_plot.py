@@ -1,11 +1,14 @@
 """Curves over a common axis."""
 
 import math
+from itertools import pairwise
 
+import numpy as np
 import pytest
 from PySide6.QtGui import QColor
 
 from regolith_studio.ui.theme import DARK
+from regolith_studio.ui.widgets.curve_items import CurveItems
 from regolith_studio.ui.widgets.curve_plot import Curve, CurvePlot
 
 
@@ -18,7 +21,7 @@ def test_that_points_without_a_place_on_the_axes_leave_the_others_in_sight(shown
     (left, right), _ = plot.canvas.viewRange()
     assert left <= 1.0
     assert right >= 2.0
-    assert [item.xData is None for item in plot._items] == [True, False]
+    assert [items.points.getData()[0].size for _, items in plot._drawn] == [0, 2]
     plot.set_curves([Curve("nowhere", "#000000", (1.0, 2.0), values, markers=True)])
     app.processEvents()
     assert plot.numbers()[1][0][1] == 1.0
@@ -37,28 +40,45 @@ def test_that_no_tick_lies_between_steps_that_are_counted(shown, app, x, between
 
 def test_that_a_curve_is_drawn_when_it_has_changed_and_not_again_before(shown, monkeypatch):
     plot = shown(CurvePlot("Step", "Loss", "Nothing yet."))
-    kept, falling = (
-        Curve("kept", "#0072b2", (0.0, 1.0), (1.0, 1.0)),
-        Curve("falls", "#d55e00", (0.0,), (2.0,)),
-    )
+    kept = Curve("kept", "#0072b2", (0.0, 1.0), (1.0, 1.0))
+    falling = Curve("falls", "#d55e00", (0.0,), (2.0,))
     plot.set_curves([kept, falling])
-    drawn = []
-    for item in plot._items:
-        usual = item.setData
-        monkeypatch.setattr(
-            item, "setData", lambda usual=usual, **given: drawn.append(given) or usual(**given)
-        )
+    drawn, usual = [], CurveItems.draw
+
+    def watched(items, *given):
+        drawn.append(given)
+        usual(items, *given)
+
+    monkeypatch.setattr(CurveItems, "draw", watched)
     plot.set_curves([kept, Curve("falls", "#d55e00", (0.0, 1.0), (2.0, 0.5), markers=True, line=False)])
-    assert [given["symbol"] for given in drawn] == ["o"]
-    item = plot._items[1]
-    assert item.getData()[1].tolist() == [2.0, 0.5]
-    assert item.opts["pen"] is None
-    assert item.scatter.isVisible()
+    assert drawn == [((0.0, 1.0), (2.0, 0.5), None, "#d55e00")]
+    items = plot._drawn[1][1]
+    assert items.points.getData()[1].tolist() == [2.0, 0.5]
+    assert items.points.opts["brush"].color() == QColor("#d55e00")
+    assert not items.line.isVisible()
     plot.set_theme(DARK)
     plot.set_curves([kept])
     assert len(drawn) == 1
-    plot.set_curves([kept, falling])
-    assert [each.getData()[1].tolist() for each in plot._items] == [[1.0, 1.0], [2.0]]
+    plot.set_curves([kept, falling, Curve("empty", "#000000", (), ())])
+    assert [each.line.getData()[1].tolist() for _, each in plot._drawn] == [[1.0, 1.0], [2.0]]
+    assert all(each.points is None for _, each in plot._drawn)
+    assert len(plot.curves) == 3
+
+
+def test_that_lines_and_points_stand_at_the_logarithm_and_have_gaps_where_there_is_none(shown, app):
+    plot = shown(CurvePlot("Step", "Loss", "Nothing yet.", log_y=True))
+    values = (100.0, 0.0, math.nan, 1e-3, 10.0)
+    plot.set_curves([Curve("loss", "#0072b2", tuple(range(5)), values, markers=True)])
+    app.processEvents()
+    items = plot._drawn[0][1]
+    assert items.points.getData()[0].tolist() == [0.0, 3.0, 4.0]
+    np.testing.assert_allclose(items.points.getData()[1], [2.0, -3.0, 1.0])
+    path = items.line.getPath()
+    at = [path.elementAt(place) for place in range(path.elementCount())]
+    lines = [((a.x, a.y), (b.x, b.y)) for a, b in pairwise(at) if b.isLineTo() and (a.x, a.y) != (b.x, b.y)]
+    assert lines == [((3.0, -3.0), (4.0, 1.0))]
+    _, (low, high) = plot.canvas.viewRange()
+    assert low < -3.0 < 2.0 < high < 4.0
 
 
 def test_that_the_marker_moves_and_goes(shown):

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import pyqtgraph as pg
@@ -10,6 +9,7 @@ from PySide6.QtCore import QPointF
 from PySide6.QtWidgets import QWidget
 
 from regolith_studio.ui.translation import tr
+from regolith_studio.ui.widgets.curve_items import CurveItems
 from regolith_studio.ui.widgets.log_axes import set_log_mode
 from regolith_studio.ui.widgets.plot import Numbers, Plot
 from regolith_studio.ui.widgets.plot_files import plain_text
@@ -65,8 +65,7 @@ class CurvePlot(Plot):
         self, x: str, y: str, placeholder: str, log_y: bool = False, parent: QWidget | None = None
     ) -> None:
         self._curves: tuple[Curve, ...] = ()
-        self._items: list[pg.PlotDataItem] = []
-        self._drawn: list[Curve] = []
+        self._drawn: list[tuple[Curve, CurveItems]] = []
         self._marker: float | None = None
         self._line: pg.InfiniteLine | None = None
         self._log_y = log_y
@@ -99,34 +98,21 @@ class CurvePlot(Plot):
         self._draw_marker()
 
     def redraw(self) -> None:
-        while len(self._items) > len(self._curves):
-            self.canvas.removeItem(self._items.pop())
-        del self._drawn[len(self._curves) :]
-        for at, curve in enumerate(self._curves):
+        wanted = [curve for curve in self._curves if curve.x]
+        while len(self._drawn) > len(wanted):
+            self._drawn.pop()[1].remove()
+        for at, curve in enumerate(wanted):
             if at == len(self._drawn):
-                self._items.append(self.canvas.plot(antialias=True, **self._drawable(curve)))
-                self._drawn.append(curve)
-            elif curve != self._drawn[at]:
-                self._items[at].setData(**self._drawable(curve))
-                self._drawn[at] = curve
+                self._drawn.append((curve, CurveItems(self.canvas, self._log_y)))
+            elif curve == self._drawn[at][0]:
+                continue
+            pen = self.pen(curve.colour, dash=curve.dash) if curve.line else None
+            items = self._drawn[at][1]
+            items.draw(curve.x, curve.y, pen, curve.colour if curve.markers else "")
+            self._drawn[at] = (curve, items)
         self.count_axis.whole = all(float(x).is_integer() for curve in self._curves for x in curve.x)
         self.set_legend([(curve.colour, curve.label) for curve in self._curves if curve.label])
         self._draw_marker()
-
-    def _drawable(self, curve: Curve) -> dict[str, Any]:
-        """All that pyqtgraph is told of a curve, at once; no points where none has a place on the axes."""
-        x, y = np.asarray(curve.x, dtype=float), np.asarray(curve.y, dtype=float)
-        placed = np.isfinite(x) & (np.isfinite(y) & (y > 0.0) if self._log_y else np.isfinite(y))
-        seen = slice(None) if placed.any() else slice(0)
-        return {
-            "x": x[seen],
-            "y": y[seen],
-            "pen": self.pen(curve.colour, dash=curve.dash) if curve.line else None,
-            "symbol": "o" if curve.markers else None,
-            "symbolSize": 5,
-            "symbolBrush": pg.mkBrush(curve.colour),
-            "symbolPen": None,
-        }
 
     def value_at(self, place: QPointF) -> str:
         """The nearest point of a curve, in words; empty if it is far."""

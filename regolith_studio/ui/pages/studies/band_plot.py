@@ -113,9 +113,8 @@ class BandPlot(CurvePlot):
         )
 
     def _draw_bars(self, colour: str, x: "np.typing.NDArray[np.float64]", y: object) -> None:
-        bar = self.canvas.plot(np.asarray(x, dtype=float), np.asarray(y, dtype=float), connect="pairs")
-        bar.setPen(self.pen(colour))
-        self._bars.append(bar)
+        ends = (np.asarray(x, dtype=float), np.asarray(y, dtype=float))
+        self._bars.append(self.canvas.plot(*ends, connect="pairs", pen=self.pen(colour)))
 
 
 def _interval(low: float, high: float) -> str:
