@@ -27,11 +27,12 @@ def opened(views: str, size: tuple[int, int] = (1920, 1080)) -> Iterator[Any]:
 
         make_application(["benchmark"])
         from regolith_studio.session.preferences import Preferences
-        from regolith_studio.ui.app import open_window
+        from regolith_studio.ui.app import open_window, set_aside_what_stays
 
         window = open_window(views=views, preferences=Preferences())
         window.resize(*size)
         window.show()
+        set_aside_what_stays(window)
         until(lambda: window.session.results.coarsened is not None)
         settle(window)
         try:

@@ -48,12 +48,13 @@ def run(paths: Sequence[str | Path] = (), unit: str | None = None) -> int:
 
     preferences = Preferences.load()
     speak(app, str(preferences.window.get(SETTING, SYSTEM)))
-    from regolith_studio.ui.app import open_window, telling_hook, welcome
+    from regolith_studio.ui.app import open_window, set_aside_what_stays, telling_hook, welcome
 
     window = open_window(paths, unit, preferences=preferences)
     sys.excepthook = telling_hook(window.toast.problem)
     window.show()
     splash.close()
+    set_aside_what_stays(window)
     gc.enable()
     QTimer.singleShot(0, window, lambda: welcome(window))
     clock = latest_end()
