@@ -46,6 +46,7 @@ class Plot(QWidget):
     def __init__(self, x: str, y: str, placeholder: str, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.theme: Theme = current_theme()
+        self._painted: Theme | None = None
         self._labels = (x, y)
         self._letters = 0.0
         self._legend_entries: list[tuple[str, str]] = []
@@ -144,7 +145,9 @@ class Plot(QWidget):
 
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
-        self.theme = theme
+        if theme == self._painted:
+            return
+        self.theme = self._painted = theme
         self.canvas.setBackground(theme.base)
         for axis in self.axes.values():
             axis.setPen(pg.mkPen(theme.border))

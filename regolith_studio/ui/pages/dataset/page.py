@@ -55,17 +55,26 @@ class DatasetPage(PageWidget):
 
     def assemble(self) -> Iterator[None]:
         self.representatives, self.sizes = RepresentativesPanel(), SizesPanel()
-        self.folder, self.targets, self.library = FolderPanel(), TargetsPanel(), LibraryPanel(self._context)
         yield
-        self.quality, self.distribution = QualityPlot(), SizesPlot()
+        self.folder, self.targets = FolderPanel(), TargetsPanel()
+        yield
+        self.library = LibraryPanel(self._context)
+        yield
+        self.quality = QualityPlot()
+        yield
+        self.distribution = SizesPlot()
+        yield
         self.gallery, self.losses, self.exports = RepresentativesGallery(), LossesLabel(), ExportsList()
         yield
         yield from self._place()
-        self._connect()
         yield
+        self._connect()
         self._context.wiring.refresh("particles", self._show_particles, holds=True)
+        yield
         self._context.wiring.refresh("choices", self._show_choices, slow=True)
+        yield
         self._context.wiring.refresh("shelf", self._take_opened)
+        yield
         self._show_losses()
 
     # --- the page of the window ----------------------------------------------------------------

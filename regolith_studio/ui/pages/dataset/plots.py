@@ -61,8 +61,10 @@ class QualityPlot(CurvePlot):
         self._draw()
 
     def set_theme(self, theme: Theme) -> None:
+        before = self.theme
         super().set_theme(theme)
-        self._draw()
+        if theme != before:
+            self._draw()
 
     def _draw(self) -> None:
         counts = tuple(float(point.count) for point in self._points)
@@ -116,8 +118,10 @@ class SizesPlot(CurvePlot):
         self._draw()
 
     def set_theme(self, theme: Theme) -> None:
+        before = self.theme
         super().set_theme(theme)
-        self._draw()
+        if theme != before:
+            self._draw()
 
     def _draw(self) -> None:
         if not self._classes:

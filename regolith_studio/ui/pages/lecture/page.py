@@ -53,6 +53,7 @@ class LecturePage(PageWidget):
         self.another.setObjectName("lecture_another")
         self.request = QLabel()
         self.request.setProperty("role", "remark")
+        self._head = (self.particle, self.another, self.request)
         self.tabs = QTabWidget()
         self.tabs.setObjectName("lecture_lessons")
         self._place()
@@ -249,9 +250,11 @@ class LecturePage(PageWidget):
         self._context.toast.note(words)
 
     def _show_letters(self) -> Iterator[None]:
-        """By one style sheet for the whole page: fonts of widgets are overruled by that of the program."""
+        """By style sheets: fonts of widgets are overruled by that of the program."""
         self._shown_size = self._size()
-        self.setStyleSheet(f"* {{ font-size: {self._shown_size:.1f}pt; }}")
+        for part in (self.annealing, self.degrees, self.field, self.tabs.tabBar(), *self._head):
+            part.setStyleSheet(f"* {{ font-size: {self._shown_size:.1f}pt; }}")
+            yield
         yield from polish(self)
         yield from self.theme_steps(current_theme())
 
@@ -265,9 +268,8 @@ class LecturePage(PageWidget):
             self.tabs.addTab(widget, title)
         row = QHBoxLayout()
         row.setSpacing(10)
-        row.addWidget(self.particle)
-        row.addWidget(self.another)
-        row.addWidget(self.request)
+        for each in self._head:
+            row.addWidget(each)
         row.addStretch(1)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(10, 10, 10, 8)

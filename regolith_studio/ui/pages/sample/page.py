@@ -65,8 +65,8 @@ class SamplePage(PageWidget):
         self._camera = CameraLink([self.frame.view])
         yield
         self._place()
-        self._connect()
         yield
+        self._connect()
         wiring.refresh("particles", self._show_particles, slow=True, holds=True)
         yield
         wiring.refresh("choices", self._show_current)

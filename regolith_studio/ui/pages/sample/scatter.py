@@ -71,8 +71,10 @@ class ScatterPanel(QWidget):
 
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
+        before = self.plot.theme
         self.plot.set_theme(theme)
-        self._draw()
+        if theme != before:
+            self._draw()
 
     def _arrange(self) -> None:
         against = QLabel(tr("against"))
