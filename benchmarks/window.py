@@ -1,6 +1,6 @@
-"""What the window takes: ``python -m benchmarks.window moves|cycles|samples|cancel|blocks|sliders|rest``.
+"""What the window takes: ``python -m benchmarks.window start`` (or moves, cycles and so on).
 
-``moves`` drags all sliders of the page *Explore*, ``cycles`` makes and draws polyhedra by the quick method,
+``start`` starts windows one after the other and prints when splash, views and bodies were seen. ``moves`` drags all sliders of the page *Explore*, ``cycles`` makes and draws polyhedra by the quick method,
 ``samples`` opens drawn particles and then the shipped ones again; all three print the megabytes at each look
 and their slope with its standard error. ``cancel`` stops each kind of work and prints how long the window did
 not answer, ``blocks`` goes through all pages and prints what kept it from answering for more than 50 ms;
@@ -16,6 +16,7 @@ from benchmarks.window_cancel import stops
 from benchmarks.window_driving import opened
 from benchmarks.window_growth import coarsened_and_drawn, samples_opened, slider_moves
 from benchmarks.window_response import responses, rest
+from benchmarks.window_start import starts
 
 GROWING = {"moves": slider_moves, "cycles": coarsened_and_drawn, "samples": samples_opened}
 LISTING = {"cancel": stops, "blocks": blocks, "sliders": responses}
@@ -24,10 +25,14 @@ LISTING = {"cancel": stops, "blocks": blocks, "sliders": responses}
 def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.window", description=__doc__.splitlines()[0])
-    parser.add_argument("what", choices=[*GROWING, *LISTING, "rest"])
+    parser.add_argument("what", choices=["start", *GROWING, *LISTING, "rest"])
     parser.add_argument("--views", choices=["image", "live"], default="image")
-    parser.add_argument("--count", type=int, default=1000)
+    parser.add_argument("--count", type=int, help="of moves, cycles and samples (1000) or starts (5)")
     options = parser.parse_args()
+    if options.what == "start":
+        for line in starts(options.count or 5, options.views):
+            print(line, flush=True)
+        return
     with opened(options.views) as window:
         if options.what in LISTING:
             for line in LISTING[options.what](window):
@@ -35,7 +40,7 @@ def main() -> None:
         elif options.what == "rest":
             print(rest(window))
         else:
-            _grow(window, options.what, options.count)
+            _grow(window, options.what, options.count or 1000)
 
 
 def _grow(window: Any, what: str, count: int) -> None:
