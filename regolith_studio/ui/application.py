@@ -18,9 +18,9 @@ from regolith_studio.ui.views.factory import surface_format
 NUMBERS = QLocale(QLocale.Language.C)
 """Numbers have a point in every language, as in the paper and in all files."""
 
-UNASKED = ("numpy.f2py", "pooch", "scipy.optimize")
+UNASKED = ("numpy.f2py", "pooch", "scipy.fft", "scipy.ndimage", "scipy.optimize")
 """Modules that are imported and not asked at the start of a window, most never: for Fortran, for examples of
-pyvista, and for bodies whose star point must be searched."""
+pyvista, for scans, and for bodies whose star point must be searched."""
 
 TURN = 0.001
 """Seconds for which a thread that computes keeps the interpreter while that of the window waits for it.
