@@ -1,11 +1,12 @@
 """What the window takes: ``python -m benchmarks.window start`` (or moves, cycles and so on).
 
-``start`` starts windows one after the other and prints when splash, views and bodies were seen. ``moves`` drags all sliders of the page *Explore*, ``cycles`` makes and draws polyhedra by the quick method,
-``samples`` opens drawn particles and then the shipped ones again; all three print the megabytes at each look
-and their slope with its standard error. ``cancel`` stops each kind of work and prints how long the window did
-not answer, ``blocks`` goes through all pages and prints what kept it from answering for more than 50 ms;
-``sliders`` times the way from a move to the painted view, ``rest`` what a window takes that nobody touches.
-``--views live`` needs a display.
+``start`` starts windows one after the other and prints when splash, views and bodies were seen.
+``moves`` drags all sliders of the page *Explore*, ``cycles`` makes and draws polyhedra by the quick
+method, ``samples`` opens drawn particles and then the shipped ones again; all three print the megabytes
+at each look and their slope with its standard error. ``cancel`` stops each kind of work and prints how
+long the window did not answer, ``blocks`` goes through all pages and prints what kept it from answering
+for more than 50 ms; ``sliders`` times the way from a move to the painted view, ``rest`` what a window
+takes that nobody touches. ``--views live`` needs a display.
 """
 
 import argparse
