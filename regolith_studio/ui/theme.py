@@ -235,6 +235,8 @@ QFrame[role="sidebar"] QToolButton:checked {{ background: palette(midlight); col
 *[role="warning"] {{ color: palette(link-visited); }}
 QFrame[role="card"] {{ background: palette(base); border: 1px solid palette(mid); border-radius: 5px; }}
 QFrame[role="card"][focused="true"] {{ border-color: palette(highlight); }}
+QFrame[role="card"] QAbstractSpinBox, QFrame[role="card"] QLineEdit, QTabWidget QAbstractSpinBox,
+QTabWidget QLineEdit {{ background-color: palette(button); }}
 QFrame[role="toast"] {{ background: palette(button); border: 1px solid palette(bright-text);
     border-radius: 6px; }}
 QFrame[role="toast"][mood="note"] {{ border-color: palette(highlight); }}

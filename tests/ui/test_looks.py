@@ -3,9 +3,18 @@
 import time
 
 import pytest
-from PySide6.QtCore import QEvent, QObject
+from PySide6.QtCore import QEvent, QObject, QPoint
 from PySide6.QtGui import QColor, QFontMetrics
-from PySide6.QtWidgets import QCheckBox, QDialog, QDialogButtonBox, QLabel, QVBoxLayout, QWidget
+from PySide6.QtWidgets import (
+    QCheckBox,
+    QDialog,
+    QDialogButtonBox,
+    QDoubleSpinBox,
+    QFrame,
+    QLabel,
+    QVBoxLayout,
+    QWidget,
+)
 
 from regolith_studio.jobs.runners.inline import InlineRunner
 from regolith_studio.session.session import Session
@@ -101,6 +110,24 @@ def test_that_a_theme_reaches_dialogs_of_the_window(app, shown):
         assert remark.palette().windowText().color() == QColor(theme.muted)
         assert window.palette().window().color() == QColor(theme.window)
     assert all(button.icon().isNull() for button in buttons.buttons())
+
+
+def test_that_what_is_written_into_can_be_seen_on_the_ground_of_plots(app, shown):
+    """By its fill in the dark: the edge that the style draws is darker than any ground."""
+    window = shown(QWidget())
+    card, field = QFrame(), QDoubleSpinBox()
+    card.setProperty("role", "card")
+    QVBoxLayout(card).addWidget(field)
+    QVBoxLayout(window).addWidget(card)
+    for theme, least in ((DARK, 15), (LIGHT, 60), (DARK, 15)):
+        apply_theme(app, theme, window)
+        app.processEvents()
+        picture = window.grab().toImage()
+        corner = field.mapTo(window, QPoint(0, 0))
+        ground = picture.pixelColor(corner - QPoint(3, 3)).lightness()
+        edge = picture.pixelColor(corner + QPoint(0, field.height() // 2)).lightness()
+        fill = picture.pixelColor(corner + QPoint(3, 3)).lightness()
+        assert max(fill - ground, ground - edge) >= least, theme.dark
 
 
 def test_that_parts_take_their_style_once_when_they_come_into_the_window(app, shown):
