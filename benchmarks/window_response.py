@@ -46,16 +46,18 @@ class Response:
 
 
 def responses(window: Any) -> Iterator[Response]:
-    """All sliders of the page *Explore* that change a view."""
+    """All sliders of the page *Explore* that change a view, each from the usual choices."""
     from PySide6.QtWidgets import QSlider
 
     views = window.page.triptych.views
     sliders = [each for each in window.page.findChildren(QSlider) if each.isVisible() and each.isEnabled()]
     for number, slider in enumerate(sliders):
         name = next((word for each in _upwards(slider) if (word := each.objectName())), str(number))
+        usual = slider.value()
         with _painted(views["fit" if "l_max" in name else "polyhedron"]) as times:
             delays = [_delay(window, slider, times, place) for place in _places(slider, STEPS)]
             pauses = _drag(slider, times)
+        slider.setValue(usual)
         settle(window)
         yield Response(name, tuple(delays), tuple(pauses))
 
