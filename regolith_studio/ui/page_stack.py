@@ -12,6 +12,7 @@ from regolith_studio.ui.page_building import SLICE, PageBuilder, Steps, polish
 from regolith_studio.ui.room import Room
 from regolith_studio.ui.sidebar import Sidebar
 from regolith_studio.ui.theme import Theme, current_theme, restyle, restyle_steps
+from regolith_studio.ui.widgets.table import ListTable
 
 
 class PageStack(QWidget):
@@ -158,6 +159,8 @@ class PageStack(QWidget):
         if current_theme() != begun:  # what was polished before has the colours of then
             restyle(widget)
         yield from widget.theme_steps(current_theme())
+        for table in widget.findChildren(ListTable):
+            yield from table.measure_unseen()
         return widget
 
     def _make_room(self, key: str, page: PageWidget) -> None:

@@ -17,14 +17,18 @@ load_when_asked(UNASKED)  # as the start does before it loads the window
 import regolith_studio.ui.app as app
 heavy = {"scipy.stats", "skimage", "sklearn", "h5py", "dask", "matplotlib.figure"} & set(sys.modules)
 assert not heavy, heavy
-seen = []
+import gc
+seen, aside = [], []
 def welcome(window):
     seen.append(window.isVisible())
+    aside.append(gc.get_freeze_count())
+    window.go("sample")
+    aside.append(gc.get_freeze_count())
     window.close()
 app.welcome = welcome
 code = start.run()
-import gc
 assert gc.isenabled() and gc.get_freeze_count() > 100_000, gc.get_freeze_count()
+assert aside[1] > aside[0] + 1_000, f"what a page is made of is not set aside: {aside}"
 assert seen == [True], seen
 import linecache
 read = {name.split(".")[0] for name, module in sys.modules.items()
@@ -32,6 +36,7 @@ read = {name.split(".")[0] for name, module in sys.modules.items()
 assert not read & {"pyvista", "pyqtgraph", "matplotlib"}, f"sources are kept in memory: {read}"
 assert not {"mypy", "matplotlib.figure", "matplotlib.pyplot"} & set(sys.modules)
 early = {"numpy.f2py.crackfortran", "pooch.core", "tqdm", "scipy.optimize._minimize"} & set(sys.modules)
+early |= {"scipy.ndimage._filters"} & set(sys.modules)
 assert not early, f"loaded and never asked for: {early}"
 from matplotlib.figure import Figure
 from pyvista import Chart2D, ChartMPL

@@ -1,5 +1,7 @@
 """Tables as the window uses them: rows to choose from, the first column taking what room is left."""
 
+from collections.abc import Iterator
+
 from PySide6.QtCore import QEvent, QObject, Qt
 from PySide6.QtGui import QResizeEvent, QShowEvent
 from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QTableView
@@ -58,6 +60,8 @@ class ListTable(QTableView):
 
     _unfitted = True
     """Content or letters have changed while nobody saw the table."""
+    _measured = False
+    """Columns are as wide as their present content."""
 
     def __init__(self, dispensable: tuple[int, ...] = ()) -> None:
         super().__init__()
@@ -80,18 +84,25 @@ class ListTable(QTableView):
 
     def fit_columns(self) -> None:
         """All columns as wide as their content, the first one as wide as there is room; once it is seen."""
-        self._unfitted = not self.isVisible()
+        self._measured, self._unfitted = False, not self.isVisible()
         if self.isVisible():
-            self.measure()
-            self.stretch()
+            self._fit()
 
-    def measure(self) -> None:
-        """Columns as wide as their content."""
+    def measure_unseen(self) -> Iterator[None]:
+        """Measure what :meth:`fit_columns` will need once the table is seen, column by column."""
         for column in self._left_out:
             self.setColumnHidden(column, False)
         self._left_out.clear()
         for column in self._narrow():
             self.resizeColumnToContents(column)
+            yield
+        self._measured = True
+
+    def _fit(self) -> None:
+        if not self._measured:
+            for _ in self.measure_unseen():
+                pass
+        self.stretch()
 
     def stretch(self) -> None:
         """The first column as wide as there is room."""
@@ -130,7 +141,8 @@ class ListTable(QTableView):
     def showEvent(self, event: QShowEvent) -> None:
         super().showEvent(event)
         if self._unfitted:
-            self.fit_columns()
+            self._unfitted = False
+            self._fit()
 
     def _narrow(self) -> list[int]:
         header = self.horizontalHeader()

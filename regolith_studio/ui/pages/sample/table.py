@@ -202,9 +202,8 @@ class SampleTable(ListTable):
                 self.selectionModel().select(index, flags.Select | flags.Rows)
         self._quiet = False
 
-    def measure(self) -> None:
-        for column in range(self.model_.columnCount()):
-            self.resizeColumnToContents(column)
+    def _narrow(self) -> list[int]:
+        return list(range(self.model_.columnCount()))
 
     def stretch(self) -> None:
         """No column: there are more than fit."""
