@@ -215,10 +215,11 @@ def test_that_a_formula_is_drawn_in_ink_and_shrinks_to_its_room(shown, wait):
 
 
 def test_that_formulas_are_set_by_one_thread_and_shown_when_all_lines_are(shown, wait, monkeypatch):
-    at_work, most = [], []
+    at_work, most, looked = [], [], threading.Event()
     usual = formula.TextPath
 
     def watched(*arguments, **options):
+        assert looked.wait(60.0)
         at_work.append(threading.current_thread())
         most.append(len(at_work))
         made = usual(*arguments, **options)
@@ -234,6 +235,7 @@ def test_that_formulas_are_set_by_one_thread_and_shown_when_all_lines_are(shown,
         assert label.lines() == (f"${name}_1$", f"${name}_2$")
     assert not formula._outlines
     assert [label.sizeHint() for label in labels] == small
+    looked.set()
     wait(lambda: all(label.sizeHint().height() > size.height() for label, size in zip(labels, small)))  # noqa: B905
     assert most == [1, 1, 1, 1]
 
