@@ -1,5 +1,6 @@
 """LAMMPS: clumps against exact volume and inertia, its input, and a whole run where the program is."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -14,7 +15,7 @@ from regolith_studio.dem.engines.lammps import ENGINE
 from regolith_studio.dem.engines.lammps.clumps import clump_shape, clumps_of
 from regolith_studio.dem.engines.lammps.script import schedule, script, stiffness, viscosity
 from regolith_studio.dem.engines.lammps.settings import LammpsSettings
-from regolith_studio.dem.engines.lammps.simulation import kinetic_energies, read_bodies
+from regolith_studio.dem.engines.lammps.simulation import kinetic_energies, last_words, read_bodies
 from regolith_studio.errors import InputError, RegolithError
 
 SMALL = ReposeCase(LiftingCylinderTest(mass=0.003, lift_speed=0.3), n_particles=40, seed=2)
@@ -109,6 +110,22 @@ def test_that_what_lammps_writes_is_read_and_losses_are_noticed(tmp_path) -> Non
     with pytest.raises(RegolithError, match="lost particles"):
         read_bodies(path)
     assert kinetic_energies("   Step  a b\n 0 1.5 0.5 \n 40 atoms left\n 10 2 1\n") == {0: 2.0, 10: 3.0}
+
+
+@pytest.mark.parametrize(
+    ("said", "told"),
+    [
+        (
+            "Step 1\nERROR on proc 0: Rigid body atoms 410 110 missing on proc 0 at step 42807 (f.cpp:3418)",
+            r"^The particles flew apart; take a smaller step than 0\.15 .*: ERROR .* missing on proc 0",
+        ),
+        ("ERROR: Lost atoms: original 99 current 98 (src/thermo.cpp:494)", "flew apart; take a smaller step"),
+        ("ERROR: Unknown fix style (src/modify.cpp:9)", "^LAMMPS ended before its time: ERROR: Unknown fix"),
+        ("", "^LAMMPS ended before its time: it said nothing$"),
+    ],
+)
+def test_that_it_is_told_what_to_do_when_lammps_loses_its_particles(said, told) -> None:
+    assert re.search(told, last_words(said, 0.15))
 
 
 def test_that_bad_settings_are_one_sentence() -> None:

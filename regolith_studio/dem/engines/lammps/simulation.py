@@ -30,6 +30,8 @@ from regolith_studio.dem.pile import Pile
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 
+_FLOWN_APART = ("missing on proc", "Lost atoms", "Out of range atoms", "Non-numeric", "too far outside")
+"""What errors of LAMMPS say of particles that moved too far in one step."""
 GLANCE = 0.1
 """Seconds between two looks for a snapshot."""
 CALM = 1e-3
@@ -87,7 +89,8 @@ def simulate(prepared: Prepared, settings: LammpsSettings) -> Generator[Moment, 
             child.kill()
             child.wait()
         if child.returncode or run.last is None:
-            raise RegolithError(_last_words(folder))
+            words_said = (folder / "said.txt").read_text(errors="replace")
+            raise RegolithError(last_words(words_said, settings.step_share))
         energies = kinetic_energies((folder / "log.lammps").read_text(errors="replace"))
     _, second = run.units
     notes = (_fit_in_words(clumps), _softness_in_words(prepared, settings))
@@ -187,10 +190,17 @@ def kinetic_energies(log: str) -> dict[int, float]:
     return found
 
 
-def _last_words(folder: Path) -> str:
-    said = (folder / "said.txt").read_text(errors="replace").splitlines()
-    errors = [line for line in said if "ERROR" in line] or said[-1:] or ["it said nothing"]
-    return f"LAMMPS ended before its time: {errors[0].strip()}"
+def last_words(said: str, step_share: float) -> str:
+    """Why LAMMPS has ended before its time, by its own first error."""
+    lines = said.splitlines()
+    errors = [line for line in lines if "ERROR" in line] or lines[-1:] or ["it said nothing"]
+    own = errors[0].strip()
+    if any(sign in own for sign in _FLOWN_APART):
+        return (
+            f"The particles flew apart; take a smaller step than {step_share:g} of Rayleigh's time "
+            f"(step_share). LAMMPS said: {own}"
+        )
+    return f"LAMMPS ended before its time: {own}"
 
 
 def _energy_gain(run: _Run, kinetic: dict[int, float]) -> float:
