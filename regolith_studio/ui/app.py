@@ -28,6 +28,8 @@ from regolith_studio.ui.views.loading import load_pyvista
 
 REST = 3_000
 """Milliseconds without work after which memory is handed back."""
+ASIDE = 1_000
+"""Milliseconds after a page was built at which it is set aside."""
 
 
 def welcome(window: MainWindow) -> None:
@@ -65,13 +67,20 @@ def open_window(
 
 
 def set_aside_what_stays(window: MainWindow) -> None:
-    """Let nobody look for garbage in what the window is made of, nor in a page once it is built.
+    """Let nobody look for garbage in what the window is made of, nor in a page some time after it is built.
 
     Python looks through all objects now and then, and nothing runs meanwhile: with all pages for 35 to 93 ms.
     Of what is there at these few moments only rings that are given up later will not be found.
     """
+    timer = QTimer(window, singleShot=True, interval=ASIDE)
+
+    def set_aside() -> None:
+        gc.collect()  # only what has been made since the last time: what is garbage by now would stay
+        gc.freeze()
+
+    timer.timeout.connect(set_aside)
+    window.pages.built.connect(lambda _key: timer.start())
     gc.freeze()
-    window.pages.built.connect(lambda _key: gc.freeze())
 
 
 def _warm_up_later(session: Session, runner: ThreadRunner) -> None:
