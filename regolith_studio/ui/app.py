@@ -69,7 +69,7 @@ def open_window(
 def set_aside_what_stays(window: MainWindow) -> None:
     """Let nobody look for garbage in what the window is made of, nor in a page some time after it is built.
 
-    Python looks through all objects now and then, and nothing runs meanwhile: with all pages for 35 to 93 ms.
+    Python looks through all objects now and then, and nothing runs meanwhile: with all pages for 82 to 95 ms.
     Of what is there at these few moments only rings that are given up later will not be found.
     """
     timer = QTimer(window, singleShot=True, interval=ASIDE)
