@@ -156,11 +156,15 @@ class PageStack(QWidget):
             view.setTabKeyNavigation(False)  # Tab leaves a table; arrows move in it
         yield
         yield from polish(widget)
-        if current_theme() != begun:  # what was polished before has the colours of then
+        theme = current_theme()
+        if theme != begun:  # what was polished before has the colours of then
             restyle(widget)
-        yield from widget.theme_steps(current_theme())
+        yield from widget.theme_steps(theme)
         for table in widget.findChildren(ListTable):
             yield from table.measure_unseen()
+        if current_theme() != theme:
+            restyle(widget)
+            widget.set_theme(current_theme())
         return widget
 
     def _make_room(self, key: str, page: PageWidget) -> None:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from PySide6.QtCore import QObject, Qt
 from PySide6.QtGui import QColor, QGuiApplication, QPalette
 from PySide6.QtWidgets import QApplication, QWidget
+from shiboken6 import isValid
 
 from regolith_studio.resources import resource
 from regolith_studio.scene import palette
@@ -149,7 +150,9 @@ def restyle(widget: QWidget, later: Container[QObject] = ()) -> None:
 
 
 def restyle_steps(widget: QWidget, later: Container[QObject] = ()) -> Iterator[None]:
-    """:func:`restyle` widget by widget."""
+    """:func:`restyle` widget by widget; those that go meanwhile are left out."""
+    if not isValid(widget):
+        return
     widget.style().polish(widget)
     yield
     for part in widget.children():

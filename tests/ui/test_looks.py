@@ -3,6 +3,7 @@
 import time
 
 import pytest
+import shiboken6
 from PySide6.QtCore import QEvent, QObject, QPoint
 from PySide6.QtGui import QColor, QFontMetrics
 from PySide6.QtWidgets import (
@@ -24,7 +25,15 @@ from regolith_studio.ui.icons import pixmap
 from regolith_studio.ui.layout import padded
 from regolith_studio.ui.looks import Looks
 from regolith_studio.ui.main_window import MainWindow
-from regolith_studio.ui.theme import DARK, LIGHT, apply_theme, choose_letters, choose_theme, current_theme
+from regolith_studio.ui.theme import (
+    DARK,
+    LIGHT,
+    apply_theme,
+    choose_letters,
+    choose_theme,
+    current_theme,
+    restyle_steps,
+)
 
 
 @pytest.fixture
@@ -128,6 +137,17 @@ def test_that_what_is_written_into_can_be_seen_on_the_ground_of_plots(app, shown
         edge = picture.pixelColor(corner + QPoint(0, field.height() // 2)).lightness()
         fill = picture.pixelColor(corner + QPoint(3, 3)).lightness()
         assert max(fill - ground, ground - edge) >= least, theme.dark
+
+
+def test_that_parts_that_go_while_others_take_their_colours_are_left_out(app, shown):
+    window = shown(QWidget())
+    apply_theme(app, LIGHT, window)
+    parts = [QLabel(str(number), window) for number in range(3)]
+    steps = restyle_steps(window)
+    next(steps)
+    next(steps)
+    shiboken6.delete(parts[1])
+    assert sum(1 for _ in steps) >= 1
 
 
 def test_that_parts_take_their_style_once_when_they_come_into_the_window(app, shown):

@@ -287,6 +287,21 @@ def test_that_a_page_that_was_being_built_has_the_colours_of_now(pieces, wait, a
     assert remarks[0].palette().windowText().color() == QColor(DARK.muted)
 
 
+def test_that_a_page_that_takes_a_theme_when_another_is_chosen_has_that_one(pieces, wait, monkeypatch):
+    now, seen = [LIGHT], []
+    monkeypatch.setattr("regolith_studio.ui.page_stack.current_theme", lambda: now[0])
+
+    def steps(_page, theme):
+        seen.append(theme)
+        now[0] = DARK
+        yield
+
+    monkeypatch.setattr(_InPieces, "theme_steps", steps, raising=False)
+    pieces.visit("two")
+    wait(lambda: pieces.current == "two")
+    assert seen == [LIGHT, DARK]
+
+
 def test_that_no_page_is_left_half_built(pieces):
     pieces.visit("two")
     pieces.finish()

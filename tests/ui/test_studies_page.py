@@ -10,6 +10,7 @@ from PySide6.QtTest import QTest
 from regolith_studio.studies.loss_rows import PAPER_ROWS, losses, paper_rows
 from regolith_studio.ui.app import open_window
 from regolith_studio.ui.pages.studies.rows_bar import RowsBar
+from regolith_studio.ui.theme import DARK
 
 SECONDS = 170.0
 ASKED = "regolith_studio.ui.dialogs.folder.FolderDialog.ask"
@@ -67,6 +68,12 @@ def test_that_the_gallery_has_a_row_for_each_loss_that_is_chosen(window, wait, s
     assert shown_rows == labels
     assert "Sphericity only" in labels
     assert "All descriptors" not in labels
+    given_up = page.gallery.theme_steps(DARK)
+    next(given_up)
+    assert len(list(page.gallery.theme_steps(DARK))) == 2 * len(labels), (
+        "a theme that was given up is taken anew"
+    )
+    assert list(page.gallery.theme_steps(DARK)) == []
 
 
 def test_that_one_loss_always_stays(shown):

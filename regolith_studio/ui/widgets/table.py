@@ -90,13 +90,13 @@ class ListTable(QTableView):
 
     def measure_unseen(self) -> Iterator[None]:
         """Measure what :meth:`fit_columns` will need once the table is seen, column by column."""
+        self._measured = True  # unless the content changes meanwhile
         for column in self._left_out:
             self.setColumnHidden(column, False)
         self._left_out.clear()
         for column in self._narrow():
             self.resizeColumnToContents(column)
             yield
-        self._measured = True
 
     def _fit(self) -> None:
         if not self._measured:

@@ -251,10 +251,11 @@ class LecturePage(PageWidget):
 
     def _show_letters(self) -> Iterator[None]:
         """By style sheets: fonts of widgets are overruled by that of the program."""
-        self._shown_size = self._size()
+        size = self._size()
         for part in (self.annealing, self.degrees, self.field, self.tabs.tabBar(), *self._head):
-            part.setStyleSheet(f"* {{ font-size: {self._shown_size:.1f}pt; }}")
+            part.setStyleSheet(f"* {{ font-size: {size:.1f}pt; }}")
             yield
+        self._shown_size = size
         yield from polish(self)
         yield from self.theme_steps(current_theme())
 

@@ -40,7 +40,7 @@ class SolidGallery(QWidget):
         super().__init__(parent)
         self.setObjectName("solid_gallery")
         self._solids: tuple[Solid, ...] = ()
-        self._colour = current_theme().polyhedron
+        self._colour = self._shown_colour = current_theme().polyhedron
         self.table = QTableWidget()
         self.table.setAccessibleName(tr("Polyhedra by loss function and particle"))
         self.table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
@@ -86,11 +86,12 @@ class SolidGallery(QWidget):
 
     def theme_steps(self, theme: Theme) -> Iterator[None]:
         """Take the colours of a theme, cell by cell."""
-        before, self._colour = self._colour, theme.polyhedron
-        for at, solid in enumerate(self._solids if before != self._colour else ()):
+        self._colour = theme.polyhedron
+        for at, solid in enumerate(self._solids if self._shown_colour != self._colour else ()):
             if at < len(self._solids) and self._solids[at] is solid:  # others may have begun meanwhile
                 self.table.setItem(solid.row, solid.column, self._cell(solid))
             yield
+        self._shown_colour = self._colour
 
     def _cell(self, solid: Solid) -> QTableWidgetItem:
         found = solid.outcome.coarsened
