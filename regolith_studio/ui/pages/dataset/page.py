@@ -28,6 +28,7 @@ from regolith_studio.ui.pages.dataset.gallery import RepresentativesGallery
 from regolith_studio.ui.pages.dataset.library import LibraryPanel
 from regolith_studio.ui.pages.dataset.plots import QualityPlot, SizesPlot
 from regolith_studio.ui.pages.dataset.shown import chosen_particles, request_of, shapes, title_of
+from regolith_studio.ui.pages.dataset.standing import Controls
 from regolith_studio.ui.pages.dataset.targets import ExportsList, LossesLabel, TargetsPanel
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr, tr_count
@@ -57,13 +58,11 @@ class DatasetPage(PageWidget):
         self.representatives, self.sizes = RepresentativesPanel(), SizesPanel()
         yield
         self.folder, self.targets = FolderPanel(), TargetsPanel()
+        self._controls = Controls(self.representatives, self.sizes, self.folder, self.targets)
+        yield
+        self.quality, self.distribution = QualityPlot(), SizesPlot()
         yield
         self.library = LibraryPanel(self._context)
-        yield
-        self.quality = QualityPlot()
-        yield
-        self.distribution = SizesPlot()
-        yield
         self.gallery, self.losses, self.exports = RepresentativesGallery(), LossesLabel(), ExportsList()
         yield
         yield from self._place()
@@ -72,9 +71,7 @@ class DatasetPage(PageWidget):
         self._context.wiring.refresh("particles", self._show_particles, holds=True)
         yield
         self._context.wiring.refresh("choices", self._show_choices, slow=True)
-        yield
         self._context.wiring.refresh("shelf", self._take_opened)
-        yield
         self._show_losses()
 
     # --- the page of the window ----------------------------------------------------------------
@@ -353,22 +350,15 @@ class DatasetPage(PageWidget):
     def _take_opened(self) -> None:
         """Set the controls as the recipe says that was opened, once."""
         opened = self._context.session.shelf.get(OPENED)
-        if not isinstance(opened, Standing) or opened is self._opened:
-            return
-        self._opened = opened
-        if wish := opened.representatives:
-            self.representatives.setValue(wish.model_dump())
-            self.sizes.set_text(wish.sizes)
-            self.folder.name.setText(wish.name or self.folder.name.text())
-        if opened.exports:
-            self.targets.take(opened.exports)
+        if isinstance(opened, Standing) and opened is not self._opened:
+            self._opened = opened
+            self._controls.take(opened)
 
     def _leave_wish(self) -> None:
         """Leave what a recipe would say of the dataset; nothing before representatives are chosen."""
         shelf, wish = self._context.session.shelf, None
         if self._chosen is not None and self.sizes.sizing() is not None:
-            name = self.folder.name.text().strip()
-            wish = Standing(self.representatives.wish(self.sizes.text(), name), self.targets.wish())
+            wish = self._controls.standing()
         if wish != shelf.get(STANDING):
             shelf.put(STANDING, wish)
 
