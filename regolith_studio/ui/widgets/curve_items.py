@@ -14,7 +14,7 @@ SYMBOL = 5
 
 
 class CurveItems:
-    """What is drawn of a curve; :class:`pyqtgraph.PlotDataItem` always has both, for ten times the work.
+    """What is drawn of a curve; :class:`pyqtgraph.PlotDataItem` always has both, for several times the work.
 
     Parameters
     ----------
