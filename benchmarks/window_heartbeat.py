@@ -53,7 +53,7 @@ class Heartbeat:
     Meanwhile an alarm looks what the thread does.
 
     They are heard as mouse and keys are, which come through a socket of the X server. A timer of the window
-    would wait longer: between two timers that are due others go first. The alarm is a signal: no other thread
+    may have to wait for others. The alarm is a signal: no other thread
     may hold frames, as a widget could lose its last reference there.
     """
 

@@ -94,7 +94,7 @@ class ListTable(QTableView):
         for column in self._left_out:
             self.setColumnHidden(column, False)
         self._left_out.clear()
-        for column in self._narrow():
+        for column in self._by_content():
             self.resizeColumnToContents(column)
             yield
 
@@ -114,7 +114,7 @@ class ListTable(QTableView):
     def _make_room(self) -> int:
         """Leave out what must be, bring back what need not; returns the width of the columns that stay."""
         header = self.horizontalHeader()
-        widths = {column: header.sectionSize(column) for column in self._narrow()} | self._left_out
+        widths = {column: header.sectionSize(column) for column in self._by_content()} | self._left_out
         names = min(self.sizeHintForColumn(0), self.fontMetrics().horizontalAdvance("0" * _NAME))
         for column in self._dispensable:
             if column not in widths:  # hidden for another reason
@@ -144,6 +144,7 @@ class ListTable(QTableView):
             self._unfitted = False
             self._fit()
 
-    def _narrow(self) -> list[int]:
+    def _by_content(self) -> list[int]:
+        """Columns that are as wide as their content."""
         header = self.horizontalHeader()
         return [at for at in range(1, header.count()) if not header.isSectionHidden(at)]

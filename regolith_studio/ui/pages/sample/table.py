@@ -202,7 +202,7 @@ class SampleTable(ListTable):
                 self.selectionModel().select(index, flags.Select | flags.Rows)
         self._quiet = False
 
-    def _narrow(self) -> list[int]:
+    def _by_content(self) -> list[int]:
         return list(range(self.model_.columnCount()))
 
     def stretch(self) -> None:
