@@ -1,6 +1,6 @@
 """Coarsening against plain programs of the paper, side by side in one run.
 
-    python -m benchmarks.coarsening FOLDER_OF_STL [--particles 10] [--faces 20] [--only methods|evaluation]
+    python -m benchmarks.coarsening FOLDER_OF_STL [--particles 10] [--facets 20] [--only methods|evaluation]
 
 The plain programs stand in benchmarks/plain_loss.py. Errors of all methods are measured by
 benchmarks/independent.py, which shares no code with any of them. Times are processor times of one thread; of
@@ -47,7 +47,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.coarsening", description=__doc__)
     parser.add_argument("folder", type=Path)
     parser.add_argument("--particles", type=int, default=10)
-    parser.add_argument("--faces", type=int, default=20)
+    parser.add_argument("--facets", type=int, default=20)
     parser.add_argument("--only", choices=("methods", "evaluation"))
     options = parser.parse_args()
     warnings.simplefilter("ignore")  # the plain programs are full of them
@@ -72,22 +72,22 @@ def plain_loss(target: Target, **how: str | bool) -> PlainLoss:
     return PlainLoss(np.array(target.mesh.vertices), np.array(target.mesh.faces), **how)  # type: ignore[arg-type]
 
 
-def annealed(target: Target, n_faces: int, loss: PlainLoss, seed: int) -> HalfSpaces:
+def annealed(target: Target, n_facets: int, loss: PlainLoss, seed: int) -> HalfSpaces:
     """The plain annealing, from the start that all methods have."""
-    start = np.array(quadric_half_spaces(target, n_faces).points)
+    start = np.array(quadric_half_spaces(target, n_facets).points)
     return HalfSpaces.from_points(plain_annealing(loss, start, seed))
 
 
-def compared(target: Target, index: int, n_faces: int) -> dict[str, list[float]]:
+def compared(target: Target, index: int, n_facets: int) -> dict[str, list[float]]:
     """Errors, Jaccard distance and milliseconds of every method for one particle."""
     plain, with_overlap = plain_loss(target), plain_loss(target, overlap="points")
     cases: dict[str, Callable[[], HalfSpaces]] = {
-        "quadric half-spaces": lambda: quadric_half_spaces(target, n_faces),
-        "plain annealing": lambda: annealed(target, n_faces, plain, index),
-        "plain annealing with IoU": lambda: annealed(target, n_faces, with_overlap, index),
-        "annealing (ours)": lambda: unit(target, "annealing", n_faces),
-        "exact, fast": lambda: unit(target, "exact", n_faces, level="fast"),
-        "exact, best": lambda: unit(target, "exact", n_faces, level="best"),
+        "quadric half-spaces": lambda: quadric_half_spaces(target, n_facets),
+        "plain annealing": lambda: annealed(target, n_facets, plain, index),
+        "plain annealing with IoU": lambda: annealed(target, n_facets, with_overlap, index),
+        "annealing (ours)": lambda: unit(target, "annealing", n_facets),
+        "exact, fast": lambda: unit(target, "exact", n_facets, level="fast"),
+        "exact, best": lambda: unit(target, "exact", n_facets, level="best"),
     }
     found = {}
     for name, case in cases.items():
@@ -96,9 +96,9 @@ def compared(target: Target, index: int, n_faces: int) -> dict[str, list[float]]
     return found
 
 
-def unit(target: Target, method: str, n_faces: int, **settings: object) -> HalfSpaces:
+def unit(target: Target, method: str, n_facets: int, **settings: object) -> HalfSpaces:
     """The half-spaces that a method finds, at unit volume."""
-    return target.in_unit_frame(coarsen(target, n_faces, method, settings=settings).half_spaces)
+    return target.in_unit_frame(coarsen(target, n_facets, method, settings=settings).half_spaces)
 
 
 def errors(target: Target, planes: HalfSpaces) -> list[float]:
@@ -128,9 +128,9 @@ CASES: tuple[tuple[str, str, bool, tuple[str, ...]], ...] = (
 is held against."""
 
 
-def evaluation_rounds(target: Target, n_faces: int) -> Array:
+def evaluation_rounds(target: Target, n_facets: int) -> Array:
     """Microseconds of one evaluation, shape (rounds, plain programs + cases)."""
-    planes = unit(target, "exact", n_faces)
+    planes = unit(target, "exact", n_facets)
     points, normals, offsets = np.array(planes.points), planes.normals, planes.offsets
     work: list[tuple[Callable[[], object], int]] = [
         (partial(plain_loss(target, **how), points), 1 if how.get("exact") else 2) for how in PLAIN.values()
@@ -164,10 +164,12 @@ def report_methods(tables: list[dict[str, list[float]]]) -> None:
         print(f"| {name} | " + " | ".join(f"{v:.4f}" for v in shown) + f" | {np.median(values[:, 7]):.0f} |")
 
 
-def report_evaluations(rounds: Array, n_faces: int) -> None:
+def report_evaluations(rounds: Array, n_facets: int) -> None:
     """Microseconds of each side, median ratio and the middle 80 % of the ratios."""
     names = list(PLAIN)
-    print(f"\n| one evaluation of the loss, {n_faces} faces | ours, us | plain program | us | ratio | 80 % |")
+    print(
+        f"\n| one evaluation of the loss, {n_facets} faces | ours, us | plain program | us | ratio | 80 % |"
+    )
     print("| --- | ---: | --- | ---: | ---: | --- |")
     for number, (title, _, _, against) in enumerate(CASES):
         ours = rounds[:, len(names) + number]

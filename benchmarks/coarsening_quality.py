@@ -53,7 +53,7 @@ class Quality:
 
     name: str
     level: str
-    n_faces: int
+    n_facets: int
     particles: int
     met: int
     explained: int
@@ -69,7 +69,7 @@ def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.coarsening_quality", description=__doc__)
     parser.add_argument("folders", type=Path, nargs="*")
-    parser.add_argument("--faces", type=int, nargs="+", default=[12, 20, 50, 100])
+    parser.add_argument("--facets", type=int, nargs="+", default=[12, 20, 50, 100])
     parser.add_argument("--levels", nargs="+", default=["fast", "best"], choices=["fast", "best"])
     parser.add_argument("--particles", type=int, default=1000, help="at most so many of each set")
     parser.add_argument("--unit", default="um")
@@ -82,9 +82,9 @@ def main() -> None:
     for name, particles in sets(options.folders, options.unit):
         targets, milliseconds = prepared(particles[: options.particles])
         for level in options.levels:
-            for n_faces in options.faces:
+            for n_facets in options.faces:
                 errors = independent_errors if options.independent else public_errors
-                found.append(quality(name, targets, milliseconds, level, n_faces, errors))
+                found.append(quality(name, targets, milliseconds, level, n_facets, errors))
                 print(line(found[-1]), flush=True)
     if options.json:
         options.json.write_text(
@@ -123,7 +123,7 @@ def quality(
     targets: Sequence[Target],
     target_milliseconds: float,
     level: str,
-    n_faces: int,
+    n_facets: int,
     errors: Callable[[Target, Coarsened], NDArray[np.float64]],
 ) -> Quality:
     """One line: each target coarsened once."""
@@ -131,7 +131,7 @@ def quality(
     for index, target in enumerate(targets):
         begun = time.process_time()
         try:
-            result = coarsen(target, n_faces, "exact", particle_index=index, settings={"level": level})
+            result = coarsen(target, n_facets, "exact", particle_index=index, settings={"level": level})
         except RegolithError as error:  # such as a hull with fewer triangles than asked for
             print(f"particle {index} is left out: {error}")
             continue
@@ -145,11 +145,11 @@ def quality(
     return Quality(
         name,
         level,
-        n_faces,
+        n_facets,
         len(results),
         int(met.sum()),
         int((~met & ~free).sum()),
-        sum(result.n_faces == n_faces for result in results),
+        sum(result.n_facets == n_facets for result in results),
         dict(zip(KEPT, largest.tolist(), strict=True)),
         float(np.median([result.jaccard_distance for result in results])),
         float(np.median(times)),
@@ -181,7 +181,7 @@ def line(found: Quality) -> str:
     worst = " | ".join(f"{value:.0e}" for value in found.largest.values())
     of = f"/{found.particles}"
     return (
-        f"| {found.name} | {found.level} | {found.n_faces} | {found.met}{of} | {found.explained} "
+        f"| {found.name} | {found.level} | {found.n_facets} | {found.met}{of} | {found.explained} "
         f"| {found.whole}{of} | {worst} | {found.jaccard:.3f} "
         f"| {found.milliseconds:.0f} | {found.slowest:.0f} |"
     )

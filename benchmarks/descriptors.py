@@ -32,10 +32,10 @@ def stone(level: int, seed: int = 0) -> Mesh:
     return Mesh(u * radius[:, None] * [1.2, 1.0, 0.8], sphere.faces)
 
 
-def polyhedron(n_faces: int, seed: int = 0) -> ConvexPolyhedron:
+def polyhedron(n_facets: int, seed: int = 0) -> ConvexPolyhedron:
     """A random polyhedron of the kind that coarsening returns."""
-    directions = fibonacci_directions(n_faces) + 0.1 * np.random.default_rng(seed).normal(size=(n_faces, 3))
-    return ConvexPolyhedron.from_half_spaces(HalfSpaces(directions, np.linspace(0.8, 1.2, n_faces)))
+    directions = fibonacci_directions(n_facets) + 0.1 * np.random.default_rng(seed).normal(size=(n_facets, 3))
+    return ConvexPolyhedron.from_half_spaces(HalfSpaces(directions, np.linspace(0.8, 1.2, n_facets)))
 
 
 def by_trimesh(vertices: np.ndarray, faces: np.ndarray) -> dict[str, float]:

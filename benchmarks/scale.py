@@ -85,7 +85,7 @@ def one(particles: int, jobs: int) -> Run:
         target="particle",
         method="exact",
         settings={"level": "fast"},
-        n_faces=20,
+        n_facets=20,
         outputs={"meshes": False},
     )
     with tempfile.TemporaryDirectory() as place, _watched() as memory:

@@ -252,7 +252,7 @@ def _shapes(count: int) -> list[tuple[Particle, SimpleNamespace]]:
             jaccard_distance=0.1,
             loss=0.1,
             method="exact",
-            n_faces_asked=20,
+            n_facets_asked=20,
             reason=None,
         )
         pairs.append((Particle(f"grain-{index}", shape.mesh), coarse))

@@ -99,7 +99,7 @@ def _usual_choices(window: Any) -> Iterator[None]:
     try:
         yield
     finally:
-        names = ("method", "settings", "n_faces", "seed", "level")
+        names = ("method", "settings", "n_facets", "seed", "level")
         window.session.choose(**{name: getattr(before, name) for name in names})
 
 

@@ -104,7 +104,7 @@ def coarsened_and_drawn(window: Any, count: int) -> Growth:
         return done is not None and any(each.polyhedron is done.polyhedron for each in triptych.shapes)
 
     def act(number: int) -> None:
-        session.choose(n_faces=12 + number % 20)
+        session.choose(n_facets=12 + number % 20)
         until(shown)
 
     return followed("coarsen and draw", act, lambda: settle(window), count, (20.0, 20_000))

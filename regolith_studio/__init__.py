@@ -7,7 +7,7 @@ The doors for notebooks; each leads to the folder of its name and is opened when
     particle = rs.read_mesh("grain.stl", unit="um")
     rs.describe(particle.mesh)["sphericity"]
     fit = rs.fit_harmonics(particle.mesh)
-    coarse = rs.coarsen(particle.mesh, n_faces=20)
+    coarse = rs.coarsen(particle.mesh, n_facets=20)
     rs.write_dataset("grains", rs.build_dataset([(particle, coarse)]))
 """
 

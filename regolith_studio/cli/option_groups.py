@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from regolith_studio.cli.options import (
-    Faces,
+    Facets,
     LMax,
     MaxError,
     Method,
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from regolith_studio.jobs.loading import Loaded
     from regolith_studio.session.choices import Choices
 
-FACES = 20
+FACETS = 20
 """By itself; :class:`FinenessOptions` tells by it whether another number was asked for."""
 
 
@@ -71,23 +71,23 @@ class ExpansionOptions:
 class FinenessOptions:
     """How fine a polyhedron is to be."""
 
-    faces: Faces = FACES
+    facets: Facets = FACETS
     triangles: Triangles = None
     max_error: MaxError = None
 
     @property
     def changes(self) -> dict[str, object]:
         """Of the choices; more than one way of saying it is bad use."""
-        named = (self.faces != FACES) + (self.triangles is not None) + (self.max_error is not None)
+        named = (self.facets != FACETS) + (self.triangles is not None) + (self.max_error is not None)
         if named > 1:
             raise typer.BadParameter(
-                "Only one of --faces, --triangles and --max-error can say how fine to be."
+                "Only one of --facets, --triangles and --max-error can say how fine to be."
             )
         if self.triangles is not None:
             return {"stop_at": "triangles", "n_triangles": self.triangles}
         if self.max_error is not None:
             return {"stop_at": "error", "largest_error": round(self.max_error / 100.0, 12)}
-        return {"n_faces": self.faces}
+        return {"n_facets": self.facets}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -109,7 +109,7 @@ class CoarseningOptions:
         preset
             Key of the loss weights that ``--weight`` changes; without one, those that it names are the only.
         others
-            Further choices, ``seed`` and ``n_faces`` say.
+            Further choices, ``seed`` and ``n_facets`` say.
         """
         from regolith_studio.errors import InputError
         from regolith_studio.session.choices import Choices

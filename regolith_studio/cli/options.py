@@ -88,7 +88,7 @@ Reference = Annotated[
 ]
 Degrees = Annotated[str, typer.Option("--degrees", help="Values of l_max: 1,2,5 or 1-20.", metavar="LIST")]
 Level = Annotated[int, typer.Option("--level", help="Subdivisions of the fits' surface.", metavar="N")]
-Faces = Annotated[int, typer.Option("--faces", help="Facets of each polyhedron.", metavar="N")]
+Facets = Annotated[int, typer.Option("--facets", help="Facets of each polyhedron.", metavar="N")]
 Triangles = Annotated[
     int | None,
     typer.Option("--triangles", help="Most triangles of each polyhedron, instead of facets.", metavar="N"),

@@ -8,10 +8,10 @@ import typer
 
 from regolith_studio.cli import variations
 from regolith_studio.cli.grouping import grouped
-from regolith_studio.cli.option_groups import FACES, CoarseningOptions, ExpansionOptions, ReadingOptions
+from regolith_studio.cli.option_groups import FACETS, CoarseningOptions, ExpansionOptions, ReadingOptions
 from regolith_studio.cli.options import (
     Degrees,
-    Faces,
+    Facets,
     Folder,
     Jobs,
     Json,
@@ -119,7 +119,7 @@ def coarsening(
     *,
     meshes: Meshes,
     output: Folder,
-    faces: Faces = FACES,
+    facets: Facets = FACETS,
     loss: Losses = None,
     how: CoarseningOptions,
     box: BoxMetric = "exact",
@@ -134,7 +134,7 @@ def coarsening(
     from regolith_studio.jobs.studying import study_coarsening
 
     check_box(box)
-    wish = how.choices(n_faces=faces, seed=seed)
+    wish = how.choices(n_facets=facets, seed=seed)
     rows = _rows(loss, wish, bool(how.weight))
     loaded = reading.read(meshes)
     study = partial(study_coarsening, loaded.particles, wish.order, jobs, rows=rows, box_metric=box)
@@ -148,7 +148,7 @@ def solids(
     *,
     meshes: Meshes,
     output: Folder,
-    faces: Faces = FACES,
+    facets: Facets = FACETS,
     loss: Losses = None,
     how: CoarseningOptions,
     reading: ReadingOptions,
@@ -161,7 +161,7 @@ def solids(
     from regolith_studio.cli.inputs import exit_code
     from regolith_studio.session.solids import study_solids
 
-    wish = how.choices(n_faces=faces, seed=seed)
+    wish = how.choices(n_facets=facets, seed=seed)
     rows = _rows(loss, wish, bool(how.weight))
     loaded = reading.read(meshes)
     study = partial(study_solids, loaded.particles, wish.order, rows, jobs)

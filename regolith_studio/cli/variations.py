@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from regolith_studio.cli.grouping import grouped
-from regolith_studio.cli.option_groups import FACES, CoarseningOptions, ReadingOptions
+from regolith_studio.cli.option_groups import FACETS, CoarseningOptions, ReadingOptions
 from regolith_studio.cli.options import (
-    Faces,
+    Facets,
     Folder,
     Jobs,
     Json,
@@ -33,7 +33,7 @@ BoxMetric = Annotated[
         metavar="BOX",
     ),
 ]
-Counts = Annotated[str, typer.Option("--faces", help="Numbers of facets, such as 12,20,50.", metavar="LIST")]
+Counts = Annotated[str, typer.Option("--facets", help="Numbers of facets, such as 12,20,50.", metavar="LIST")]
 OverlapFactors = Annotated[
     str,
     typer.Option(
@@ -60,14 +60,16 @@ class VariedOptions:
     resume: Resume = False
     seed: Seed = 0
 
-    def run(self, key: str, values: str, meshes: Sequence[Path], output: Path, n_faces: int = FACES) -> None:
+    def run(
+        self, key: str, values: str, meshes: Sequence[Path], output: Path, n_facets: int = FACETS
+    ) -> None:
         """Do the study of this key and leave the program with its exit code."""
         from regolith_studio.cli.inputs import exit_code
         from regolith_studio.jobs.studying import study_coarsening
         from regolith_studio.session.variations import varied_rows
 
         check_box(self.box)
-        wish = self.how.choices(self.preset, n_faces=n_faces, seed=self.seed)
+        wish = self.how.choices(self.preset, n_facets=n_facets, seed=self.seed)
         with as_bad_use():
             rows = varied_rows(key, wish, values)
         loaded = self.reading.read(meshes)
@@ -90,12 +92,12 @@ def tradeoff(
     *,
     meshes: Meshes,
     output: Folder,
-    faces: Faces = FACES,
+    facets: Facets = FACETS,
     factors: OverlapFactors = "0,0.1,0.3,1,3,10,30",
     varied: VariedOptions,
 ) -> None:
     """Overlap against descriptors: what one costs the other."""
-    varied.run("tradeoff", factors, meshes, output, faces)
+    varied.run("tradeoff", factors, meshes, output, facets)
 
 
 @grouped
@@ -103,12 +105,12 @@ def sensitivity(
     *,
     meshes: Meshes,
     output: Folder,
-    faces: Faces = FACES,
+    facets: Facets = FACETS,
     factors: ChangeFactors = "0,4",
     varied: VariedOptions,
 ) -> None:
     """What changing one weight of the loss changes in every descriptor."""
-    varied.run("sensitivity", factors, meshes, output, faces)
+    varied.run("sensitivity", factors, meshes, output, facets)
 
 
 def check_box(box: str) -> None:

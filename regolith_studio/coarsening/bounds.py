@@ -10,20 +10,20 @@ MOST_FACES = 100_000
 """Sphericities that ask for more facets count as unreachable."""
 
 
-def greatest_sphericity(n_faces: int) -> float:
-    """Upper bound of Wadell's sphericity of a convex polyhedron with `n_faces` facets (Goldberg 1935).
+def greatest_sphericity(n_facets: int) -> float:
+    """Upper bound of Wadell's sphericity of a convex polyhedron with `n_facets` facets (Goldberg 1935).
 
     Attained by the tetrahedron, the cube and the dodecahedron (n = 4, 6, 12).
 
     Raises
     ------
     ValueError
-        If `n_faces` is below 4.
+        If `n_facets` is below 4.
     """
-    if n_faces < 4:
-        raise ValueError(f"a polyhedron has at least 4 faces, got {n_faces}")
-    w = n_faces * np.pi / (6 * (n_faces - 2))
-    return float((36 * np.pi / (54 * (n_faces - 2) * np.tan(w) * (4 * np.sin(w) ** 2 - 1))) ** (1 / 3))
+    if n_facets < 4:
+        raise ValueError(f"a polyhedron has at least 4 faces, got {n_facets}")
+    w = n_facets * np.pi / (6 * (n_facets - 2))
+    return float((36 * np.pi / (54 * (n_facets - 2) * np.tan(w) * (4 * np.sin(w) ** 2 - 1))) ** (1 / 3))
 
 
 def least_faces(sphericity: float) -> int | None:
@@ -48,9 +48,9 @@ def hull_gives_way(weights: LossWeights, descriptors: Mapping[str, float]) -> bo
 
 
 def attainable_errors(
-    descriptors: Mapping[str, float], n_faces: int, weights: LossWeights
+    descriptors: Mapping[str, float], n_facets: int, weights: LossWeights
 ) -> dict[str, float]:
-    """Least relative error of each term of the loss, for any convex polyhedron with `n_faces` facets.
+    """Least relative error of each term of the loss, for any convex polyhedron with `n_facets` facets.
 
     V and CH are bounded together: the one that the weights prefer can be met, the other misses by the
     solidity s = V/CH: 1 - s or 1/s - 1. The Jaccard distance is at least that of the volumes alone.
@@ -62,7 +62,7 @@ def attainable_errors(
     return {
         JACCARD: 0.0 if keep_volume or free else 1.0 - solidity,
         "volume": 0.0 if keep_volume else 1.0 / solidity - 1.0,
-        "sphericity": max(0.0, 1.0 - greatest_sphericity(n_faces) / descriptors["sphericity"]),
+        "sphericity": max(0.0, 1.0 - greatest_sphericity(n_facets) / descriptors["sphericity"]),
         "min_diameter": 0.0,
         "max_diameter": 0.0,
         "aspect_ratio": 0.0,
@@ -70,17 +70,17 @@ def attainable_errors(
     }
 
 
-def least_loss(descriptors: Mapping[str, float], n_faces: int, weights: LossWeights) -> float:
+def least_loss(descriptors: Mapping[str, float], n_facets: int, weights: LossWeights) -> float:
     """A lower bound of Eq. 9."""
-    bounds = attainable_errors(descriptors, n_faces, weights)
+    bounds = attainable_errors(descriptors, n_facets, weights)
     return float(sum(weights[key] * bound for key, bound in bounds.items()))
 
 
-def sphericity_reason(sphericity: float, n_faces: int) -> str | None:
-    """Why `n_faces` facets cannot have this sphericity, or ``None`` if Goldberg's bound allows it."""
-    most = greatest_sphericity(n_faces)
+def sphericity_reason(sphericity: float, n_facets: int) -> str | None:
+    """Why `n_facets` facets cannot have this sphericity, or ``None`` if Goldberg's bound allows it."""
+    most = greatest_sphericity(n_facets)
     if sphericity <= most:
         return None
     needed = least_faces(sphericity)
     ask = "more than 100,000 faces" if needed is None else f"at least {needed} faces"
-    return f"Sphericity {sphericity:.3f} needs {ask}; with {n_faces} the most is {most:.3f}."
+    return f"Sphericity {sphericity:.3f} needs {ask}; with {n_facets} the most is {most:.3f}."

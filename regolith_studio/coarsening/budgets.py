@@ -8,7 +8,7 @@ from typing import Any
 from regolith_studio.coarsening.coarsen import (
     DEFAULT_METHOD,
     DEFAULT_PRESET,
-    FACES_LIMITS,
+    FACETS_LIMITS,
     coarsening_steps,
 )
 from regolith_studio.coarsening.progress import CoarseningProgress
@@ -23,12 +23,12 @@ from regolith_studio.geometry.mesh import Mesh
 class Trial:
     """One number of faces that was tried, and how it went."""
 
-    n_faces: int
+    n_facets: int
     largest_error: float
     result: Coarsened
 
 
-def faces_for_triangles(n_triangles: int) -> int:
+def facets_for_triangles(n_triangles: int) -> int:
     """Most facets whose polyhedron has at most `n_triangles` triangles: 4 n - 12 in general position.
 
     For solvers that count triangles.
@@ -40,11 +40,11 @@ def faces_for_triangles(n_triangles: int) -> int:
     """
     if isinstance(n_triangles, bool) or n_triangles != int(n_triangles):
         raise InputError(f"The number of triangles must be a whole number, got {n_triangles}.")
-    n_faces = (int(n_triangles) + 12) // 4
-    low, high = FACES_LIMITS
-    if n_faces < low:
+    n_facets = (int(n_triangles) + 12) // 4
+    low, high = FACETS_LIMITS
+    if n_facets < low:
         raise InputError(f"{n_triangles} triangles are too few: {low} faces have up to {4 * low - 12}.")
-    return min(n_faces, high)
+    return min(n_facets, high)
 
 
 def largest_error(result: Coarsened, weights: LossWeights, jaccard_limit: float | None = None) -> float:
@@ -98,35 +98,35 @@ def fewest_faces(
     target = mesh if isinstance(mesh, Target) else Target.of(mesh)
     done = 0
 
-    def tried(n_faces: int) -> Generator[CoarseningProgress | Trial, None, Trial]:
+    def tried(n_facets: int) -> Generator[CoarseningProgress | Trial, None, Trial]:
         nonlocal done
         before = done
-        steps = coarsening_steps(target, n_faces, method, weights, seed, particle_index, settings)
+        steps = coarsening_steps(target, n_facets, method, weights, seed, particle_index, settings)
         while True:
             try:
                 step = next(steps)
             except StopIteration as end:
-                trial = Trial(n_faces, largest_error(end.value, weights, jaccard_limit), end.value)
+                trial = Trial(n_facets, largest_error(end.value, weights, jaccard_limit), end.value)
                 yield trial
                 return trial
             done = before + step.step
             yield replace(step, step=done, steps=before + step.steps)
 
-    low, high = FACES_LIMITS
+    low, high = FACETS_LIMITS
     failed: list[Trial] = []
-    n_faces = low
-    while (best := (yield from tried(n_faces))).largest_error > limit:
+    n_facets = low
+    while (best := (yield from tried(n_facets))).largest_error > limit:
         failed.append(best)
-        if n_faces == high:
+        if n_facets == high:
             return _least(failed, limit)
-        n_faces = min(2 * n_faces, high)
-    bottom = failed[-1].n_faces if failed else low - 1
-    while best.n_faces - bottom > 1:
-        trial = yield from tried((best.n_faces + bottom) // 2)
+        n_facets = min(2 * n_facets, high)
+    bottom = failed[-1].n_facets if failed else low - 1
+    while best.n_facets - bottom > 1:
+        trial = yield from tried((best.n_facets + bottom) // 2)
         if trial.largest_error <= limit:
             best = trial
         else:
-            bottom = trial.n_faces
+            bottom = trial.n_facets
     return best.result
 
 
@@ -157,7 +157,7 @@ def _least(failed: Sequence[Trial], limit: float) -> Coarsened:
     """The best of the trials, with the reason why it is not good enough."""
     least = min(failed, key=lambda trial: trial.largest_error)
     reason = (
-        f"Not even {failed[-1].n_faces} faces bring all errors below {100 * limit:g} %:"
-        f" the least is {100 * least.largest_error:.2g} %, with {least.n_faces} faces."
+        f"Not even {failed[-1].n_facets} faces bring all errors below {100 * limit:g} %:"
+        f" the least is {100 * least.largest_error:.2g} %, with {least.n_facets} faces."
     )
     return replace(least.result, reason=reason)

@@ -23,26 +23,26 @@ from regolith_studio.geometry.mesh import Mesh
 
 DEFAULT_METHOD = "exact"
 DEFAULT_PRESET = "all"
-FACES_LIMITS = (5, 200)
+FACETS_LIMITS = (5, 200)
 """Section 2.4 asks for n > 4."""
 
 
 def coarsen(
     mesh: Mesh | Target,
-    n_faces: int = 20,
+    n_facets: int = 20,
     method: str = DEFAULT_METHOD,
     weights: LossWeights | None = None,
     seed: int = 0,
     particle_index: int = 0,
     settings: Any = None,
 ) -> Coarsened:
-    """The convex polyhedron with `n_faces` facets that stands for `mesh` (section 2.4).
+    """The convex polyhedron with `n_facets` facets that stands for `mesh` (section 2.4).
 
     Parameters
     ----------
     mesh
         Closed surface of the particle in any unit, or a :class:`Target` that was made from one.
-    n_faces
+    n_facets
         Facets of the polyhedron, 5 to 200.
     method
         Key of :data:`regolith_studio.coarsening.methods.METHODS`.
@@ -60,7 +60,7 @@ def coarsen(
     GeometryError
         If the mesh is open, flat or encloses no volume.
     """
-    _, run = _begun(mesh, n_faces, method, weights, seed, particle_index, settings)
+    _, run = _begun(mesh, n_facets, method, weights, seed, particle_index, settings)
     while True:
         try:
             next(run)
@@ -71,7 +71,7 @@ def coarsen(
 
 def coarsening_steps(
     mesh: Mesh | Target,
-    n_faces: int = 20,
+    n_facets: int = 20,
     method: str = DEFAULT_METHOD,
     weights: LossWeights | None = None,
     seed: int = 0,
@@ -79,7 +79,7 @@ def coarsening_steps(
     settings: Any = None,
 ) -> Generator[CoarseningProgress, None, Coarsened]:
     """As :func:`coarsen`, telling each step; the first step comes at once and has a polyhedron."""
-    target, run = _begun(mesh, n_faces, method, weights, seed, particle_index, settings)
+    target, run = _begun(mesh, n_facets, method, weights, seed, particle_index, settings)
     while True:
         try:
             step = next(run)
@@ -94,7 +94,7 @@ def coarsening_steps(
 
 def _begun(
     mesh: Mesh | Target,
-    n_faces: int,
+    n_facets: int,
     method: str,
     weights: LossWeights | None,
     seed: int,
@@ -104,21 +104,21 @@ def _begun(
     """The target, and the method's steps with the measured result at their end."""
     chosen = _method(method)
     weights = LossWeights.from_preset(DEFAULT_PRESET) if weights is None else weights
-    _check(n_faces, chosen, weights, seed)
+    _check(n_facets, chosen, weights, seed)
     target = mesh if isinstance(mesh, Target) else Target.of(mesh)
     random = np.random.SeedSequence(seed, spawn_key=(particle_index,))
-    run = chosen.run(target, n_faces, weights, random, settings_of(method, settings))
-    return target, _to_the_end(run, target, method, n_faces, weights)
+    run = chosen.run(target, n_facets, weights, random, settings_of(method, settings))
+    return target, _to_the_end(run, target, method, n_facets, weights)
 
 
 def _to_the_end(
     run: Generator[MethodStep, None, MethodResult],
     target: Target,
     method: str,
-    n_faces: int,
+    n_facets: int,
     weights: LossWeights,
 ) -> Generator[MethodStep, None, Coarsened]:
-    return _measured(target, (yield from run), method, n_faces, weights)
+    return _measured(target, (yield from run), method, n_facets, weights)
 
 
 def settings_of(method: str, settings: Any = None) -> Any:
@@ -148,10 +148,10 @@ def _method(key: str) -> CoarseningMethod:
     return METHODS[key]
 
 
-def _check(n_faces: int, method: CoarseningMethod, weights: LossWeights, seed: int) -> None:
-    low, high = FACES_LIMITS
-    if isinstance(n_faces, bool) or n_faces != int(n_faces) or not low <= n_faces <= high:
-        raise InputError(f"The number of faces must be a whole number from {low} to {high}, got {n_faces}.")
+def _check(n_facets: int, method: CoarseningMethod, weights: LossWeights, seed: int) -> None:
+    low, high = FACETS_LIMITS
+    if isinstance(n_facets, bool) or n_facets != int(n_facets) or not low <= n_facets <= high:
+        raise InputError(f"The number of facets must be a whole number from {low} to {high}, got {n_facets}.")
     if weights.all_zero and method.key != "quadric":
         raise InputError("All weights of the loss are 0, so there is nothing to optimise; raise one of them.")
     if seed < 0:
@@ -159,7 +159,7 @@ def _check(n_faces: int, method: CoarseningMethod, weights: LossWeights, seed: i
 
 
 def _measured(
-    target: Target, result: MethodResult, method: str, n_faces: int, weights: LossWeights
+    target: Target, result: MethodResult, method: str, n_facets: int, weights: LossWeights
 ) -> Coarsened:
     """Measure the result by the public descriptors, independently of the method."""
     unit = result.polyhedron or ConvexPolyhedron.from_half_spaces(result.half_spaces)
@@ -177,8 +177,8 @@ def _measured(
         loss=loss(weights, errors, overlap),
         loss_history=result.loss_history,
         method=method,
-        n_faces_asked=n_faces,
-        bounds=attainable_errors(target.descriptors, n_faces, weights),
+        n_facets_asked=n_facets,
+        bounds=attainable_errors(target.descriptors, n_facets, weights),
         reason=result.reason,
         steps=result.steps,
         variants=result.variants,

@@ -64,7 +64,7 @@ class Coarsened:
         Eq. 9 after each step of the method, as the method evaluates it.
     method
         Key of the method.
-    n_faces_asked, n_faces, n_vertices, n_triangles
+    n_facets_asked, n_facets, n_vertices, n_triangles
         Facets asked for; real facets, vertices and triangles.
     bounds
         Least attainable error of each descriptor, see :mod:`regolith_studio.coarsening.bounds`.
@@ -85,16 +85,16 @@ class Coarsened:
     loss: float
     loss_history: tuple[float, ...]
     method: str
-    n_faces_asked: int
+    n_facets_asked: int
     bounds: Mapping[str, float]
     reason: str | None = None
     steps: Mapping[str, float] = field(default_factory=dict)
     variants: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 
     @property
-    def n_faces(self) -> int:
+    def n_facets(self) -> int:
         """Real facets."""
-        return self.polyhedron.n_faces
+        return self.polyhedron.n_facets
 
     @property
     def n_vertices(self) -> int:

@@ -9,8 +9,8 @@ from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
 
 
-def decimated_hull(target: Target, n_faces: int) -> Mesh:
-    """The convex hull of the unit-volume particle, decimated to `n_faces` triangles.
+def decimated_hull(target: Target, n_facets: int) -> Mesh:
+    """The convex hull of the unit-volume particle, decimated to `n_facets` triangles.
 
     Quadric edge collapse as in fast-simplification. The result is closed but as a rule not convex.
 
@@ -20,15 +20,15 @@ def decimated_hull(target: Target, n_faces: int) -> Mesh:
         If the hull has fewer triangles than asked for.
     """
     hull = target.mesh.hull
-    if len(hull.faces) < n_faces:
+    if len(hull.faces) < n_facets:
         raise InputError(
-            f"The particle's convex hull has {len(hull.faces)} triangles only, fewer than the {n_faces} faces"
-            " asked for."
+            f"The particle's convex hull has {len(hull.faces)} triangles only, fewer than the"
+            f" {n_facets} facets asked for."
         )
-    return decimated(hull, n_faces)
+    return decimated(hull, n_facets)
 
 
-def quadric_half_spaces(target: Target, n_faces: int) -> HalfSpaces:
+def quadric_half_spaces(target: Target, n_facets: int) -> HalfSpaces:
     """The half-spaces of the decimated hull's triangles (the start of section 2.4).
 
     Raises
@@ -36,7 +36,7 @@ def quadric_half_spaces(target: Target, n_faces: int) -> HalfSpaces:
     GeometryError
         If the decimated hull does not hold the particle's centroid inside all of its planes.
     """
-    mesh = decimated_hull(target, n_faces)
+    mesh = decimated_hull(target, n_facets)
     sound = mesh.face_areas > 1e-12
     normals = mesh.face_area_vectors[sound] / mesh.face_areas[sound, None]
     offsets = np.einsum("ij,ij->i", normals, mesh.triangles[sound, 0])

@@ -51,7 +51,7 @@ class CoarsenedShape(Protocol):
         """Key of the method."""
 
     @property
-    def n_faces_asked(self) -> int:
+    def n_facets_asked(self) -> int:
         """Facets asked for."""
 
     @property
@@ -166,7 +166,7 @@ def representative_of(
     shape, frame = aligned(coarsened.polyhedron, coarsened.centre)
     fidelity = Fidelity(
         method=coarsened.method,
-        n_faces_asked=coarsened.n_faces_asked,
+        n_facets_asked=coarsened.n_facets_asked,
         errors=dict(coarsened.errors),
         jaccard_distance=coarsened.jaccard_distance,
         loss=coarsened.loss,

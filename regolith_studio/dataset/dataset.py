@@ -30,7 +30,7 @@ class Fidelity:
     ----------
     method
         Key of the coarsening method.
-    n_faces_asked
+    n_facets_asked
         Facets asked for; the shape tells how many there are.
     errors
         Relative error of each descriptor of the loss (Eq. 8).
@@ -43,7 +43,7 @@ class Fidelity:
     """
 
     method: str
-    n_faces_asked: int
+    n_facets_asked: int
     errors: Mapping[str, float]
     jaccard_distance: float
     loss: float
@@ -101,7 +101,7 @@ class CoarseningRecord:
     ----------
     method, seed
         As asked.
-    n_faces
+    n_facets
         As asked; where `largest_error` is given, the most that may be taken.
     target
         ``particle`` or ``fit``: what was imitated.
@@ -114,7 +114,7 @@ class CoarseningRecord:
     """
 
     method: str
-    n_faces: int
+    n_facets: int
     seed: int
     target: str = "particle"
     preset: str | None = None

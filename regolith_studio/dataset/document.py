@@ -176,7 +176,7 @@ def record_of(representative: Representative, file: str, content: bytes) -> dict
         "mesh": {
             "file": file,
             "sha256": hashlib.sha256(content).hexdigest(),
-            "n_faces": shape.n_faces,
+            "n_facets": shape.n_facets,
             "n_vertices": shape.n_vertices,
             "n_triangles": shape.n_triangles,
         },

@@ -115,7 +115,7 @@ def _read(folder: Path, name: str, read: Any) -> LibraryEntry:
 def _dataset(folder: Path) -> LibraryEntry:
     document = read_document(folder)
     heaviest = max(document.representatives, key=lambda record: record.weight)
-    faces = sorted({record.mesh.n_faces for record in document.representatives})
+    faces = sorted({record.mesh.n_facets for record in document.representatives})
     span = f"{faces[0]}" if len(faces) == 1 else f"{faces[0]} to {faces[-1]}"
     return LibraryEntry(
         folder=folder,
@@ -189,7 +189,7 @@ def _record(path: Path, format: str) -> dict[str, Any]:
 
 def _fineness(coarsening: CoarseningRecordModel) -> str:
     if coarsening.largest_error is None:
-        return f"{coarsening.n_faces} faces"
+        return f"{coarsening.n_facets} faces"
     return f"errors below {100 * coarsening.largest_error:g} %"
 
 

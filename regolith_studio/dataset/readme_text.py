@@ -21,7 +21,7 @@ diameter d (in micrometres) from the sizes of the class, and scale the shape by
 d * (pi / 6)^(1/3) = 0.80600 d, so that its volume is that of a ball of diameter d. Then turn it at
 random. If a program asks for a size of its own, choose the equivalent (volume) diameter.
 
-"n_faces" counts polygonal facets; the STL cuts them into triangles. The half-spaces in
+"n_facets" counts polygonal facets; the STL cuts them into triangles. The half-spaces in
 dataset.json are the exact shape: all x with <normal_i, x> <= offset_i.
 To go back to the place of a shape in its particle: x_particle = scale rotation^T x_shape + centroid.
 

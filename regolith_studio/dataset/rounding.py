@@ -47,7 +47,7 @@ def rounded(shape: ConvexPolyhedron, rounding: float) -> RoundedPolyhedron:
     radius = rounding * float(planes.offsets.min())
     while True:
         core = ConvexPolyhedron.from_half_spaces(HalfSpaces(planes.normals, planes.offsets - radius))
-        if core.n_faces == shape.n_faces or radius < 1e-9 * float(planes.offsets.min()):
+        if core.n_facets == shape.n_facets or radius < 1e-9 * float(planes.offsets.min()):
             return RoundedPolyhedron(core, radius)
         radius /= 2
 

@@ -35,7 +35,7 @@ class MeshRecord(Record):
         str, Field(pattern=MESH_PATH, description="Relative to dataset.json, with forward slashes.")
     ]
     sha256: Sha256
-    n_faces: Annotated[int, Field(ge=4, description="Polygonal facets, which is what n faces means.")]
+    n_facets: Annotated[int, Field(ge=4, description="Polygonal facets, which is what n faces means.")]
     n_vertices: Annotated[int, Field(ge=4)]
     n_triangles: Annotated[int, Field(ge=4)]
 
@@ -65,7 +65,7 @@ class FidelityRecord(Record):
     """How well the shape stands for its particle."""
 
     method: str
-    n_faces_asked: int
+    n_facets_asked: int
     errors: dict[str, float] = Field(description="Relative error of each descriptor (Eq. 8).")
     jaccard_distance: float = Field(description="Eq. 7; 0 same, 1 disjoint.")
     loss: float = Field(description="Eq. 9.")
@@ -99,7 +99,7 @@ class CoarseningRecordModel(Record):
     """What was asked of the coarsening of all shapes."""
 
     method: str
-    n_faces: int = Field(description="The most that may be taken where largest_error is given.")
+    n_facets: int = Field(description="The most that may be taken where largest_error is given.")
     seed: int
     target: str = Field(description="particle, or fit: what was imitated.")
     preset: str | None

@@ -63,7 +63,7 @@ def stored_shape(particle: Particle, coarsened: CoarsenedShape) -> StoredShape:
     return StoredShape(record_of(representative, mesh_path(0, 1), mesh), mesh)
 
 
-def check_count(count: int, n_faces: int) -> None:
+def check_count(count: int, n_facets: int) -> None:
     """Refuse what would be too large to be read again, before hours of work and not after them.
 
     Raises
@@ -71,10 +71,10 @@ def check_count(count: int, n_faces: int) -> None:
     InputError
         Saying how many particles a dataset may have.
     """
-    most = LARGEST_DOCUMENT // (_RECORD_BYTES + _FACE_BYTES * n_faces)
+    most = LARGEST_DOCUMENT // (_RECORD_BYTES + _FACE_BYTES * n_facets)
     if count > most:
         raise InputError(
-            f"A dataset of {count:,} particles of {n_faces} faces is larger than can be read again; make "
+            f"A dataset of {count:,} particles of {n_facets} faces is larger than can be read again; make "
             f"several of at most {most:,}, or leave the dataset out."
         )
 

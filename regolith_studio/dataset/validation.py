@@ -68,13 +68,13 @@ def _shape_problems(shape: ConvexPolyhedron, record: RepresentativeRecord) -> li
         problems.append(f"the half-spaces enclose a volume of {shape.volume!r}, not 1.")
     if np.abs(shape.centroid).max() > SHAPE_TOLERANCE:
         problems.append(f"the centroid lies at {shape.centroid.tolist()}, not at the origin.")
-    stated = (record.mesh.n_faces, record.mesh.n_vertices, record.mesh.n_triangles)
-    found = (shape.n_faces, shape.n_vertices, shape.n_triangles)
+    stated = (record.mesh.n_facets, record.mesh.n_vertices, record.mesh.n_triangles)
+    found = (shape.n_facets, shape.n_vertices, shape.n_triangles)
     for what, is_stated, is_found in zip(("facets", "vertices", "triangles"), stated, found, strict=True):
         if is_stated != is_found:
             problems.append(f"{is_stated} {what} are stated, the half-spaces have {is_found}.")
-    if len(record.half_spaces.offsets) != shape.n_faces:
-        problems.append(f"{len(record.half_spaces.offsets) - shape.n_faces} half-spaces bound no facet.")
+    if len(record.half_spaces.offsets) != shape.n_facets:
+        problems.append(f"{len(record.half_spaces.offsets) - shape.n_facets} half-spaces bound no facet.")
     return problems
 
 

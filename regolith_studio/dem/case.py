@@ -92,7 +92,7 @@ class Prepared:
         Factor that was applied.
     dataset_name, dataset_hash
         What the particles were drawn from; the hash is empty for a dataset that is not on disk.
-    n_faces
+    n_facets
         Facets of each shape, where they are known.
     """
 
@@ -103,7 +103,7 @@ class Prepared:
     coarse_graining: float
     dataset_name: str = ""
     dataset_hash: str = ""
-    n_faces: tuple[int, ...] = ()
+    n_facets: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:
         n = len(self.diameters)
@@ -114,7 +114,7 @@ class Prepared:
 
     def __reduce__(self) -> tuple[Callable[..., "Prepared"], tuple[Any, ...]]:
         draws = (self.class_index, self.diameters, self.coarse_graining)
-        return Prepared, (self.case, self.shapes, *draws, self.dataset_name, self.dataset_hash, self.n_faces)
+        return Prepared, (self.case, self.shapes, *draws, self.dataset_name, self.dataset_hash, self.n_facets)
 
     def __len__(self) -> int:
         return len(self.diameters)
@@ -135,11 +135,11 @@ class Prepared:
         return np.asarray(self.diameters * (np.pi / 6) ** (1 / 3))
 
     @property
-    def mean_faces(self) -> float | None:
+    def mean_facets(self) -> float | None:
         """Facets of a particle in the mean, or ``None`` where they are not known or there are none."""
-        if not self.n_faces or self.case.shapes == "spheres":
+        if not self.n_facets or self.case.shapes == "spheres":
             return None
-        return float(np.array(self.n_faces)[self.class_index].mean())
+        return float(np.array(self.n_facets)[self.class_index].mean())
 
     @property
     def fill_height(self) -> float:
@@ -175,7 +175,7 @@ def prepare(dataset: Dataset, case: ReposeCase, dataset_hash: str = "") -> Prepa
         coarse_graining=float(factor),
         dataset_name=dataset.name,
         dataset_hash=dataset_hash,
-        n_faces=tuple(each.shape.n_faces for each in dataset.representatives),
+        n_facets=tuple(each.shape.n_facets for each in dataset.representatives),
     )
     _check_room(prepared)
     return prepared

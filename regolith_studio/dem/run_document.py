@@ -61,7 +61,7 @@ def run_document(
         ],
         "particles": {
             "mass": prepared.mass,
-            "mean_faces": prepared.mean_faces,
+            "mean_facets": prepared.mean_facets,
             "surface_energy": prepared.surface_energy,
             **_plain(asdict(consequences(prepared))),
         },

@@ -68,7 +68,7 @@ class ConvexPolyhedron:
         return cls(solid, vertices, tuple(facets))
 
     @property
-    def n_faces(self) -> int:
+    def n_facets(self) -> int:
         """Number of polygonal facets."""
         return len(self.facets)
 
@@ -91,12 +91,12 @@ class ConvexPolyhedron:
     @cached_property
     def triangle_facets(self) -> IntArray:
         """Facet of each triangle of `mesh`, shape (n_triangles,)."""
-        return np.repeat(np.arange(self.n_faces), [len(facet) - 2 for facet in self.facets])
+        return np.repeat(np.arange(self.n_facets), [len(facet) - 2 for facet in self.facets])
 
     @cached_property
     def facet_areas(self) -> FloatArray:
-        """Area of each facet, shape (n_faces,)."""
-        areas = np.bincount(self.triangle_facets, weights=self.mesh.face_areas, minlength=self.n_faces)
+        """Area of each facet, shape (n_facets,)."""
+        areas = np.bincount(self.triangle_facets, weights=self.mesh.face_areas, minlength=self.n_facets)
         return areas.astype(np.float64)
 
     @property

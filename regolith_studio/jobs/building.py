@@ -88,7 +88,7 @@ def build_dataset_folder(
     """
     check_place(folder, options.overwrite)
     chosen_count = len(particles) if options.representatives is None else options.representatives.count
-    check_count(chosen_count, order.most_faces)
+    check_count(chosen_count, order.max_facets)
     sizing = parse_sizes(options.sizes)
     if options.representatives is None:
         chosen, outcomes = None, (yield from coarsen_sample(particles, order, options.workers))
@@ -208,7 +208,7 @@ def story(fitted: Sequence[ShCoefficients], order: CoarseningOrder, preset: str 
     lengths = order.expansion.reference == USUAL.reference
     record = CoarseningRecord(
         method=order.method,
-        n_faces=order.most_faces,
+        n_facets=order.max_facets,
         seed=order.seed,
         target=order.target,
         preset=preset,

@@ -7,7 +7,7 @@ from functools import lru_cache
 from typing import Any
 
 from regolith_studio.coarsening.budgets import Trial, fewest_faces
-from regolith_studio.coarsening.coarsen import DEFAULT_METHOD, FACES_LIMITS, coarsening_steps
+from regolith_studio.coarsening.coarsen import DEFAULT_METHOD, FACETS_LIMITS, coarsening_steps
 from regolith_studio.coarsening.progress import CoarseningProgress
 from regolith_studio.coarsening.result import Coarsened
 from regolith_studio.coarsening.target import Target
@@ -40,11 +40,11 @@ class CoarseningOrder:
     expansion
         How the fit is made, to degree 30 or `l_max`.
     largest_error
-        Where given, the fewest facets whose weighted errors are all below it, instead of `n_faces`.
+        Where given, the fewest facets whose weighted errors are all below it, instead of `n_facets`.
     """
 
     weights: LossWeights
-    n_faces: int = 20
+    n_facets: int = 20
     method: str = DEFAULT_METHOD
     settings: tuple[tuple[str, bool | int | float | str], ...] = ()
     seed: int = 0
@@ -55,15 +55,15 @@ class CoarseningOrder:
     largest_error: float | None = None
 
     @property
-    def most_faces(self) -> int:
+    def max_facets(self) -> int:
         """Facets that no polyhedron exceeds."""
-        return self.n_faces if self.largest_error is None else FACES_LIMITS[1]
+        return self.n_facets if self.largest_error is None else FACETS_LIMITS[1]
 
     @property
     def fineness(self) -> str:
         """How fine the polyhedra are, to be put into a sentence."""
         if self.largest_error is None:
-            return f"{self.n_faces} faces"
+            return f"{self.n_facets} faces"
         return f"the fewest faces whose errors are all below {100 * self.largest_error:g} %"
 
 
@@ -169,7 +169,7 @@ def _told(mesh: Mesh, order: CoarseningOrder, index: int) -> Generator[Step, Non
     }
     steps: Generator[CoarseningProgress | Trial, None, Coarsened]
     if order.largest_error is None:
-        steps = coarsening_steps(_target(mesh), order.n_faces, **common)
+        steps = coarsening_steps(_target(mesh), order.n_facets, **common)
     else:
         steps = fewest_faces(_target(mesh), order.largest_error, **common)
     tried = ""
@@ -179,7 +179,7 @@ def _told(mesh: Mesh, order: CoarseningOrder, index: int) -> Generator[Step, Non
         except StopIteration as end:
             return end.value
         if isinstance(step, Trial):
-            tried = f"{step.n_faces} faces: {100 * step.largest_error:.2g} %"
+            tried = f"{step.n_facets} faces: {100 * step.largest_error:.2g} %"
             continue
         yield Partial(step)
         yield Progress(step.step, step.steps, tried)

@@ -93,7 +93,7 @@ class AnnealingLesson:
     imitated: Mesh
     centre: FloatArray
     scale: float
-    n_faces: int
+    n_facets: int
     weights: LossWeights
     settings: AnnealingSettings
     steps: tuple[AnnealingStep, ...]
@@ -119,16 +119,16 @@ def anneal_slowly(mesh: Mesh, order: CoarseningOrder, particle_index: int = 0) -
     yield Started("Annealing step by step", settings.iterations)
     target = Target.of(mesh)
     seed = np.random.SeedSequence(order.seed, spawn_key=(particle_index,))
-    run = METHODS["annealing"].run(target, order.n_faces, order.weights, seed, settings)
+    run = METHODS["annealing"].run(target, order.n_facets, order.weights, seed, settings)
     raw = []
     for step in run:
         raw.append(step)
         yield Progress(step.step, step.steps)
     lesson = AnnealingLesson(
-        mesh, target.centre, target.scale, order.n_faces, order.weights, settings, _traced(target, raw)
+        mesh, target.centre, target.scale, order.n_facets, order.weights, settings, _traced(target, raw)
     )
     yield Partial(lesson)
-    exact = coarsen(target, order.n_faces, "exact", order.weights, order.seed, particle_index)
+    exact = coarsen(target, order.n_facets, "exact", order.weights, order.seed, particle_index)
     return replace(lesson, exact=exact)
 
 

@@ -22,7 +22,7 @@ from regolith_studio.studies.repose import runs_from, write_repose_study
 
 CASE_KEYS = ("shapes", "cohesion", "n_particles", "coarse_graining")
 """What of a case can be varied besides the values of Tables 1 and 2."""
-SHAPE_KEYS = ("n_faces", "preset")
+SHAPE_KEYS = ("n_facets", "preset")
 """What of the shapes can be varied, each value being a dataset of its own: facets, weights of the loss."""
 
 
@@ -188,7 +188,7 @@ def values_in(key: str, text: str) -> tuple[float | str, ...]:
     words = [word.strip() for word in text.split(",") if word.strip()]
     if key in ("shapes", "cohesion", "preset"):
         return tuple(dict.fromkeys(words))
-    whole = key in ("n_faces", "n_particles")
+    whole = key in ("n_facets", "n_particles")
     try:
         return tuple(dict.fromkeys(int(word) if whole else float(word) for word in words))
     except ValueError as error:
@@ -237,4 +237,4 @@ def _shaped(order: CoarseningOrder, key: str, value: float | str) -> CoarseningO
         return replace(order, weights=known[str(value)].weights)
     if not isinstance(value, int) or not 4 <= value <= 1000:
         raise InputError(f"A particle has between 4 and 1,000 facets, got {value}.")
-    return replace(order, n_faces=value, largest_error=None)
+    return replace(order, n_facets=value, largest_error=None)

@@ -107,7 +107,7 @@ def study_coarsening(
     with hired(workers) as crew:
         study = coarsening_study(
             particles,
-            n_faces=order.n_faces,
+            n_facets=order.n_facets,
             method=order.method,
             seed=order.seed,
             settings=dict(order.settings),

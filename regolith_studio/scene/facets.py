@@ -63,7 +63,7 @@ def facet_of(polyhedron: ConvexPolyhedron, index: int) -> Facet:
     areas = polyhedron.facet_areas
     return Facet(
         index,
-        polyhedron.n_faces,
+        polyhedron.n_facets,
         float(areas[index]),
         float(areas[index] / areas.sum()),
         np.asarray(polyhedron.half_spaces.normals[index]),

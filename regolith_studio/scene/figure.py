@@ -93,6 +93,6 @@ def view_titles(l_max: int, polyhedron: ConvexPolyhedron | Coarsened) -> tuple[s
     return (
         "CT particle",
         f"Spherical-harmonics fit, l_max = {l_max}",
-        f"Polyhedron, {polyhedron.n_faces} facets "
+        f"Polyhedron, {polyhedron.n_facets} facets "
         f"({polyhedron.n_vertices} vertices, {polyhedron.n_triangles} triangles)",
     )

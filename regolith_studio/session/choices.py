@@ -4,8 +4,8 @@ import dataclasses
 from dataclasses import dataclass, field
 from typing import Any, Self
 
-from regolith_studio.coarsening.budgets import check_limit, faces_for_triangles
-from regolith_studio.coarsening.coarsen import DEFAULT_METHOD, DEFAULT_PRESET, FACES_LIMITS, settings_of
+from regolith_studio.coarsening.budgets import check_limit, facets_for_triangles
+from regolith_studio.coarsening.coarsen import DEFAULT_METHOD, DEFAULT_PRESET, FACETS_LIMITS, settings_of
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.descriptors.facts import BOX_METRICS
 from regolith_studio.errors import InputError
@@ -22,7 +22,7 @@ TARGETS = {"fit": "surface of the spherical-harmonics fit", "particle": "CT part
 
 
 STOPS = {
-    "faces": "a number of facets",
+    "facets": "a number of facets",
     "triangles": "a number of triangles",
     "error": "the fewest facets whose errors are all small enough",
 }
@@ -46,7 +46,7 @@ class Choices:
         Subdivisions of the icosahedron that the fit is drawn on; 4 gives 5,120 triangles.
     stop_at
         Key of :data:`STOPS`; of the next three numbers only one counts, the others are kept.
-    n_faces
+    n_facets
         Facets asked of the coarsened polyhedron.
     n_triangles
         Most triangles that it may have.
@@ -81,8 +81,8 @@ class Choices:
     reference: str = USUAL.reference
     l_max: int = 10
     level: int = 4
-    stop_at: str = "faces"
-    n_faces: int = 20
+    stop_at: str = "facets"
+    n_facets: int = 20
     n_triangles: int = 68
     largest_error: float = 0.01
     method: str = DEFAULT_METHOD
@@ -98,9 +98,9 @@ class Choices:
     def __post_init__(self) -> None:
         _within("l_max", self.l_max, 0, L_MAX_LIMIT)
         _within("The subdivision level", self.level, *LEVEL_LIMITS)
-        _within("The number of faces", self.n_faces, *FACES_LIMITS)
+        _within("The number of facets", self.n_facets, *FACETS_LIMITS)
         _one_of("number that coarsening stops at", self.stop_at, tuple(STOPS))
-        faces_for_triangles(self.n_triangles)
+        facets_for_triangles(self.n_triangles)
         check_limit(self.largest_error)
         _within("The seed", self.seed, 0, 2**63 - 1)
         _one_of("target of the coarsening", self.target, tuple(TARGETS))
@@ -133,21 +133,21 @@ class Choices:
         return Expansion(self.star_point, self.rule, self.reference)
 
     @property
-    def face_count(self) -> int:
+    def facet_count(self) -> int:
         """Facets that are asked for; where the errors say so, those that studies take."""
-        return faces_for_triangles(self.n_triangles) if self.stop_at == "triangles" else self.n_faces
+        return facets_for_triangles(self.n_triangles) if self.stop_at == "triangles" else self.n_facets
 
     @property
     def fineness(self) -> tuple[int, float | None]:
         """What of :attr:`stop_at` and its numbers makes a difference to a polyhedron."""
-        return (0, self.largest_error) if self.stop_at == "error" else (self.face_count, None)
+        return (0, self.largest_error) if self.stop_at == "error" else (self.facet_count, None)
 
     @property
     def order(self) -> CoarseningOrder:
         """What is asked of a coarsening."""
         return CoarseningOrder(
             weights=self.weights,
-            n_faces=self.face_count,
+            n_facets=self.facet_count,
             method=self.method,
             settings=self.settings,
             seed=self.seed,

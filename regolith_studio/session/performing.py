@@ -171,7 +171,7 @@ def _check_size(recipe: Recipe, n_particles: int) -> None:
     """Refuse a dataset that could not be read again."""
     if recipe.outputs.dataset:
         wish = recipe.representatives
-        check_count(wish.count if wish and wish.count else n_particles, recipe.choices().order.most_faces)
+        check_count(wish.count if wish and wish.count else n_particles, recipe.choices().order.max_facets)
 
 
 def _opened(done: Performed, resume: bool, chunk: int | None) -> Batch:

@@ -30,7 +30,7 @@ DEPENDS_ON: Mapping[Kind, tuple[str, ...]] = {
     Kind.DESCRIPTORS: ("selected", *_EXPANSION, "l_max", "level", "box_metric"),
     Kind.COARSENING: ("selected", "target", "fineness", "method", "settings", "weights", "seed"),
     Kind.LMAX_STUDY: (*_EXPANSION, "level"),
-    Kind.COARSENING_STUDY: ("target", "face_count", "method", "settings", "seed"),
+    Kind.COARSENING_STUDY: ("target", "facet_count", "method", "settings", "seed"),
 }
 """The choices, and what follows from them, that each kind of result depends on."""
 _COARSENING_OF_FIT = (*_EXPANSION, "l_max", "level")

@@ -26,9 +26,9 @@ SAMPLE = "sample:all"
 
 _CHOICES = (
     *("unit", "repair", "star_point", "rule", "reference", "l_max", "level", "target"),
-    *("method", "preset", "stop_at", "n_faces", "n_triangles", "largest_error", "seed", "box_metric"),
+    *("method", "preset", "stop_at", "n_facets", "n_triangles", "largest_error", "seed", "box_metric"),
 )
-Stop = Literal["faces", "triangles", "error"]
+Stop = Literal["facets", "triangles", "error"]
 """Which of the three numbers says how fine polyhedra are."""
 
 
@@ -61,7 +61,7 @@ class Recipe(Strict):
         Names of those of all these particles that are worked on, in this order; all of them, in the order
         of the fields above, where left out.
     stop_at
-        Whether `n_faces`, `n_triangles` (the most) or `largest_error` (a fraction, which the weighted errors
+        Whether `n_facets`, `n_triangles` (the most) or `largest_error` (a fraction, which the weighted errors
         of the fewest facets do not exceed) says how fine polyhedra are.
     representatives
         Which of them the dataset holds, and their sizes; all as they are where left out.
@@ -87,8 +87,8 @@ class Recipe(Strict):
     settings: dict[str, Scalar] = Field(default_factory=dict)
     preset: str = DEFAULT_PRESET
     weights: dict[str, float] | None = None
-    stop_at: Stop = "faces"
-    n_faces: int = 20
+    stop_at: Stop = "facets"
+    n_facets: int = 20
     n_triangles: int = 68
     largest_error: float = 0.01
     seed: int = 0

@@ -58,7 +58,7 @@ def as_python(choices: Choices, source: str) -> str:
         f"weights = LossWeights.of(**{dict(choices.weights)!r})",
         f"settings = settings_of({choices.method!r}, {dict(choices.settings)!r})",
         *_coarsening(choices),
-        "print(done.n_faces, done.errors, done.jaccard_distance)",
+        "print(done.n_facets, done.errors, done.jaccard_distance)",
     ]
     return "\n".join(lines) + "\n"
 
@@ -69,12 +69,12 @@ def _fineness_options(choices: Choices) -> list[str]:
             return ["--triangles", str(choices.n_triangles)]
         case "error":
             return ["--max-error", f"{100 * choices.largest_error:.12g}"]
-    return ["--faces", str(choices.n_faces)]
+    return ["--facets", str(choices.n_facets)]
 
 
 def _coarsening(choices: Choices) -> list[str]:
     """The call that coarsens; of a budget of triangles the number of facets that it allows."""
-    door, fineness = "coarsen", f"n_faces={choices.face_count}"
+    door, fineness = "coarsen", f"n_facets={choices.facet_count}"
     if choices.stop_at == "error":
         door, fineness = "coarsen_below", f"limit={choices.largest_error!r}"
     return [

@@ -12,7 +12,7 @@ CHOSEN = "chosen"
 
 def present_row(choices: Choices) -> StudyRow:
     """What is chosen now, as a row."""
-    return StudyRow("Chosen weights", choices.weights, choices.method, choices.face_count, choices.settings)
+    return StudyRow("Chosen weights", choices.weights, choices.method, choices.facet_count, choices.settings)
 
 
 def loss_names() -> dict[str, str]:
@@ -42,5 +42,5 @@ def varied_rows(key: str, choices: Choices, values: str) -> tuple[StudyRow, ...]
     """
     rows = VARIATIONS[key].rows(present_row(choices), parsed_values(values))
     for row in rows:
-        Choices(n_faces=row.n_faces)
+        Choices(n_facets=row.n_facets)
     return rows

@@ -150,11 +150,11 @@ def _row_errors(
 ) -> tuple[list[float], bool]:
     method = "quadric" if row.is_baseline else row.method
     settings = None if row.is_baseline else dict(row.settings)
-    found = coarsen(target, row.n_faces, method, row.weights, seed, index, settings)
+    found = coarsen(target, row.n_facets, method, row.weights, seed, index, settings)
     if box_metric == "exact" and not row.is_baseline:
         errors = dict(found.errors)
     else:
-        solid = decimated_hull(target, row.n_faces) if row.is_baseline else _in_unit_frame(found)
+        solid = decimated_hull(target, row.n_facets) if row.is_baseline else _in_unit_frame(found)
         errors = relative_errors(wanted, describe(solid, LOSS_KEYS, box_metric))
     return [*[errors[key] for key in LOSS_KEYS], found.jaccard_distance], found.reason is None
 
@@ -166,7 +166,7 @@ def _in_unit_frame(found: Coarsened) -> ConvexPolyhedron:
 def coarsening_study(
     particles: Sequence[Particle],
     rows: Sequence[StudyRow] | None = None,
-    n_faces: int = 20,
+    n_facets: int = 20,
     method: str = DEFAULT_METHOD,
     seed: int = 0,
     settings: Any = None,
@@ -182,14 +182,14 @@ def coarsening_study(
     Parameters
     ----------
     rows
-        The paper's rows with `method`, `n_faces` and `settings` where not given.
+        The paper's rows with `method`, `n_facets` and `settings` where not given.
 
     Raises
     ------
     InputError
         If there is no particle or no row, or no particle can be coarsened.
     """
-    chosen = paper_rows(method, n_faces, **dict(settings or {})) if rows is None else tuple(rows)
+    chosen = paper_rows(method, n_facets, **dict(settings or {})) if rows is None else tuple(rows)
     if not particles or not chosen:
         raise InputError("A study of the coarsening needs at least one particle and one row of weights.")
     work = partial(coarsening_errors, rows=chosen, seed=seed, target=target, box_metric=box_metric)
@@ -237,7 +237,7 @@ def rmsre_table(study: CoarseningStudy) -> Table:
     """Fig. 8 as numbers: a row for each row of weights and each descriptor."""
     values, (low, high) = 100 * study.rmsre, 100 * study.bands
     lines = [
-        (row.label, row.method, row.n_faces, key, values[r, k], low[r, k], high[r, k], study.n_unmet[r])
+        (row.label, row.method, row.n_facets, key, values[r, k], low[r, k], high[r, k], study.n_unmet[r])
         for r, row in enumerate(study.rows)
         for k, key in enumerate(COLUMNS)
     ]
@@ -253,7 +253,7 @@ def rmsre_table(study: CoarseningStudy) -> Table:
 def particle_table(study: CoarseningStudy) -> Table:
     """Relative error of every descriptor of every particle in every row."""
     lines = [
-        (name, row.label, row.method, row.n_faces, *study.errors[i, r])
+        (name, row.label, row.method, row.n_facets, *study.errors[i, r])
         for i, name in enumerate(study.names)
         for r, row in enumerate(study.rows)
     ]

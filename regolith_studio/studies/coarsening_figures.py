@@ -44,9 +44,9 @@ def coarsening_figure(study: CoarseningStudy) -> Figure:
     return figure
 
 
-def face_count_figure(study: CoarseningStudy) -> Figure:
+def facet_count_figure(study: CoarseningStudy) -> Figure:
     """Errors against the number of faces, with bootstrap bands."""
-    counts = [row.n_faces for row in study.rows]
+    counts = [row.n_facets for row in study.rows]
     values, (low, high) = 100 * study.rmsre, 100 * study.bands
     figure = Figure(figsize=(6.0, 4.0), layout="constrained")
     axis = figure.subplots()
@@ -82,8 +82,8 @@ def write_coarsening_study(
         *write_table(particle_table(study), folder, f"{stem}_particles"),
         *write_figure(coarsening_figure(study), folder, f"{stem}_rmsre"),
     )
-    if len({row.n_faces for row in study.rows}) == len(study.rows) > 1:
-        paths += write_figure(face_count_figure(study), folder, f"{stem}_faces")
+    if len({row.n_facets for row in study.rows}) == len(study.rows) > 1:
+        paths += write_figure(facet_count_figure(study), folder, f"{stem}_faces")
     return paths
 
 

@@ -22,7 +22,7 @@ PAPER_ROWS = (
 """Presets that stand for the rows of Fig. 8."""
 ALONE = "only_"
 """Begins the name of a loss with a single descriptor: ``only_volume``."""
-FACE_COUNTS = (8, 12, 16, 20, 30, 50)
+FACET_COUNTS = (8, 12, 16, 20, 30, 50)
 OVERLAP_FACTORS = (0.0, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0)
 CHANGE_FACTORS = (0.0, 4.0)
 GROUPS: Mapping[str, tuple[str, ...]] = {
@@ -47,7 +47,7 @@ class StudyRow:
         Of the loss; all 0 stands for the quadric start itself.
     method
         Key of the coarsening method.
-    n_faces
+    n_facets
         Facets.
     settings
         Of the method, as (name, value) pairs.
@@ -56,7 +56,7 @@ class StudyRow:
     label: str
     weights: LossWeights
     method: str = DEFAULT_METHOD
-    n_faces: int = 20
+    n_facets: int = 20
     settings: tuple[tuple[str, Any], ...] = ()
 
     @property
@@ -102,13 +102,13 @@ def loss_rows(names: Sequence[str], like: StudyRow) -> tuple[StudyRow, ...]:
     return tuple(like.relabelled(known[name].label, weights=known[name].weights) for name in names)
 
 
-def paper_rows(method: str = DEFAULT_METHOD, n_faces: int = 20, **settings: Any) -> tuple[StudyRow, ...]:
+def paper_rows(method: str = DEFAULT_METHOD, n_facets: int = 20, **settings: Any) -> tuple[StudyRow, ...]:
     """The rows of Fig. 8, coarsened by `method`."""
-    like = StudyRow("", LossWeights.of(), method, n_faces, tuple(settings.items()))
+    like = StudyRow("", LossWeights.of(), method, n_facets, tuple(settings.items()))
     return loss_rows(PAPER_ROWS, like)
 
 
-def face_count_rows(like: StudyRow, counts: Sequence[float] = FACE_COUNTS) -> tuple[StudyRow, ...]:
+def facet_count_rows(like: StudyRow, counts: Sequence[float] = FACET_COUNTS) -> tuple[StudyRow, ...]:
     """One row for each number of faces, ascending.
 
     Raises
@@ -119,7 +119,7 @@ def face_count_rows(like: StudyRow, counts: Sequence[float] = FACE_COUNTS) -> tu
     for count in counts:
         if count != int(count):
             raise InputError(f"Numbers of faces are whole numbers, got {count:g}.")
-    return tuple(like.relabelled(f"{int(count)} faces", n_faces=int(count)) for count in sorted(set(counts)))
+    return tuple(like.relabelled(f"{int(count)} faces", n_facets=int(count)) for count in sorted(set(counts)))
 
 
 def tradeoff_rows(like: StudyRow, factors: Sequence[float] = OVERLAP_FACTORS) -> tuple[StudyRow, ...]:

@@ -108,5 +108,5 @@ def _numbers(found: StudiedSolid | str) -> tuple[Cell, ...]:
     errors = [100 * found.errors[key] for key in LOSS_KEYS]
     bounds = [100 * found.bounds[key] for key in (*LOSS_KEYS, JACCARD)]
     solid = found.polyhedron
-    counts = (found.method, solid.n_faces, solid.n_vertices, solid.n_triangles)
+    counts = (found.method, solid.n_facets, solid.n_vertices, solid.n_triangles)
     return (*counts, *errors, 100 * found.jaccard_distance, *bounds, found.loss, found.reason)

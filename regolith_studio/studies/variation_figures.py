@@ -8,7 +8,7 @@ from matplotlib.colors import TwoSlopeNorm
 from matplotlib.figure import Figure
 
 from regolith_studio.studies.coarsening import COLUMNS, CoarseningStudy, particle_table
-from regolith_studio.studies.coarsening_figures import column_symbol, face_count_figure
+from regolith_studio.studies.coarsening_figures import column_symbol, facet_count_figure
 from regolith_studio.studies.figure_files import write_figure
 from regolith_studio.studies.tables import write_table
 from regolith_studio.studies.variations import (
@@ -87,7 +87,7 @@ def sensitivity_figure(study: CoarseningStudy) -> Figure:
 
 
 FIGURES: Mapping[str, Callable[[CoarseningStudy], Figure]] = {
-    "faces": face_count_figure,
+    "faces": facet_count_figure,
     "tradeoff": tradeoff_figure,
     "sensitivity": sensitivity_figure,
 }

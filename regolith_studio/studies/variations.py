@@ -15,10 +15,10 @@ from regolith_studio.studies.coarsening import COLUMNS, CoarseningStudy, rmsre_t
 from regolith_studio.studies.loss_rows import (
     CHANGE_FACTORS,
     CONDITION_METHODS,
-    FACE_COUNTS,
+    FACET_COUNTS,
     OVERLAP_FACTORS,
     StudyRow,
-    face_count_rows,
+    facet_count_rows,
     sensitivity_rows,
     tradeoff_rows,
 )
@@ -185,8 +185,8 @@ VARIATIONS: Mapping[str, Variation] = {
             "faces",
             "Error against the number of faces",
             "Numbers of faces",
-            tuple(map(float, FACE_COUNTS)),
-            face_count_rows,
+            tuple(map(float, FACET_COUNTS)),
+            facet_count_rows,
             rmsre_table,
         ),
         Variation(

@@ -9,5 +9,5 @@ def fineness_words(choices: Choices) -> str:
     if choices.stop_at == "error":
         limit = f"{100 * choices.largest_error:g}"
         return tr("the fewest facets with all errors below {limit} %", limit=limit)
-    faces = choices.face_count
+    faces = choices.facet_count
     return tr("at most {faces} facets, {triangles} triangles", faces=faces, triangles=4 * faces - 12)

@@ -18,7 +18,7 @@ def test_that_cement_particles_become_polyhedra_of_their_volume(
     said = command("coarsen", *files, "-o", tmp_path / "c", "--json")
     assert said.code == 0
     for entry in json.loads((tmp_path / "c" / "coarsening.json").read_text())["particles"]:
-        assert entry["n_faces"] == 20
+        assert entry["n_facets"] == 20
         assert entry["errors"]["volume"] < 0.1
 
 

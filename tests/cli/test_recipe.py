@@ -8,7 +8,7 @@ from regolith_studio.cli.entry import run
 
 def recipe(folder: Path, grains: Path, **entries: object) -> Path:
     path = folder / "recipe.json"
-    base = {"inputs": [str(grains)], "method": "quadric", "level": 2, "l_max": 4, "n_faces": 12}
+    base = {"inputs": [str(grains)], "method": "quadric", "level": 2, "l_max": 4, "n_facets": 12}
     path.write_text(json.dumps(base | entries))
     return path
 
@@ -47,7 +47,7 @@ def test_that_a_recipe_stops_at_an_error_as_the_commands_do(command, grains: Pat
     assert command("dataset", "build", *common, "-o", tmp_path / "set").code == 0
     for name in ("out/dataset", "set"):
         metadata = json.loads((tmp_path / name / "dataset.json").read_text())["metadata"]
-        assert (metadata["coarsening"]["n_faces"], metadata["coarsening"]["largest_error"]) == (200, 0.02)
+        assert (metadata["coarsening"]["n_facets"], metadata["coarsening"]["largest_error"]) == (200, 0.02)
 
 
 def test_that_another_seed_can_be_given(command, grains: Path, tmp_path: Path) -> None:
@@ -64,7 +64,7 @@ def test_that_inputs_are_found_beside_the_recipe(command, grains: Path, tmp_path
 
 
 def test_that_a_bad_recipe_is_one_sentence(command, grains: Path, tmp_path: Path) -> None:
-    for entries in ({"n_faces": 1}, {"lmax": 3}, {"inputs": ["nowhere.stl"]}):
+    for entries in ({"n_facets": 1}, {"lmax": 3}, {"inputs": ["nowhere.stl"]}):
         said = command("run", recipe(tmp_path, grains, **entries), "-o", tmp_path / "out")
         assert said.code == 1
         assert len(said.err.strip().splitlines()) == 1
@@ -121,7 +121,7 @@ def test_that_representatives_and_exports_are_those_of_the_dataset_commands(
     whole = {"seed": 5, "level": 4, "representatives": STANDING}
     wish = recipe(tmp_path, grains, **whole, exports=exports)
     assert command("run", wish, "-o", tmp_path / "out").code == 0
-    shape = ("--method", "quadric", "--l-max", 4, "--faces", 12, "--seed", 5)
+    shape = ("--method", "quadric", "--l-max", 4, "--facets", 12, "--seed", 5)
     chosen = ("--representatives", 2, "--weighting", "volume", "--size-importance", 0.5)
     sizes = ("--sizes", "classes:5,9,20", "--name", "two")
     built = command("dataset", "build", grains, "-o", tmp_path / "ds", *shape, *chosen, *sizes)
@@ -146,7 +146,7 @@ def test_that_sizes_can_be_changed_where_each_particle_stands_for_itself(
     each = {"count": 0, "sizes": "log-normal:50,0.4", "name": "all"}
     wish = recipe(tmp_path, grains, level=4, representatives=each)
     assert command("run", wish, "-o", tmp_path / "out").code == 0
-    shape = ("--method", "quadric", "--l-max", 4, "--faces", 12)
+    shape = ("--method", "quadric", "--l-max", 4, "--facets", 12)
     sizes = ("--sizes", "log-normal:50,0.4", "--name", "all")
     assert command("dataset", "build", grains, "-o", tmp_path / "ds", *shape, *sizes).code == 0
     assert tree(tmp_path / "out" / "dataset") == tree(tmp_path / "ds")

@@ -67,7 +67,7 @@ def test_that_a_fit_can_be_named_by_either_of_its_files(command, grains: Path, t
 def test_that_coarsening_writes_convex_bodies_that_another_program_reads(
     command, grains: Path, tmp_path: Path
 ) -> None:
-    said = command("coarsen", grains, "-o", tmp_path / "c", "--faces", 16, "--method", "quadric", "--json")
+    said = command("coarsen", grains, "-o", tmp_path / "c", "--facets", 16, "--method", "quadric", "--json")
     assert said.code == 0
     document = json.loads((tmp_path / "c" / "coarsening.json").read_text())
     assert said.json == document
@@ -77,7 +77,7 @@ def test_that_coarsening_writes_convex_bodies_that_another_program_reads(
         assert len(body.faces) == entry["n_triangles"]
         assert body.volume == pytest.approx(entry["achieved"]["volume"], rel=1e-4)
         assert body.convex_hull.volume == pytest.approx(body.volume, rel=1e-4)
-        assert entry["n_faces"] == entry["n_faces_asked"] == 16
+        assert entry["n_facets"] == entry["n_facets_asked"] == 16
 
 
 def without_seconds(path: Path) -> bytes:
@@ -90,7 +90,7 @@ def without_seconds(path: Path) -> bytes:
 
 
 def test_that_the_number_of_processes_changes_no_byte(command, grains: Path, tmp_path: Path) -> None:
-    common = ("coarsen", grains, "--faces", 12, "--seed", 3, "--l-max", 4)
+    common = ("coarsen", grains, "--facets", 12, "--seed", 3, "--l-max", 4)
     assert command(*common, "-o", tmp_path / "one", "--jobs", 1).code == 0
     assert command(*common, "-o", tmp_path / "two", "--jobs", 2).code == 0
     names = sorted(path.name for path in (tmp_path / "one").iterdir())
@@ -102,11 +102,11 @@ def test_that_the_number_of_processes_changes_no_byte(command, grains: Path, tmp
 @pytest.mark.parametrize(
     "options",
     [
-        ("--faces", 2),
+        ("--facets", 2),
         ("--triangles", 4),
         ("--max-error", 0),
         ("--max-error", "nan"),
-        ("--faces", 30, "--triangles", 100),
+        ("--facets", 30, "--triangles", 100),
         ("--triangles", 100, "--max-error", 1),
         ("--method", "magic"),
         ("--preset", "favourites"),
@@ -151,7 +151,7 @@ def test_that_a_weight_of_zero_alone_is_taken_out_of_the_usual_ones(
 def test_that_a_budget_of_triangles_is_kept(command, grains: Path, tmp_path: Path) -> None:
     said = command("coarsen", grains / "grain-b.stl", "-o", tmp_path, "--triangles", 59, "--json")
     (entry,) = said.json["particles"]
-    assert entry["n_faces"] == 17
+    assert entry["n_facets"] == 17
     assert len(trimesh.load_mesh(tmp_path / "grain-b.stl").faces) == 56
 
 
@@ -162,15 +162,15 @@ def test_that_the_fewest_facets_below_an_error_are_found(command, grains: Path, 
     assert said.json["order"]["largest_error"] == 0.01
     kept = ("volume", "sphericity", "min_diameter", "max_diameter", "aspect_ratio")
     assert max(entry["errors"][key] for key in kept) <= 0.01
-    if entry["n_faces"] > 5:
-        fewer = command(*common, "-o", tmp_path / "fewer", "--faces", entry["n_faces"] - 1)
+    if entry["n_facets"] > 5:
+        fewer = command(*common, "-o", tmp_path / "fewer", "--facets", entry["n_facets"] - 1)
         assert max(fewer.json["particles"][0]["errors"][key] for key in kept) > 0.01
 
 
 def test_that_errors_bounds_and_reasons_are_shown(command, grains: Path, tmp_path: Path) -> None:
-    said = command("coarsen", grains / "grain-b.stl", "-o", tmp_path, "--faces", 5, "--json")
+    said = command("coarsen", grains / "grain-b.stl", "-o", tmp_path, "--facets", 5, "--json")
     (entry,) = said.json["particles"]
-    shown = command("coarsen", grains / "grain-b.stl", "-o", tmp_path, "--faces", 5)
+    shown = command("coarsen", grains / "grain-b.stl", "-o", tmp_path, "--facets", 5)
     for word in ("facets", "vertices", "triangles", "Jaccard"):
         assert word in shown.out
     if entry["bounds"]["convex_hull_volume"] > 1e-6:
@@ -184,7 +184,7 @@ def test_that_a_particle_that_fails_does_not_stop_the_others(command, grains: Pa
     faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]
     trimesh.Trimesh(corners, faces, process=False).export(tmp_path / "four.stl")
     said = command(
-        "coarsen", grains / "grain-a.stl", tmp_path / "four.stl", "-o", tmp_path / "c", "--faces", 20,
+        "coarsen", grains / "grain-a.stl", tmp_path / "four.stl", "-o", tmp_path / "c", "--facets", 20,
         "--method", "quadric", "--target", "particle", "--json",
     )  # fmt: skip
     assert said.code == 1

@@ -10,7 +10,7 @@ import pytest
 def test_that_only_the_exact_box_is_kept_to_rounding(command, grains: Path, tmp_path: Path, box, met) -> None:
     said = command(
         "study", "coarsening", grains / "grain-a.stl", "-o", tmp_path, "--target", "particle",
-        "--faces", 30, "--box", box, "--json",
+        "--facets", 30, "--box", box, "--json",
     )  # fmt: skip
     assert said.code == 0
     with (tmp_path / "coarsening_rmsre.csv").open(newline="") as file:

@@ -15,7 +15,7 @@ STUDIES: dict[str, tuple[Any, str, tuple[object, ...]]] = {
     "sensitivity": (
         coarsening,
         "coarsening_errors",
-        ("--method", "annealing", "--set", "iterations=5", "--weight", "volume=1", "--faces", 12),
+        ("--method", "annealing", "--set", "iterations=5", "--weight", "volume=1", "--facets", 12),
     ),
     "solids": (solids, "solids_of", ("--method", "quadric", "--loss", "all", "--loss", "only_volume")),
     "lmax": (lmax, "errors_or_reason", ("--degrees", "1,4", "--level", 2)),

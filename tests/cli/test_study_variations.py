@@ -15,7 +15,7 @@ def rows_of(path: Path) -> list[dict[str, str]]:
 
 def test_that_errors_against_faces_are_written(command, grains: Path, tmp_path: Path) -> None:
     said = command(
-        "study", "faces", grains, "-o", tmp_path / "s", "--faces", "10,30", "--method", "quadric", *ONE
+        "study", "faces", grains, "-o", tmp_path / "s", "--facets", "10,30", "--method", "quadric", *ONE
     )
     assert said.code == 0, said.err
     assert set(said.json["files"]) >= {f"faces.{end}" for end in ("csv", "json", "png", "svg")}
@@ -25,7 +25,7 @@ def test_that_errors_against_faces_are_written(command, grains: Path, tmp_path: 
 
 
 def test_that_the_trade_off_begins_with_the_best_overlap(command, grains: Path, tmp_path: Path) -> None:
-    said = command("study", "tradeoff", grains / "grain-a.stl", "-o", tmp_path / "s", "--faces", 30, *ONE)
+    said = command("study", "tradeoff", grains / "grain-a.stl", "-o", tmp_path / "s", "--facets", 30, *ONE)
     assert said.code == 0, said.err
     rows = rows_of(tmp_path / "s" / "tradeoff.csv")
     distance = [float(row["jaccard_distance [%]"]) for row in rows]
@@ -37,7 +37,7 @@ def test_that_the_trade_off_begins_with_the_best_overlap(command, grains: Path, 
 
 def test_that_one_weight_at_a_time_is_changed(command, grains: Path, tmp_path: Path) -> None:
     chosen = ("--weight", "volume=1", "--weight", "jaccard_distance=1", "--method", "annealing")
-    quick = ("--set", "iterations=5", "--faces", 12, "--factors", "0,2")
+    quick = ("--set", "iterations=5", "--facets", 12, "--factors", "0,2")
     said = command(
         "study", "sensitivity", grains / "grain-a.stl", "-o", tmp_path / "s", *chosen, *quick, *ONE
     )
@@ -48,7 +48,7 @@ def test_that_one_weight_at_a_time_is_changed(command, grains: Path, tmp_path: P
 
 def test_that_the_polyhedra_of_each_loss_are_drawn(command, grains: Path, tmp_path: Path) -> None:
     losses = ("--loss", "quadric", "--loss", "only_volume")
-    said = command("study", "solids", grains, "-o", tmp_path / "s", "--faces", 12, *losses, *ONE)
+    said = command("study", "solids", grains, "-o", tmp_path / "s", "--facets", 12, *losses, *ONE)
     assert said.code == 0, said.err
     assert set(said.json["files"]) == {f"solids.{end}" for end in ("csv", "json", "png", "svg")}
     rows = rows_of(tmp_path / "s" / "solids.csv")
@@ -60,7 +60,7 @@ def test_that_the_polyhedra_of_each_loss_are_drawn(command, grains: Path, tmp_pa
 def test_that_any_losses_can_be_the_rows_of_figure_8(command, grains: Path, tmp_path: Path) -> None:
     losses = ("--loss", "only_volume", "--loss", "chosen", "--weight", "sphericity=1")
     said = command(
-        "study", "coarsening", grains / "grain-a.stl", "-o", tmp_path / "s", "--faces", 30, *losses, *ONE
+        "study", "coarsening", grains / "grain-a.stl", "-o", tmp_path / "s", "--facets", 30, *losses, *ONE
     )
     assert said.code == 0, said.err
     rows = rows_of(tmp_path / "s" / "coarsening_rmsre.csv")
@@ -73,8 +73,8 @@ def test_that_any_losses_can_be_the_rows_of_figure_8(command, grains: Path, tmp_
 @pytest.mark.parametrize(
     ("wrong", "sentence"),
     [
-        (("faces", "--faces", "12,many"), "numbers with commas"),
-        (("faces", "--faces", "3,12"), "from 5 to 200, got 3"),
+        (("faces", "--facets", "12,many"), "numbers with commas"),
+        (("faces", "--facets", "3,12"), "from 5 to 200, got 3"),
         (("tradeoff", "--method", "quadric"), "Quadric decimation has no loss"),
         (("tradeoff", "--preset", "overlap"), "at least one descriptor"),
         (("sensitivity", "--factors", "-1"), "0 or a positive number"),

@@ -32,23 +32,23 @@ def coin(radius: float) -> Mesh:
     return Mesh(np.vstack(ends), NO_FACES).hull
 
 
-def errors_by_scipy(target: Target, n_faces: int) -> FloatArray:
-    found = coarsen(target, n_faces)
-    assert (found.n_faces, found.reason) == (n_faces, None)
+def errors_by_scipy(target: Target, n_facets: int) -> FloatArray:
+    found = coarsen(target, n_facets)
+    assert (found.n_facets, found.reason) == (n_facets, None)
     planes = target.in_unit_frame(found.half_spaces)
     values = measured(planes.normals, planes.offsets, 2.0)
     return np.array([abs(values[key] / target.descriptors[key] - 1.0) for key in KEPT])
 
 
 @pytest.mark.parametrize("scales", [(10.0, 10.0, 1.0), (20.0, 20.0, 1.0), (10.0, 9.0, 1.0), (2.0, 2.0, 1.0)])
-@pytest.mark.parametrize("n_faces", [12, 20, 50])
-def test_that_bricks_with_rounded_corners_are_met(scales: tuple[float, ...], n_faces: int) -> None:
-    assert errors_by_scipy(Target.of(rounded_brick(*scales)), n_faces).max() <= 1e-6
+@pytest.mark.parametrize("n_facets", [12, 20, 50])
+def test_that_bricks_with_rounded_corners_are_met(scales: tuple[float, ...], n_facets: int) -> None:
+    assert errors_by_scipy(Target.of(rounded_brick(*scales)), n_facets).max() <= 1e-6
 
 
-@pytest.mark.parametrize("n_faces", [20, 50])
-def test_that_a_coin_is_met(n_faces: int) -> None:
-    assert errors_by_scipy(Target.of(coin(2.0)), n_faces).max() <= 1e-6
+@pytest.mark.parametrize("n_facets", [20, 50])
+def test_that_a_coin_is_met(n_facets: int) -> None:
+    assert errors_by_scipy(Target.of(coin(2.0)), n_facets).max() <= 1e-6
 
 
 def test_that_a_smooth_needle_is_met_with_twelve_facets_or_has_a_reason() -> None:
@@ -89,5 +89,5 @@ def test_that_a_box_with_a_corner_cut_off_gets_a_hundred_facets() -> None:
     ends = [(a, b) for a in inside for b in box[box @ normal > 2.2] if np.count_nonzero(a != b) == 1]
     cut = [a + (b - a) * (2.2 - a @ normal) / ((b - a) @ normal) for a, b in ends]
     found = coarsen(Mesh(np.vstack([inside, *cut]), NO_FACES).hull, 100)
-    assert (found.n_faces, found.reason) == (100, None)
+    assert (found.n_facets, found.reason) == (100, None)
     assert max(found.errors[key] for key in KEPT) <= 1e-6

@@ -2,7 +2,7 @@
 
 import pytest
 
-from regolith_studio.coarsening.budgets import Trial, coarsen_below, faces_for_triangles, fewest_faces
+from regolith_studio.coarsening.budgets import Trial, coarsen_below, facets_for_triangles, fewest_faces
 from regolith_studio.coarsening.coarsen import coarsen
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.errors import InputError
@@ -11,19 +11,19 @@ from regolith_studio.geometry.mesh import Mesh
 
 @pytest.mark.parametrize(("triangles", "faces"), [(8, 5), (67, 19), (68, 20), (10_000, 200)])
 def test_that_a_budget_of_triangles_is_never_exceeded(triangles: int, faces: int) -> None:
-    assert faces_for_triangles(triangles) == faces
+    assert facets_for_triangles(triangles) == faces
     assert min(4 * faces - 12, 788) <= triangles
 
 
 def test_that_too_few_triangles_are_refused() -> None:
     with pytest.raises(InputError, match="7 triangles are too few"):
-        faces_for_triangles(7)
+        facets_for_triangles(7)
 
 
 @pytest.mark.parametrize("triangles", [8.5, True])
 def test_that_triangles_are_counted_in_whole_numbers(triangles: float) -> None:
     with pytest.raises(InputError, match="whole number"):
-        faces_for_triangles(triangles)  # type: ignore[arg-type]
+        facets_for_triangles(triangles)  # type: ignore[arg-type]
 
 
 def test_that_the_fewest_faces_meet_the_limit_and_one_less_does_not(particle: Mesh) -> None:
@@ -39,10 +39,10 @@ def test_that_the_fewest_faces_meet_the_limit_and_one_less_does_not(particle: Me
             tried.append(step)
         else:
             counted.append(step.step)
-    failed = [trial.n_faces for trial in tried if trial.largest_error > 0.01]
-    assert found.n_faces_asked not in failed
-    assert found.n_faces_asked == 5 or found.n_faces_asked - 1 in failed
-    assert coarsen(particle, found.n_faces_asked, settings={"retries": 1}).errors == found.errors
+    failed = [trial.n_facets for trial in tried if trial.largest_error > 0.01]
+    assert found.n_facets_asked not in failed
+    assert found.n_facets_asked == 5 or found.n_facets_asked - 1 in failed
+    assert coarsen(particle, found.n_facets_asked, settings={"retries": 1}).errors == found.errors
     assert coarsen_below(particle, 0.01, settings={"retries": 1}).errors == found.errors
     assert counted == sorted(counted)
 
@@ -52,9 +52,9 @@ def test_that_a_limit_out_of_reach_gives_the_least_error_and_says_so(particle: M
     found = coarsen_below(particle, 1e-9, method="quadric", weights=weights)
     assert found.reason is not None
     assert found.reason.startswith("Not even 200 faces bring all errors below 1e-07 %: the least is ")
-    assert f" %, with {found.n_faces_asked} faces." in found.reason
-    for n_faces in (5, 20, 200):
-        other = coarsen(particle, n_faces, "quadric", weights)
+    assert f" %, with {found.n_facets_asked} faces." in found.reason
+    for n_facets in (5, 20, 200):
+        other = coarsen(particle, n_facets, "quadric", weights)
         assert max(other.errors["volume"], other.errors["sphericity"]) >= max(
             found.errors["volume"] - found.bounds["volume"], found.errors["sphericity"]
         )

@@ -35,22 +35,22 @@ def urchin() -> Mesh:
     return Mesh(ball.vertices * (1.0 + 0.8 * np.exp(-400.0 * (1.0 - nearest)))[:, None], ball.faces)
 
 
-@pytest.mark.parametrize("n_faces", [12, 20, 50])
-def test_that_a_ball_becomes_nearly_as_round_as_goldberg_allows(n_faces: int) -> None:
-    found = coarsen(egg(1.0, 0.99, 0.98), n_faces, "exact")
-    most = greatest_sphericity(n_faces)
+@pytest.mark.parametrize("n_facets", [12, 20, 50])
+def test_that_a_ball_becomes_nearly_as_round_as_goldberg_allows(n_facets: int) -> None:
+    found = coarsen(egg(1.0, 0.99, 0.98), n_facets, "exact")
+    most = greatest_sphericity(n_facets)
     assert 0.99 * most < found.achieved["sphericity"] <= most
     assert max(found.errors[key] for key in REST) <= 1e-6
-    assert found.n_faces == n_faces
+    assert found.n_facets == n_facets
     assert found.reason is not None
-    assert f"with {n_faces} the most is {most:.3f}" in found.reason
+    assert f"with {n_facets} the most is {most:.3f}" in found.reason
 
 
 @pytest.mark.parametrize(
-    ("axes", "n_faces"), [((1.25, 1.1, 1.0), 20), ((1.3, 1.0, 0.9), 30), ((1.0, 0.9, 0.8), 30)]
+    ("axes", "n_facets"), [((1.25, 1.1, 1.0), 20), ((1.3, 1.0, 0.9), 30), ((1.0, 0.9, 0.8), 30)]
 )
 def test_that_no_box_is_overlooked_where_the_sphericity_cannot_be_met(
-    axes: tuple[float, float, float], n_faces: int
+    axes: tuple[float, float, float], n_facets: int
 ) -> None:
     """Another box was the least, up to 14 per cent off in the aspect ratio; which, is a matter of rounding.
 
@@ -59,7 +59,7 @@ def test_that_no_box_is_overlooked_where_the_sphericity_cannot_be_met(
     turn = np.linalg.qr(np.random.default_rng(5).normal(size=(3, 3)))[0]
     shape = egg(*axes)
     for particle_index in range(4):
-        found = coarsen(Mesh(shape.vertices @ turn, shape.faces), n_faces, particle_index=particle_index)
+        found = coarsen(Mesh(shape.vertices @ turn, shape.faces), n_facets, particle_index=particle_index)
         assert max(found.errors[key] for key in REST) <= 1e-6
 
 
@@ -70,7 +70,7 @@ def test_that_a_ball_is_given_up_after_one_start() -> None:
 def test_that_an_egg_whose_sphericity_can_just_be_reached_is_met() -> None:
     found = coarsen(egg(1.0, 0.8, 0.6), 100, "exact")
     assert max(found.errors[key] for key in (*REST, "sphericity")) <= 1e-6
-    assert found.n_faces == 100
+    assert found.n_facets == 100
     assert found.reason is None
 
 
@@ -81,16 +81,16 @@ def test_that_what_cannot_be_met_ends_at_the_least_loss_that_was_shown() -> None
     assert found.loss == pytest.approx(min(found.loss_history), abs=2e-3)
 
 
-@pytest.mark.parametrize(("n_faces", "seed"), [(12, 0), (12, 1), (20, 1), (30, 0), (30, 2), (50, 2)])
+@pytest.mark.parametrize(("n_facets", "seed"), [(12, 0), (12, 1), (20, 1), (30, 0), (30, 2), (50, 2)])
 def test_that_an_urchin_keeps_volume_and_length_and_more_faces_are_not_advised(
-    n_faces: int, seed: int
+    n_facets: int, seed: int
 ) -> None:
     mesh = urchin()
-    found = coarsen(mesh, n_faces, "exact", seed=seed)
+    found = coarsen(mesh, n_facets, "exact", seed=seed)
     assert found.achieved["surface_area"] < describe(mesh)["surface_area"]
     assert max(found.errors[key] for key in ("volume", "max_diameter")) <= 1e-6
     assert found.errors["min_diameter"] < 0.4
-    assert found.n_faces == n_faces
+    assert found.n_facets == n_facets
     assert found.reason is not None
     assert "less surface" in found.reason
     assert "more faces" not in found.reason

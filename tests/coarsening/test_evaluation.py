@@ -21,9 +21,9 @@ from regolith_studio.geometry.oriented_box import minimum_volume_box
 from tests.geometry.solids import rough_stone
 
 
-def planes_of(target: Target, n_faces: int) -> HalfSpaces:
+def planes_of(target: Target, n_facets: int) -> HalfSpaces:
     """Planes of the decimated hull with its ties broken."""
-    planes = quadric_half_spaces(target, n_faces)
+    planes = quadric_half_spaces(target, n_facets)
     return HalfSpaces(
         planes.normals, planes.offsets * (1 + 1e-6 * np.random.default_rng(0).random(len(planes)))
     )
@@ -54,10 +54,10 @@ def test_that_half_spaces_that_bound_nothing_have_an_infinite_loss() -> None:
 
 
 @pytest.mark.parametrize("seed", range(6))
-@pytest.mark.parametrize("n_faces", [6, 20, 60])
-def test_that_the_quick_box_is_the_least_with_a_side_on_a_facet(n_faces: int, seed: int) -> None:
+@pytest.mark.parametrize("n_facets", [6, 20, 60])
+def test_that_the_quick_box_is_the_least_with_a_side_on_a_facet(n_facets: int, seed: int) -> None:
     target = Target.of(rough_stone(seed))
-    planes = planes_of(target, n_faces)
+    planes = planes_of(target, n_facets)
     normals, offsets = np.array(planes.normals), np.array(planes.offsets)
     _, vertices, triples = intersect(normals, offsets)
     edges = edges_of(triples, len(offsets))
@@ -80,10 +80,10 @@ def test_that_the_quick_box_is_the_least_with_a_side_on_a_facet(n_faces: int, se
 
 
 @pytest.mark.parametrize("seed", range(6))
-@pytest.mark.parametrize("n_faces", [6, 12, 20, 60])
-def test_that_the_least_box_is_the_public_one(n_faces: int, seed: int) -> None:
+@pytest.mark.parametrize("n_facets", [6, 12, 20, 60])
+def test_that_the_least_box_is_the_public_one(n_facets: int, seed: int) -> None:
     target = Target.of(rough_stone(seed))
-    planes = planes_of(target, n_faces)
+    planes = planes_of(target, n_facets)
     # a corner is cut so little that some edges are too short to have a direction
     solid = ConvexPolyhedron.from_half_spaces(planes)
     corner = solid.vertices[seed]

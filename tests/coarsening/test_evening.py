@@ -59,20 +59,20 @@ def test_that_facet_areas_change_as_differences_by_scipy(seed: int) -> None:
     )
 
 
-@pytest.mark.parametrize("n_faces", [35, pytest.param(50, marks=pytest.mark.slow)])
-def test_that_small_facets_grow_and_nothing_is_lost(n_faces: int, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("n_facets", [35, pytest.param(50, marks=pytest.mark.slow)])
+def test_that_small_facets_grow_and_nothing_is_lost(n_facets: int, monkeypatch: pytest.MonkeyPatch) -> None:
     small = {True: [], False: []}
     for seed in range(3):
         target = Target.of(pebble(seed))
         found = {}
         for evens in (True, False):
             monkeypatch.setattr(search, "has_small_facets", has_small_facets if evens else lambda *_: False)
-            found[evens] = coarsen(target, n_faces)
+            found[evens] = coarsen(target, n_facets)
             planes = target.in_unit_frame(found[evens].half_spaces)
             areas = areas_by_scipy(planes.normals, planes.offsets)
             small[evens].append(float(np.mean(areas < 0.01 * areas.mean())))
         even = found[True]
-        assert (even.n_faces, even.reason) == (n_faces, None)
+        assert (even.n_facets, even.reason) == (n_facets, None)
         assert even.jaccard_distance <= found[False].jaccard_distance + 2e-3
         planes = target.in_unit_frame(even.half_spaces)
         values = measured(planes.normals, planes.offsets, 2.0)
@@ -95,8 +95,8 @@ def test_that_the_polyhedron_with_larger_facets_is_told_as_the_last_step(
     np.testing.assert_allclose(told[-1].polyhedron.half_spaces.offsets, result.half_spaces.offsets, rtol=1e-9)
 
 
-def steps_of(target: Target, n_faces: int) -> tuple[list[CoarseningProgress], Coarsened]:
-    steps, told = coarsening_steps(target, n_faces), []
+def steps_of(target: Target, n_facets: int) -> tuple[list[CoarseningProgress], Coarsened]:
+    steps, told = coarsening_steps(target, n_facets), []
     while True:
         try:
             told.append(next(steps))

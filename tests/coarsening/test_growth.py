@@ -39,7 +39,7 @@ def facets_by_scipy(planes: HalfSpaces) -> int:
 def test_that_rough_particles_get_a_hundred_facets_and_keep_all_descriptors(rough: Coarsened) -> None:
     assert max(rough.errors[key] for key in CONDITIONS) <= 1e-6
     assert rough.reason is None
-    assert rough.n_faces == 100
+    assert rough.n_facets == 100
     assert (rough.n_vertices, rough.n_triangles) == (196, 388)
 
 
@@ -59,11 +59,11 @@ def test_that_medium_numbers_of_facets_are_met_and_cost_no_overlap() -> None:
     overlap = dict.fromkeys((20, 30, 50), 0.0)
     for seed in range(6):
         target = Target.of(bumpy(seed, roughness=0.3))
-        for n_faces in overlap:
-            found = coarsen(target, n_faces, "exact")
+        for n_facets in overlap:
+            found = coarsen(target, n_facets, "exact")
             assert found.reason is None
-            assert found.n_faces == n_faces
-            overlap[n_faces] += found.jaccard_distance / 6
+            assert found.n_facets == n_facets
+            overlap[n_facets] += found.jaccard_distance / 6
     assert max(overlap[30], overlap[50]) < overlap[20] + 0.002
 
 
@@ -81,12 +81,12 @@ def test_that_surface_beyond_the_hull_is_that_of_volume_and_area_by_scipy() -> N
 
 def test_that_the_number_asked_for_is_always_among_those_to_start_with() -> None:
     rough, round_ball = Target.of(bumpy(2, roughness=0.3)), Target.of(icosphere(3))
-    for n_faces in (5, 20, 24, 26, 50, 63, 200):
+    for n_facets in (5, 20, 24, 26, 50, 63, 200):
         for keeps_sphericity in (False, True):
-            numbers = numbers_to_grow_from(rough, n_faces, keeps_sphericity)
-            assert n_faces in numbers
+            numbers = numbers_to_grow_from(rough, n_facets, keeps_sphericity)
+            assert n_facets in numbers
             assert len(set(numbers)) == len(numbers)
-            assert max(numbers) == n_faces
+            assert max(numbers) == n_facets
     assert numbers_to_grow_from(rough, 20, True)[0] == 20
     assert numbers_to_grow_from(rough, 15, True) == (15,)
     assert numbers_to_grow_from(rough, 100, True)[0] < 100
@@ -111,16 +111,16 @@ def test_that_waiting_half_spaces_leave_a_cube_a_cube() -> None:
 
 def test_that_an_octahedron_has_all_facets_or_says_why_not() -> None:
     octahedron = Mesh(np.vstack([np.eye(3), -np.eye(3)]), np.empty((0, 3), dtype=np.int64)).hull
-    for n_faces in (12, 20, 50):
-        found = coarsen(octahedron, n_faces, "exact")
+    for n_facets in (12, 20, 50):
+        found = coarsen(octahedron, n_facets, "exact")
         assert max(found.errors[key] for key in CONDITIONS) <= 1e-6
-        if found.n_faces < n_faces:
+        if found.n_facets < n_facets:
             assert found.reason is not None
-            assert f"{found.n_faces} facets instead of {n_faces}" in found.reason
+            assert f"{found.n_facets} facets instead of {n_facets}" in found.reason
 
 
 @pytest.mark.parametrize(
-    ("axes", "n_faces"),
+    ("axes", "n_facets"),
     [
         ((10.0, 10.0, 1.0), 30),
         ((20.0, 20.0, 1.0), 30),
@@ -129,10 +129,10 @@ def test_that_an_octahedron_has_all_facets_or_says_why_not() -> None:
     ],
 )
 def test_that_plates_and_needles_keep_all_their_facets(
-    axes: tuple[float, float, float], n_faces: int
+    axes: tuple[float, float, float], n_facets: int
 ) -> None:
     ball = icosphere(4)
-    found = coarsen(Mesh(ball.vertices * axes, ball.faces), n_faces)
-    assert found.n_faces == n_faces
+    found = coarsen(Mesh(ball.vertices * axes, ball.faces), n_facets)
+    assert found.n_facets == n_facets
     assert found.reason is None
     assert max(error for key, error in found.errors.items() if key != "convex_hull_volume") <= 1e-6

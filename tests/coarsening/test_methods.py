@@ -47,7 +47,7 @@ def test_that_scipy_finds_the_same_volume_and_sphericity(exact: Coarsened) -> No
 
 
 def test_that_every_half_space_bounds_a_facet(exact: Coarsened) -> None:
-    assert exact.n_faces == exact.n_faces_asked == 20
+    assert exact.n_facets == exact.n_facets_asked == 20
     assert exact.n_vertices == 36
     assert exact.n_triangles == 68
 
@@ -113,7 +113,7 @@ def test_that_an_impossible_request_is_explained() -> None:
     found = coarsen(icosphere(3), 12, "exact", settings={"retries": 0})
     assert found.reason is not None
     assert "needs at least" in found.reason
-    assert found.n_faces >= 4
+    assert found.n_facets >= 4
 
 
 def test_that_quadric_reports_its_three_readings(particle: Mesh) -> None:
@@ -152,7 +152,7 @@ def test_that_the_best_so_far_is_kept_on_demand(particle: Mesh) -> None:
 
 def test_that_facet_repair_keeps_all_facets(particle: Mesh) -> None:
     options = {"iterations": 40, "facet_repair": True}
-    assert coarsen(particle, 12, "annealing", settings=options).n_faces >= 11
+    assert coarsen(particle, 12, "annealing", settings=options).n_facets >= 11
 
 
 def test_that_the_measured_errors_are_those_of_the_target(exact: Coarsened) -> None:
@@ -164,8 +164,8 @@ def test_that_the_measured_errors_are_those_of_the_target(exact: Coarsened) -> N
 @pytest.mark.parametrize(
     ("options", "sentence"),
     [
-        ({"n_faces": 4}, "number of faces must be a whole number from 5 to 200, got 4"),
-        ({"n_faces": 201}, "got 201"),
+        ({"n_facets": 4}, "number of facets must be a whole number from 5 to 200, got 4"),
+        ({"n_facets": 201}, "got 201"),
         ({"method": "magic"}, "no coarsening method 'magic'"),
         ({"weights": LossWeights.of()}, "All weights"),
         ({"settings": {"speed": 1}}, "no setting 'speed'"),

@@ -14,20 +14,20 @@ from tests.coarsening.odd_meshes import KINDS, odd_mesh
 CONDITIONS = ("volume", "sphericity", "min_diameter", "max_diameter", "aspect_ratio")
 
 
-def attempted(mesh: Mesh | Target, n_faces: int, method: str, number: int) -> Coarsened | str:
+def attempted(mesh: Mesh | Target, n_facets: int, method: str, number: int) -> Coarsened | str:
     """The result, or the sentence that refuses it."""
     try:
-        return coarsen(mesh, n_faces, method, particle_index=number)
+        return coarsen(mesh, n_facets, method, particle_index=number)
     except RegolithError as error:
         return str(error)
 
 
-def outcome(number: int, n_faces: int) -> str:
+def outcome(number: int, n_facets: int) -> str:
     """``sentence``, ``reason`` or ``met`` by the exact method; fails for anything else, by any method."""
     kind, mesh = odd_mesh(number)
     answer = ""
     for method in METHODS:
-        made = attempted(mesh, n_faces, method, number)
+        made = attempted(mesh, n_facets, method, number)
         if isinstance(made, str):
             assert made.endswith("."), kind
             answer = "sentence" if method == "exact" else answer
@@ -35,7 +35,7 @@ def outcome(number: int, n_faces: int) -> str:
         assert np.isfinite([*made.errors.values(), *made.achieved.values(), made.jaccard_distance]).all()
         if method == "exact":
             met = max(made.errors[key] for key in CONDITIONS) <= 1e-6
-            assert (met and made.n_faces == n_faces) != bool(made.reason), kind
+            assert (met and made.n_facets == n_facets) != bool(made.reason), kind
             answer = "met" if met else "reason"
     return answer
 
@@ -46,9 +46,9 @@ def test_that_any_mesh_gives_a_result_a_reason_or_a_sentence(number: int) -> Non
     assert outcome(number, 8) in expected.get(odd_mesh(number)[0], {"met", "reason", "sentence"})
 
 
-@pytest.mark.parametrize(("number", "n_faces"), [(5276, 12), (6008, 5), (6164, 5)])
-def test_that_boxes_that_tie_and_near_misses_lead_to_another_start(number: int, n_faces: int) -> None:
-    assert outcome(number, n_faces) == "met"
+@pytest.mark.parametrize(("number", "n_facets"), [(5276, 12), (6008, 5), (6164, 5)])
+def test_that_boxes_that_tie_and_near_misses_lead_to_another_start(number: int, n_facets: int) -> None:
+    assert outcome(number, n_facets) == "met"
 
 
 @pytest.mark.slow

@@ -14,7 +14,7 @@ def test_that_the_polyhedron_is_that_of_qhull(scale: float) -> None:
     rng = np.random.default_rng(2)
     half_spaces = HalfSpaces(rng.normal(size=(30, 3)), scale * rng.uniform(0.8, 1.6, 30))
     mine, qhull = polyhedron_of(half_spaces), ConvexPolyhedron.from_half_spaces(half_spaces)
-    assert (mine.n_faces, mine.n_vertices) == (qhull.n_faces, qhull.n_vertices)
+    assert (mine.n_facets, mine.n_vertices) == (qhull.n_facets, qhull.n_vertices)
     assert mine.volume == pytest.approx(qhull.volume, rel=1e-12)
     assert mine.facet_areas == pytest.approx(qhull.facet_areas, rel=1e-9)
     assert (mine.facet_areas > 0).all()

@@ -24,21 +24,21 @@ class Coarse:
     jaccard_distance: float = 0.1
     loss: float = 0.3
     method: str = "annealing"
-    n_faces_asked: int = 20
+    n_facets_asked: int = 20
     reason: str | None = None
 
 
-def polyhedron(seed: int, n_faces: int = 20, size: float = 40.0) -> ConvexPolyhedron:
+def polyhedron(seed: int, n_facets: int = 20, size: float = 40.0) -> ConvexPolyhedron:
     generator = np.random.default_rng(seed)
-    normals = generator.standard_normal((n_faces, 3))
+    normals = generator.standard_normal((n_facets, 3))
     normals = np.concatenate([normals, -normals.sum(axis=0, keepdims=True)])
     return ConvexPolyhedron.from_half_spaces(
-        HalfSpaces(normals, size * generator.uniform(0.8, 1.2, n_faces + 1) * (1.0, *[1.3] * n_faces))
+        HalfSpaces(normals, size * generator.uniform(0.8, 1.2, n_facets + 1) * (1.0, *[1.3] * n_facets))
     )
 
 
-def entry(seed: int, n_faces: int = 20) -> tuple[Particle, Coarse]:
-    shape = polyhedron(seed, n_faces)
+def entry(seed: int, n_facets: int = 20) -> tuple[Particle, Coarse]:
+    shape = polyhedron(seed, n_facets)
     centre = np.array([10.0, -20.0, 5.0])
     mesh = shape.mesh.moved(shift=centre)
     return Particle(f"grain-{seed}", mesh, "simulant", Source("grain.stl", "0" * 64, "um")), Coarse(

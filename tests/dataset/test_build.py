@@ -146,11 +146,11 @@ def test_that_a_dataset_checks_itself() -> None:
 
 def test_that_a_particle_coarsened_by_the_program_becomes_a_dataset(tmp_path) -> None:
     particle = Particle("angular-2", next(g for g in GRAINS if g.name == "angular-2").mesh())
-    coarse = coarsen(particle.mesh, n_faces=20, method="quadric")
+    coarse = coarsen(particle.mesh, n_facets=20, method="quadric")
     dataset = build_dataset([(particle, coarse)])
     assert validate_dataset(write_dataset(tmp_path / "set", dataset)) == []
     (one,) = dataset.representatives
-    assert one.shape.n_faces == coarse.n_faces
+    assert one.shape.n_facets == coarse.n_facets
     assert one.fidelity.errors == dict(coarse.errors)
     back = one.frame.to_particle(one.shape.vertices)
     assert np.sort(back, axis=0) == pytest.approx(np.sort(coarse.mesh.vertices, axis=0), abs=1e-6)

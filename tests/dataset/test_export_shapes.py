@@ -144,7 +144,7 @@ def test_that_rockable_shapes_keep_their_facets_planes_and_mass_data(
     assert [shape["name"] for shape in shapes] == [["shape_00"], ["shape_01"], ["shape_02"]]
     for shape, one in zip(shapes, dataset.representatives, strict=True):
         corners, radius = shape["nv"], float(shape["radius"][0])
-        assert len(shape["nf"]) == one.shape.n_faces
+        assert len(shape["nf"]) == one.shape.n_facets
         assert len(corners) - len(shape["ne"]) + len(shape["nf"]) == 2
         for face, normal, offset in zip(
             shape["nf"], one.shape.half_spaces.normals, one.shape.half_spaces.offsets, strict=True
@@ -175,7 +175,7 @@ def test_that_rounding_gives_way_where_a_facet_would_vanish() -> None:
         HalfSpaces(np.vstack([planes.normals, tip]), np.append(planes.offsets, 0.5 * np.sqrt(3) - 0.01))
     )
     body = rounded(cut, 0.2)
-    assert body.core.n_faces == cut.n_faces == 7
+    assert body.core.n_facets == cut.n_facets == 7
     assert 0.0 < body.radius < 0.1
 
 

@@ -197,7 +197,7 @@ def test_that_lammps_moves_the_bodies(dataset: Dataset, tmp_path: Path, lammps) 
 
 
 def test_that_shapes_beyond_the_lines_of_lammps_are_refused(tmp_path: Path) -> None:
-    many = build_dataset([entry(0, n_faces=150)])
+    many = build_dataset([entry(0, n_facets=150)])
     with pytest.raises(DatasetError, match="coarsen to fewer faces"):
         exported(many, "lammps", tmp_path / "x")
 

@@ -31,7 +31,7 @@ def test_that_an_old_dataset_is_sound_and_is_written_as_a_new_one(version: int, 
     assert [one.name for one in dataset.representatives] == ["grain-1", "grain-2"]
     assert dataset.weights.tolist() == [0.75, 0.25]
     assert dataset.provenance.representation is None
-    assert dataset.provenance.coarsening.n_faces == 6
+    assert dataset.provenance.coarsening.n_facets == 6
     new = write_dataset(tmp_path / "new", dataset)
     assert json.loads((new / "dataset.json").read_text())["schema_version"] == SCHEMA_VERSION
     assert validate_dataset(new) == []

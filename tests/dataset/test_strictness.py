@@ -221,7 +221,7 @@ def test_that_validation_finds_stl_that_is_none(folder: Path) -> None:
 
 
 def test_that_validation_counts_facets(folder: Path) -> None:
-    edit(folder, set_at(*FIRST, "mesh", "n_faces", 12))
+    edit(folder, set_at(*FIRST, "mesh", "n_facets", 12))
     assert any("12 facets are stated" in sentence for sentence in validate_dataset(folder))
 
 

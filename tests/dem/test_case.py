@@ -117,5 +117,5 @@ def test_that_a_prepared_case_travels_between_processes(boxes: Dataset) -> None:
     copy = pickle.loads(pickle.dumps(prepared))
     assert np.array_equal(copy.diameters, prepared.diameters)
     assert copy.case == prepared.case
-    assert copy.mean_faces == prepared.mean_faces == 6.0
+    assert copy.mean_facets == prepared.mean_facets == 6.0
     assert not copy.diameters.flags.writeable

@@ -144,28 +144,28 @@ def test_that_shapes_are_varied_from_particles(tmp_path: Path) -> None:
     coarsening = CoarseningOrder(LossWeights.of(), method="quadric", target="particle")
     order = replace(ORDER, case=replace(CASE, n_particles=20))
     steps = study_wish(
-        StudyWish("n_faces", (8, 14), order, particles=particles, coarsening=coarsening), tmp_path
+        StudyWish("n_facets", (8, 14), order, particles=particles, coarsening=coarsening), tmp_path
     )
     for step in steps:
         if isinstance(step, Progress) and "simulated" in step.message:
             break
     steps.close()
-    built = [read_dataset(tmp_path / "datasets" / f"n_faces-{n}").representatives[0].shape for n in (8, 14)]
-    assert [shape.n_faces for shape in built] == [8, 14]
+    built = [read_dataset(tmp_path / "datasets" / f"n_facets-{n}").representatives[0].shape for n in (8, 14)]
+    assert [shape.n_facets for shape in built] == [8, 14]
 
 
 def test_that_values_are_read_as_their_key_has_them() -> None:
-    assert values_in("n_faces", " 8, 20,8") == (8, 20)
+    assert values_in("n_facets", " 8, 20,8") == (8, 20)
     assert values_in("static_friction", "0.2, 1") == (0.2, 1.0)
     assert values_in("cohesion", "none,scaled") == ("none", "scaled")
-    for key, text in (("n_faces", "8.5"), ("gravity", "moon")):
+    for key, text in (("n_facets", "8.5"), ("gravity", "moon")):
         with pytest.raises(InputError, match="commas"):
             values_in(key, text)
     assert with_value(ORDER, "gravity", "1.62").case.test.gravity == 1.62
     for key, value in (("colour", 1), ("gravity", "moon"), ("gravity", -1.0), ("cohesion", "glue")):
         with pytest.raises(InputError):
             with_value(ORDER, key, value)
-    for wish in (("static_friction", ()), ("static_friction", (0.2,)), ("n_faces", (8,))):
+    for wish in (("static_friction", ()), ("static_friction", (0.2,)), ("n_facets", (8,))):
         with pytest.raises(InputError):
             StudyWish(*wish, ORDER)
 

@@ -12,7 +12,7 @@ from tests.geometry.solids import cuboid, random_polyhedron, rotation, rough_sto
 SOLIDS = {
     "stone": rough_stone(3, level=3),
     "cut stone": rough_stone(8, level=2, roughness=0.4),
-    "polyhedron": random_polyhedron(5, n_faces=16, stretch=0.4),
+    "polyhedron": random_polyhedron(5, n_facets=16, stretch=0.4),
 }
 
 

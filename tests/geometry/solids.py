@@ -31,12 +31,12 @@ def rotation(seed: int) -> FloatArray:
     return np.asarray(Rotation.random(rng=seed).as_matrix())
 
 
-def random_polyhedron(seed: int, n_faces: int = 20, stretch: float = 0.0) -> Mesh:
+def random_polyhedron(seed: int, n_facets: int = 20, stretch: float = 0.0) -> Mesh:
     """A random bounded polyhedron; `stretch` spreads the logarithms of its three scales."""
     rng = np.random.default_rng(seed)
     scales = np.exp(stretch * rng.normal(size=3))
     while True:
-        planes = HalfSpaces(rng.normal(size=(n_faces, 3)), rng.uniform(0.7, 1.3, n_faces))
+        planes = HalfSpaces(rng.normal(size=(n_facets, 3)), rng.uniform(0.7, 1.3, n_facets))
         try:
             mesh = ConvexPolyhedron.from_half_spaces(planes).mesh
         except GeometryError:

@@ -24,7 +24,7 @@ def test_that_six_planes_at_distance_one_enclose_volume_eight() -> None:
     cube = ConvexPolyhedron.from_half_spaces(HalfSpaces(CUBE @ rotation(1), np.ones(6)))
     assert cube.volume == pytest.approx(8.0)
     assert cube.surface_area == pytest.approx(24.0)
-    assert (cube.n_faces, cube.n_vertices, cube.n_triangles) == (6, 8, 12)
+    assert (cube.n_facets, cube.n_vertices, cube.n_triangles) == (6, 8, 12)
     assert cube.facet_areas == pytest.approx(np.full(6, 4.0))
     assert all(len(facet) == 4 for facet in cube.facets)
 
@@ -32,7 +32,7 @@ def test_that_six_planes_at_distance_one_enclose_volume_eight() -> None:
 def test_that_an_octahedron_of_eight_planes_has_six_vertices() -> None:
     normals = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
     solid = ConvexPolyhedron.from_half_spaces(HalfSpaces(normals, np.full(8, 1.0 / np.sqrt(3.0))))
-    assert (solid.n_faces, solid.n_vertices, solid.n_triangles) == (8, 6, 8)
+    assert (solid.n_facets, solid.n_vertices, solid.n_triangles) == (8, 6, 8)
     assert solid.volume == pytest.approx(4.0 / 3.0)
 
 
@@ -51,7 +51,7 @@ def test_that_facets_lie_in_their_planes_and_look_outwards(seed: int) -> None:
     solid = ConvexPolyhedron.from_half_spaces(random_planes(seed))
     gap = solid.vertices @ solid.half_spaces.normals.T - solid.half_spaces.offsets
     assert gap.max() < 1e-9
-    for facet, plane in zip(solid.facets, range(solid.n_faces), strict=True):
+    for facet, plane in zip(solid.facets, range(solid.n_facets), strict=True):
         assert gap[list(facet), plane] == pytest.approx(0.0, abs=1e-9)
     towards = solid.mesh.face_area_vectors @ solid.half_spaces.normals.T
     assert (towards[np.arange(solid.n_triangles), solid.triangle_facets] > 0.0).all()
@@ -59,13 +59,13 @@ def test_that_facets_lie_in_their_planes_and_look_outwards(seed: int) -> None:
 
 def test_that_euler_holds_in_general_position() -> None:
     solid = ConvexPolyhedron.from_half_spaces(random_planes(3))
-    assert solid.n_vertices == 2 * solid.n_faces - 4
-    assert solid.n_triangles == 4 * solid.n_faces - 12
+    assert solid.n_vertices == 2 * solid.n_facets - 4
+    assert solid.n_triangles == 4 * solid.n_facets - 12
 
 
 def test_that_redundant_planes_are_dropped() -> None:
     planes = HalfSpaces(np.vstack([CUBE, [[1.0, 1.0, 1.0]]]), [*np.ones(6), 9.0])
-    assert ConvexPolyhedron.from_half_spaces(planes).n_faces == 6
+    assert ConvexPolyhedron.from_half_spaces(planes).n_facets == 6
 
 
 @pytest.mark.parametrize("normals", [CUBE[:5], CUBE[:3], CUBE[:1], np.vstack([CUBE[:2], CUBE[3:5]])])

@@ -22,7 +22,7 @@ def test_that_the_least_width_of_a_tetrahedron_is_between_two_edges() -> None:
 
 @pytest.mark.parametrize("seed", range(8))
 def test_that_no_direction_is_narrower_and_some_is_as_narrow(seed: int) -> None:
-    solid = random_polyhedron(seed, n_faces=12 + seed, stretch=0.4)
+    solid = random_polyhedron(seed, n_facets=12 + seed, stretch=0.4)
 
     def width(direction: np.ndarray) -> float:
         return float(np.ptp(solid.vertices @ direction) / np.linalg.norm(direction))

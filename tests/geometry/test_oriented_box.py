@@ -59,21 +59,21 @@ def test_that_the_box_of_a_ball_is_the_cube_around_it() -> None:
 @pytest.mark.parametrize("seed", range(6))
 @pytest.mark.parametrize("stretch", [0.0, 0.6])
 def test_that_no_simplex_search_finds_a_smaller_box(seed: int, stretch: float) -> None:
-    solid = random_polyhedron(seed, n_faces=8 + 5 * seed, stretch=stretch)
+    solid = random_polyhedron(seed, n_facets=8 + 5 * seed, stretch=stretch)
     assert minimum_volume_box(solid).volume <= by_simplex_search(solid.vertices, 3, seed) * (1 + 1e-9)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(60))
 def test_that_no_longer_simplex_search_finds_a_smaller_box(seed: int) -> None:
-    solid = random_polyhedron(1000 + seed, n_faces=6 + seed % 30, stretch=seed % 3 / 3)
+    solid = random_polyhedron(1000 + seed, n_facets=6 + seed % 30, stretch=seed % 3 / 3)
     assert minimum_volume_box(solid).volume <= by_simplex_search(solid.vertices, 40, seed) * (1 + 1e-9)
 
 
 @pytest.mark.parametrize("seed", range(8))
 @pytest.mark.parametrize("scale", [1e-9, 1.0, 1e9])
 def test_that_unit_and_orientation_do_not_matter(seed: int, scale: float) -> None:
-    solid = random_polyhedron(seed, n_faces=20, stretch=0.3)
+    solid = random_polyhedron(seed, n_facets=20, stretch=0.3)
     turned = solid.moved(rotation=rotation(seed), shift=(0.3, -0.2, 0.1), scale=scale)
     wanted = minimum_volume_box(solid).extents
     assert minimum_volume_box(turned).extents / scale == pytest.approx(wanted, rel=1e-6)
@@ -120,7 +120,7 @@ def test_that_a_box_on_a_short_part_of_an_arc_is_found_in_every_orientation(seed
 @pytest.mark.parametrize("apart", [1e-13, 1e-11, 1e-9, 1e-7, 1e-5])
 @pytest.mark.parametrize("seed", range(3))
 def test_that_vertices_beside_each_other_do_not_disturb_the_box(seed: int, apart: float) -> None:
-    solid = random_polyhedron(seed, n_faces=12)
+    solid = random_polyhedron(seed, n_facets=12)
     steps = apart * np.random.default_rng(seed).normal(size=solid.vertices.shape)
     doubled = cloud(np.vstack([solid.vertices, solid.vertices + steps])).hull
     wanted = minimum_volume_box(solid)
@@ -139,7 +139,7 @@ def test_that_rectangles_that_tie_around_a_triangle_do_not_make_the_box_ambiguou
 @pytest.mark.parametrize("block", range(8))
 def test_that_an_exhaustive_search_finds_no_smaller_box(block: int) -> None:
     for seed in range(25 * block, 25 * block + 25):
-        solid = random_polyhedron(seed, n_faces=5 + seed % 16, stretch=seed % 4 / 4)
+        solid = random_polyhedron(seed, n_facets=5 + seed % 16, stretch=seed % 4 / 4)
         least = np.prod(least_box(ConvexHull(solid.vertices), step=2.0))
         assert minimum_volume_box(solid).volume <= least * (1 + 1e-8)
 

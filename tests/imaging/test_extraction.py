@@ -65,12 +65,12 @@ def test_that_an_ellipsoid_of_24_voxels_has_its_volume_and_area(seed: int) -> No
     assert mesh.surface_area == pytest.approx(ellipsoid_area(*axes), rel=0.012)
 
 
-@pytest.mark.parametrize(("seed", "n_faces"), [(0, 14), (1, 14), (2, 8), (3, 8), (4, 40)])
-def test_that_a_polyhedron_of_24_voxels_has_its_volume_and_area(seed: int, n_faces: int) -> None:
+@pytest.mark.parametrize(("seed", "n_facets"), [(0, 14), (1, 14), (2, 8), (3, 8), (4, 40)])
+def test_that_a_polyhedron_of_24_voxels_has_its_volume_and_area(seed: int, n_facets: int) -> None:
     generator = np.random.default_rng(seed)
-    normals = even_sphere(n_faces).vertices + 0.3 * generator.standard_normal((n_faces, 3))
+    normals = even_sphere(n_facets).vertices + 0.3 * generator.standard_normal((n_facets, 3))
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    offsets = generator.uniform(0.85, 1.15, n_faces)
+    offsets = generator.uniform(0.85, 1.15, n_facets)
     unit = ConvexHull(HalfspaceIntersection(np.column_stack([normals, -offsets]), np.zeros(3)).intersections)
     scale = 12.0 / (3 * unit.volume / 4 / np.pi) ** (1 / 3)
     reach = scale * np.linalg.norm(unit.points, axis=1).max()

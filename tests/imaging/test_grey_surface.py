@@ -54,13 +54,13 @@ def ball(centre: np.ndarray, radius: float) -> Depth:
     return lambda points: radius - np.linalg.norm(points - centre, axis=-1)
 
 
-def polyhedron(seed: int, n_faces: int) -> tuple[Depth, float, float]:
+def polyhedron(seed: int, n_facets: int) -> tuple[Depth, float, float]:
     """A random one of 24 voxels in diameter about (22, 22, 22), its volume and its area."""
     generator = np.random.default_rng(seed)
-    normals = even_sphere(n_faces).vertices + 0.3 * generator.standard_normal((n_faces, 3))
+    normals = even_sphere(n_facets).vertices + 0.3 * generator.standard_normal((n_facets, 3))
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     normals = normals @ random_rotation(generator).T
-    offsets = generator.uniform(0.85, 1.15, n_faces)
+    offsets = generator.uniform(0.85, 1.15, n_facets)
     unit = ConvexHull(HalfspaceIntersection(np.column_stack([normals, -offsets]), np.zeros(3)).intersections)
     scale = 12.0 / (3 * unit.volume / 4 / np.pi) ** (1 / 3)
     centre = 22.0 + generator.uniform(-0.5, 0.5, 3)
@@ -93,11 +93,11 @@ def test_that_an_ellipsoid_in_voxels_that_are_no_cubes_has_its_volume() -> None:
     assert found.particle.mesh.volume == pytest.approx(4 / 3 * np.pi * axes.prod(), rel=4e-3)
 
 
-@pytest.mark.parametrize(("seed", "n_faces"), [(0, 40), (1, 14), (2, 14), (3, 8)])
+@pytest.mark.parametrize(("seed", "n_facets"), [(0, 40), (1, 14), (2, 14), (3, 8)])
 def test_that_a_blurred_polyhedron_has_its_volume_where_its_mask_lacks_two_percent(
-    seed: int, n_faces: int
+    seed: int, n_facets: int
 ) -> None:
-    depth, volume, area = polyhedron(seed, n_faces)
+    depth, volume, area = polyhedron(seed, n_facets)
     grey = scanned(coverage(depth, (45, 45, 45)), 0.03, seed)
     labels = labelled(grey)
     by_mask, by_grey = only(labels, None).particle.mesh, only(labels, grey).particle.mesh

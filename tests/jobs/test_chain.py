@@ -96,7 +96,7 @@ def test_that_a_coarsening_shows_a_polyhedron_at_its_first_step() -> None:
     heard, coarsened = played(coarsen_one(GRAIN, ORDER))
     first = next(step.value for step in heard if isinstance(step, Partial))
     assert first.polyhedron is not None
-    assert coarsened.n_faces == 20
+    assert coarsened.n_facets == 20
 
 
 def test_that_a_sample_goes_on_after_a_particle_that_fails() -> None:

@@ -34,7 +34,7 @@ def wish(n: int = 12) -> Recipe:
         target="particle",
         method="quadric",
         level=2,
-        n_faces=12,
+        n_facets=12,
     )
 
 

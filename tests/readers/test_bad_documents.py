@@ -60,13 +60,13 @@ ENTRIES: dict[str, dict[str, str]] = {
     },
     "recipe": {
         "inputs": "a list", "volumes": "a list", "unit": "text", "l_max": "a whole number",
-        "level": "a whole number", "method": "text", "settings": "named values", "n_faces": "a whole number",
+        "level": "a whole number", "method": "text", "settings": "named values", "n_facets": "a whole number",
         "seed": "a whole number", "outputs": "named values", "outputs.meshes": "true or false",
         "population.sources": "a list", "population.n": "a whole number", "volumes[0].file": "text",
         "representatives.count": "a whole number", "exports.targets": "a list",
     },
     "project": {
-        "recipe": "named values", "recipe.inputs": "a list", "recipe.n_faces": "a whole number",
+        "recipe": "named values", "recipe.inputs": "a list", "recipe.n_facets": "a whole number",
         "recipe.unit": "text", "recipe.outputs.fits": "true or false", "selected": "text", "page": "text",
         "pages": "named values", "pages.scan": "named values", "recipe.settings": "named values",
         "recipe.method": "text",
@@ -75,7 +75,7 @@ ENTRIES: dict[str, dict[str, str]] = {
         "name": "text", "metadata": "named values", "metadata.description": "text",
         "metadata.processing_steps": "a list", "representatives": "a list",
         "representatives[0].weight": "a number", "representatives[0].n_members": "a whole number",
-        "representatives[1].mesh": "named values", "representatives[1].mesh.n_faces": "a whole number",
+        "representatives[1].mesh": "named values", "representatives[1].mesh.n_facets": "a whole number",
         "representatives[0].half_spaces.offsets": "a list", "representatives[0].frame.scale_um": "a number",
     },
 }  # fmt: skip

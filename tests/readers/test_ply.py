@@ -13,13 +13,13 @@ F = "".join("4 " + " ".join(map(str, quad)) + "\n" for quad in QUADS)
 
 
 def header(
-    encoding="ascii", n_vertices=8, n_faces=6, coordinate="float", more="", corner="uchar int", more_faces=""
+    encoding="ascii", n_vertices=8, n_facets=6, coordinate="float", more="", corner="uchar int", more_faces=""
 ):
     return (
         f"ply\nformat {encoding} 1.0\ncomment made by hand\nelement vertex {n_vertices}\n"
         + "".join(f"property {coordinate} {axis}\n" for axis in "xyz")
         + more
-        + f"element face {n_faces}\nproperty list {corner} vertex_indices\n{more_faces}end_header\n"
+        + f"element face {n_facets}\nproperty list {corner} vertex_indices\n{more_faces}end_header\n"
     )
 
 
@@ -93,10 +93,10 @@ BAD = {
     ),
     "billions of vertices, binary": (BINARY.replace(b"vertex 8", b"vertex 4000000000"), CUT),
     "no vertices": (text("vertex 8", "vertex 0"), "(points to vertex|empty mesh|else than numbers|promises)"),
-    "nothing in the tables": (header(n_vertices=0, n_faces=0).encode(), "empty mesh"),
+    "nothing in the tables": (header(n_vertices=0, n_facets=0).encode(), "empty mesh"),
     "no element of vertices": (text("element vertex", "element corner"), "no element “vertex”"),
     "vertices without z": (text("property float z", "property float w"), "no element “vertex” with"),
-    "points": (header(n_faces=0).encode() + V.encode(), POINTS),
+    "points": (header(n_facets=0).encode() + V.encode(), POINTS),
     "points without faces in the header": (
         (header().split("element face")[0] + "end_header\n" + V).encode(),
         POINTS,
@@ -128,8 +128,8 @@ BAD = {
         binary(count="b").replace(b"\4\0\0\0\0\1", b"\xfc\0\0\0\0\1"),
         "list of -4",
     ),
-    "one triangle": ((header(n_faces=1) + V + "3 0 1 2\n").encode(), SHEET),
-    "two sides of a cube": ((header(n_faces=2) + V + "4 0 1 3 2\n4 0 4 5 1\n").encode(), SHEET),
+    "one triangle": ((header(n_facets=1) + V + "3 0 1 2\n").encode(), SHEET),
+    "two sides of a cube": ((header(n_facets=2) + V + "4 0 1 3 2\n4 0 4 5 1\n").encode(), SHEET),
     "a flattened cube": ((header() + V.replace(" 1\n", " 0\n") + F).encode(), "(flat|sheet)"),
     "all corners in one point": ((header() + "0 0 0\n" * 8 + F).encode(), "point or a line"),
     "not a number everywhere": ((header() + "nan nan nan\n" * 8 + F).encode(), NOT_FINITE),
@@ -196,7 +196,7 @@ def test_that_a_cube_in_any_proper_ply_has_volume_one_and_area_six(kind, accepte
 def test_that_faces_with_a_corner_that_is_no_number_are_left_out_and_the_hole_is_filled(accepted):
     """A ninth vertex that is no number carries a pyramid on top of one side."""
     lid = "3 1 5 8\n3 5 7 8\n3 7 3 8\n3 3 1 8\n"
-    broken = header(n_vertices=9, n_faces=9) + V + "nan nan nan\n" + "".join(F.splitlines(True)[:-1]) + lid
+    broken = header(n_vertices=9, n_facets=9) + V + "nan nan nan\n" + "".join(F.splitlines(True)[:-1]) + lid
     particle = accepted("cube.ply", broken.encode())
     assert particle.mesh.volume == pytest.approx(1.0, abs=1e-12)
     assert "Left out 4 faces with a corner that is not a finite number." in particle.notes

@@ -25,7 +25,7 @@ from regolith_studio.session.performing import Performed, perform
 from regolith_studio.session.recipe import Recipe, recipe_of
 from regolith_studio.studies import lmax
 
-BASE: dict[str, Any] = {"method": "quadric", "level": 2, "l_max": 4, "n_faces": 12}
+BASE: dict[str, Any] = {"method": "quadric", "level": 2, "l_max": 4, "n_facets": 12}
 ROOT = Path(__file__).resolve().parents[2]
 
 
@@ -188,7 +188,7 @@ def test_that_an_unfinished_run_is_neither_overwritten_nor_mixed(grains: Path, t
     with pytest.raises(FileError, match="--resume"):
         done(recipe(grains), grains, tmp_path / "out")
     with pytest.raises(FileError, match="begun with another recipe"):
-        done(recipe(grains, n_faces=13), grains, tmp_path / "out", resume=True)
+        done(recipe(grains, n_facets=13), grains, tmp_path / "out", resume=True)
 
 
 def test_that_a_changed_input_is_noticed(tmp_path: Path, grains: Path) -> None:
@@ -258,7 +258,7 @@ def test_that_a_worker_killed_in_mid_run_changes_no_byte(
 
 
 def test_that_a_dataset_too_large_to_be_read_again_is_refused_before_the_work(tmp_path: Path) -> None:
-    wish = recipe_of(inputs=[], population={"card": "ma165", "n": 120_000}, n_faces=20)
+    wish = recipe_of(inputs=[], population={"card": "ma165", "n": 120_000}, n_facets=20)
     with pytest.raises(InputError, match="make several of at most 104,"):
         done(wish, tmp_path, tmp_path / "out")
     assert not (tmp_path / "out").exists()

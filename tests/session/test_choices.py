@@ -17,7 +17,7 @@ from regolith_studio.session.choices import Choices
         ({"l_max": -1}, "from 0 to 30, got -1"),
         ({"l_max": 3.5}, "whole number"),
         ({"l_max": True}, "whole number"),
-        ({"n_faces": 4}, "from 5 to 200, got 4"),
+        ({"n_facets": 4}, "from 5 to 200, got 4"),
         ({"n_triangles": 7}, "7 triangles are too few"),
         ({"n_triangles": 70.5}, "whole number"),
         ({"largest_error": 0.0}, "above 0 per cent"),
@@ -64,13 +64,13 @@ def test_that_a_preset_brings_its_weights_and_a_moved_weight_marks_it_modified()
 def test_that_one_of_three_numbers_says_how_fine_a_polyhedron_is(
     stop: str, faces: int, error: float | None, most: int, words: str
 ) -> None:
-    order = Choices(stop_at=stop, n_faces=12, n_triangles=59, largest_error=0.025).order
-    assert (order.n_faces, order.largest_error, order.most_faces, order.fineness) == (
+    order = Choices(stop_at=stop, n_facets=12, n_triangles=59, largest_error=0.025).order
+    assert (order.n_facets, order.largest_error, order.max_facets, order.fineness) == (
         *(faces, error, most),
         words,
     )
 
 
 def test_that_the_order_of_a_coarsening_repeats_the_choices() -> None:
-    order = Choices(n_faces=12, seed=4, l_max=3, target="particle").order
-    assert (order.n_faces, order.seed, order.l_max, order.target) == (12, 4, 3, "particle")
+    order = Choices(n_facets=12, seed=4, l_max=3, target="particle").order
+    assert (order.n_facets, order.seed, order.l_max, order.target) == (12, 4, 3, "particle")

@@ -88,18 +88,18 @@ def test_that_a_surface_under_way_is_shown_although_the_slider_has_gone_on(
 def test_that_a_coarsening_shows_its_first_polyhedron_before_it_makes_room(
     session: Session, held: Held
 ) -> None:
-    session.choose("drag", n_faces=12)
-    for n_faces in (13, 14):
-        session.choose("drag", n_faces=n_faces)
+    session.choose("drag", n_facets=12)
+    for n_facets in (13, 14):
+        session.choose("drag", n_facets=n_facets)
     shown: list[int] = []
     session.topics.coarsening.connect(
-        lambda: shown.append(session.results.polyhedron.n_faces if session.results.polyhedron else 0)
+        lambda: shown.append(session.results.polyhedron.n_facets if session.results.polyhedron else 0)
     )
     assert not held.let("coarsening")  # stopped as soon as it had shown something
     assert 12 in shown
     held.all()
     assert session.results.coarsened is not None
-    assert session.results.coarsened.n_faces_asked == 14
+    assert session.results.coarsened.n_facets_asked == 14
 
 
 def test_that_the_search_for_the_fewest_facets_shows_every_trial(session: Session, held: Held) -> None:
@@ -108,15 +108,15 @@ def test_that_the_search_for_the_fewest_facets_shows_every_trial(session: Sessio
 
     def look() -> None:
         solid = session.results.polyhedron
-        if solid is not None and (not shown or shown[-1] != solid.n_faces):
-            shown.append(solid.n_faces)
+        if solid is not None and (not shown or shown[-1] != solid.n_facets):
+            shown.append(solid.n_facets)
 
     assert held.let("coarsening", look)
     done = session.results.coarsened
     assert done is not None
     assert done.reason is None
     assert len(set(shown)) > 3  # doubled, then halved
-    assert shown[-1] == done.n_faces
+    assert shown[-1] == done.n_facets
     assert max(done.errors[key] for key in ("sphericity", "min_diameter", "max_diameter")) <= 0.08
 
 
@@ -151,7 +151,7 @@ def test_that_nothing_is_made_of_a_surface_that_could_not_be_drawn(session: Sess
     held.waiting["surface"][0].job = Job(_refuse)
     held.all()
     assert len(failures) == 1
-    session.choose(n_faces=15)
+    session.choose(n_facets=15)
     session.choose(box_metric="trimesh")
     held.all()
     assert len(failures) == 1
@@ -159,7 +159,7 @@ def test_that_nothing_is_made_of_a_surface_that_could_not_be_drawn(session: Sess
     session.choose(l_max=6)
     held.all()
     assert session.results.coarsened is not None
-    assert session.results.coarsened.n_faces_asked == 15
+    assert session.results.coarsened.n_facets_asked == 15
 
 
 def _refuse():  # type: ignore[no-untyped-def]

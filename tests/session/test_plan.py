@@ -44,7 +44,7 @@ def test_that_a_particle_is_not_fitted_twice() -> None:
         ({"reference": "ellipsoid"}, list(LIVE)),
         ({"level": 3}, [SURFACE, DESCRIPTORS, COARSENING]),
         ({"box_metric": "trimesh"}, [DESCRIPTORS]),
-        ({"n_faces": 30}, [COARSENING]),
+        ({"n_facets": 30}, [COARSENING]),
         ({"n_triangles": 30}, []),
         ({"stop_at": "triangles", "n_triangles": 71}, []),  # 20 facets, as before
         ({"stop_at": "triangles", "n_triangles": 72}, [COARSENING]),
@@ -66,7 +66,7 @@ def test_that_l_max_leaves_the_coarsening_of_the_particle_itself_alone() -> None
 
 
 def test_that_a_plan_and_its_reverse_redo_the_same_work() -> None:
-    variants = [HERE, HERE.replaced(l_max=2), HERE.replaced(seed=3), HERE.replaced(n_faces=9, level=2)]
+    variants = [HERE, HERE.replaced(l_max=2), HERE.replaced(seed=3), HERE.replaced(n_facets=9, level=2)]
     for one, other in itertools.permutations(variants, 2):
         assert kinds(one, other) == kinds(other, one)
 
@@ -85,7 +85,7 @@ def test_that_the_particle_itself_is_coarsened_without_waiting_for_a_fit() -> No
 
 
 def test_that_studies_know_which_choices_they_were_made_for() -> None:
-    assert depends(Kind.COARSENING_STUDY, HERE, HERE.replaced(n_faces=30))
+    assert depends(Kind.COARSENING_STUDY, HERE, HERE.replaced(n_facets=30))
     assert depends(Kind.COARSENING_STUDY, HERE, HERE.replaced(l_max=3))
     assert not depends(Kind.COARSENING_STUDY, HERE, HERE.replaced(selected="b"))
     assert not depends(Kind.LMAX_STUDY, HERE, HERE.replaced(l_max=3))

@@ -32,7 +32,7 @@ from regolith_studio.session.project import Project, read_project
 from regolith_studio.session.recipe import Outputs, read_recipe
 from regolith_studio.session.session import Session
 
-CHOICES = Choices(method="annealing", settings=(("iterations", 12),), level=2, l_max=4, n_faces=12, seed=3)
+CHOICES = Choices(method="annealing", settings=(("iterations", 12),), level=2, l_max=4, n_facets=12, seed=3)
 ONLY_DATASET = Outputs(descriptors=False, meshes=False, summary=False)
 LEVEL = 2
 

@@ -30,7 +30,7 @@ def written(folder: Path, text: str) -> Path:
     "choices",
     [
         Choices(),
-        Choices(l_max=3, n_faces=12, seed=9, target="particle", unit="mm", level=2, box_metric="trimesh"),
+        Choices(l_max=3, n_facets=12, seed=9, target="particle", unit="mm", level=2, box_metric="trimesh"),
         Choices().replaced(weights=LossWeights.of(volume=2.0, sphericity=0.1)),
         Choices(star_point="kernel_centre", rule="outermost", reference="ellipsoid"),
         Choices().replaced(method="quadric", settings=(("restore_volume", True),)),
@@ -77,7 +77,7 @@ def test_that_a_bad_recipe_is_refused_with_the_entry_named(tmp_path: Path, text:
 
 
 def test_that_a_recipe_of_version_1_means_what_it_meant(tmp_path: Path) -> None:
-    text = '{"version": 1, "population": {"card": "ma165", "n": 7, "l_max": 6}, "n_faces": 12}'
+    text = '{"version": 1, "population": {"card": "ma165", "n": 7, "l_max": 6}, "n_facets": 12}'
     recipe = read_recipe(written(tmp_path, text))
     assert recipe.version == 2
     assert recipe.inputs == ["sample:all"]

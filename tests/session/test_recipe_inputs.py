@@ -24,7 +24,7 @@ from regolith_studio.session.batch.prepared import read_grain, read_index
 from regolith_studio.session.performing import perform
 from regolith_studio.session.recipe import recipe_of
 
-BASE: dict[str, Any] = {"method": "quadric", "level": 2, "l_max": 4, "n_faces": 12, "target": "particle"}
+BASE: dict[str, Any] = {"method": "quadric", "level": 2, "l_max": 4, "n_facets": 12, "target": "particle"}
 GREY = str(resource("samples", "ct", "synthetic-grey.tif"))
 
 

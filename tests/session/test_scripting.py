@@ -17,7 +17,7 @@ from regolith_studio.session.recipe import SAMPLE
 from regolith_studio.session.scripting import as_command, as_python
 from regolith_studio.session.session import Session
 
-CHOICES = Choices(method="quadric", level=2, l_max=4, n_faces=14, seed=3)
+CHOICES = Choices(method="quadric", level=2, l_max=4, n_facets=14, seed=3)
 
 
 @pytest.fixture
@@ -41,7 +41,7 @@ def test_that_the_copied_script_finds_the_polyhedron_of_the_window(session: Sess
     done, shown = names["done"], session.results.coarsened
     assert shown is not None
     assert done.loss == pytest.approx(shown.loss, rel=1e-9)  # type: ignore[attr-defined]
-    assert done.n_faces == shown.n_faces  # type: ignore[attr-defined]
+    assert done.n_facets == shown.n_facets  # type: ignore[attr-defined]
 
 
 def test_that_the_script_of_the_sample_and_of_the_bare_particle_compile() -> None:
@@ -83,7 +83,7 @@ def test_that_what_is_copied_stops_where_the_window_does(
     (row,) = json.loads((tmp_path / "coarsened" / "coarsening.json").read_text())["particles"]
     for errors in (names["done"].errors, row["errors"]):  # type: ignore[attr-defined]
         assert errors == pytest.approx(dict(shown.errors), abs=1e-12)
-    assert row["n_faces"] == shown.n_faces
+    assert row["n_facets"] == shown.n_facets
 
 
 def test_that_the_copied_script_takes_the_particle_on_screen() -> None:
@@ -99,7 +99,7 @@ def test_that_the_copied_script_takes_the_particle_on_screen() -> None:
 
 
 def test_that_a_project_brings_back_particles_choices_and_pages(session: Session, tmp_path: Path) -> None:
-    session.choose(n_faces=11, l_max=3)
+    session.choose(n_facets=11, l_max=3)
     Project.of(session, "sample", {"sample": {"filter": "S<1"}}).save(tmp_path / "work.regolith")
     again = Session(InlineRunner())
     project = read_project(tmp_path / "work.regolith")

@@ -68,7 +68,7 @@ def test_that_opening_selects_the_first_particle_and_computes_everything(opened:
     assert results.surface is not None
     assert len(results.surface.faces) == 320
     assert results.coarsened is not None
-    assert results.coarsened.n_faces == 20
+    assert results.coarsened.n_facets == 20
     assert results.polyhedron_mesh is not None
     assert set(results.fit_errors) == set(results.coarsened.errors)
     assert opened.tasks == ()
@@ -152,19 +152,19 @@ def test_that_another_reference_makes_another_fit_and_going_back_finds_the_first
 def test_that_undo_and_redo_bring_the_results_back(opened: Session) -> None:
     loss = opened.results.coarsened.loss  # type: ignore[union-attr]
     for faces in (12, 14, 16):
-        opened.choose("faces", n_faces=faces)
+        opened.choose("faces", n_facets=faces)
     opened.undo()
-    assert opened.choices.n_faces == 20
+    assert opened.choices.n_facets == 20
     assert opened.results.coarsened.loss == loss  # type: ignore[union-attr]
     opened.redo()
-    assert opened.choices.n_faces == 16
+    assert opened.choices.n_facets == 16
     assert not opened.can_redo
 
 
 def test_that_a_refused_choice_changes_nothing(opened: Session) -> None:
     before = opened.choices
     with pytest.raises(InputError, match="from 5 to 200"):
-        opened.choose(n_faces=1)
+        opened.choose(n_facets=1)
     with pytest.raises(InputError, match="grain-9"):
         opened.select("grain-9")
     assert opened.choices is before

@@ -18,7 +18,7 @@ from regolith_studio.studies.solid_study import solid_table
 
 @pytest.fixture(scope="module")
 def order() -> CoarseningOrder:
-    return Choices(method="quadric", n_faces=12, l_max=4, level=2, target="particle").order
+    return Choices(method="quadric", n_facets=12, l_max=4, level=2, target="particle").order
 
 
 def test_that_each_particle_is_coarsened_once_for_each_row(order: CoarseningOrder) -> None:
@@ -32,7 +32,7 @@ def test_that_each_particle_is_coarsened_once_for_each_row(order: CoarseningOrde
         solids = end.value
     rows = len(paper_rows())
     assert {(each.row, each.column) for each in solids} == set(np.ndindex(rows, 2))
-    assert all(each.outcome.coarsened.n_faces == 12 for each in solids)
+    assert all(each.outcome.coarsened.n_facets == 12 for each in solids)
     assert [len(each.value) for each in told if isinstance(each, Partial)] == list(range(1, 2 * rows + 1))
     counts = [(each.done, each.total) for each in told if isinstance(each, Progress)]
     assert counts == sorted(counts)
@@ -76,7 +76,7 @@ def test_that_the_study_has_the_polyhedra_of_the_gallery(order: CoarseningOrder,
 
 
 def test_that_a_particle_without_a_fit_is_told_for_each_row() -> None:
-    fitted = Choices(method="quadric", n_faces=12, l_max=4, level=2, target="fit").order
+    fitted = Choices(method="quadric", n_facets=12, l_max=4, level=2, target="fit").order
     flat = Mesh(icosphere(2).vertices * [1, 1, 0], icosphere(2).faces)
     solids = ended(draw_solids([Particle("flat", flat)], fitted, paper_rows()[:2]))
     assert [bool(each.outcome.problem) for each in solids] == [True, True]

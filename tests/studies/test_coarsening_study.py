@@ -22,7 +22,7 @@ from regolith_studio.studies.coarsening import (
     rmsre_table,
 )
 from regolith_studio.studies.coarsening_figures import coarsening_figure, write_coarsening_study
-from regolith_studio.studies.loss_rows import StudyRow, face_count_rows, paper_rows, sensitivity_rows
+from regolith_studio.studies.loss_rows import StudyRow, facet_count_rows, paper_rows, sensitivity_rows
 from regolith_studio.studies.progress import StudyProgress
 
 ROWS = (
@@ -107,7 +107,7 @@ def test_that_the_rows_are_those_of_the_figure() -> None:
     assert len(paper_rows()) == 6
     assert paper_rows()[0].is_baseline
     assert [
-        row.n_faces for row in face_count_rows(StudyRow("", LossWeights.from_preset("all")), (8, 12))
+        row.n_facets for row in facet_count_rows(StudyRow("", LossWeights.from_preset("all")), (8, 12))
     ] == [8, 12]
     changed = sensitivity_rows(StudyRow("", LossWeights.of(volume=1, sphericity=2), "annealing"), (3.0,))
     assert [row.weights["sphericity"] for row in changed] == [2, 2, 6]

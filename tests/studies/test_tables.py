@@ -13,14 +13,14 @@ from regolith_studio.studies.tables import Column, Table, rows_as_text, write_ta
 @pytest.fixture
 def table() -> Table:
     rows = (("cement, no. 1", np.int64(20), np.float64(0.125)), ("snow", 12, float("nan")))
-    return Table("Errors", (Column("group"), Column("n_faces"), Column("error", "%")), rows, ("A note.",))
+    return Table("Errors", (Column("group"), Column("n_facets"), Column("error", "%")), rows, ("A note.",))
 
 
 def test_that_the_csv_module_reads_the_cells_back(table, tmp_path):
     path, _ = write_table(table, tmp_path / "new", "errors")
     with path.open(newline="") as lines:
         assert list(csv.reader(lines)) == [
-            ["group", "n_faces", "error [%]"],
+            ["group", "n_facets", "error [%]"],
             ["cement, no. 1", "20", "0.125"],
             ["snow", "12", ""],
         ]
@@ -30,12 +30,12 @@ def test_that_json_holds_units_and_writes_missing_values_as_null(table, tmp_path
     _, path = write_table(table, tmp_path, "errors")
     document = json.loads(path.read_text())
     assert document["columns"][2] == {"name": "error", "unit": "%"}
-    assert document["rows"][1] == {"group": "snow", "n_faces": 12, "error": None}
+    assert document["rows"][1] == {"group": "snow", "n_facets": 12, "error": None}
     assert document["notes"] == ["A note."]
 
 
 def test_that_a_column_is_found_by_its_name(table):
-    assert table.column("n_faces") == (20, 12)
+    assert table.column("n_facets") == (20, 12)
     with pytest.raises(KeyError):
         table.column("mass")
 

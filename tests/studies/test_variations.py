@@ -13,7 +13,7 @@ from regolith_studio.errors import InputError
 from regolith_studio.studies.coarsening import COLUMNS, CoarseningStudy
 from regolith_studio.studies.loss_rows import (
     StudyRow,
-    face_count_rows,
+    facet_count_rows,
     loss_rows,
     losses,
     sensitivity_rows,
@@ -38,7 +38,7 @@ ANNEALED = StudyRow("all", LossWeights.from_preset("all"), "annealing")
 def made_up(errors: Any, rows: tuple[StudyRow, ...] | None = None) -> CoarseningStudy:
     """A study with these errors: particles, rows, columns."""
     table = np.asarray(errors, dtype=np.float64)
-    labels = tuple(ALL.relabelled(f"row {r}", n_faces=8 + r) for r in range(table.shape[1]))
+    labels = tuple(ALL.relabelled(f"row {r}", n_facets=8 + r) for r in range(table.shape[1]))
     names = tuple(f"grain {i}" for i in range(len(table)))
     return CoarseningStudy(rows or labels, names, table, n_unmet=(0,) * table.shape[1])
 
@@ -49,9 +49,9 @@ def table_of(*rows: tuple[float, float], n: int = 3) -> np.ndarray:
 
 
 def test_that_faces_are_ascending_and_each_counts_once() -> None:
-    assert [row.n_faces for row in face_count_rows(ALL, (50, 8.0, 20, 8))] == [8, 20, 50]
+    assert [row.n_facets for row in facet_count_rows(ALL, (50, 8.0, 20, 8))] == [8, 20, 50]
     with pytest.raises(InputError, match=r"whole numbers, got 8\.5"):
-        face_count_rows(ALL, (8.5,))
+        facet_count_rows(ALL, (8.5,))
 
 
 def test_that_conditions_are_traded_one_choice_at_a_time() -> None:

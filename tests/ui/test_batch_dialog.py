@@ -26,7 +26,7 @@ WISH = recipe_of(
     target="particle",
     method="quadric",
     level=2,
-    n_faces=12,
+    n_facets=12,
 )
 
 

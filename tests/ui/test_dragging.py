@@ -16,11 +16,11 @@ def test_that_polyhedra_are_seen_while_a_slider_never_rests(shown, preferences, 
     seen, places = set(), cycle([*range(12, 40), *range(40, 12, -1)])
 
     def has_moved_on():
-        session.choose("n_faces", n_faces=next(places))
+        session.choose("n_facets", n_facets=next(places))
         seen.add(frame.title)
         return len(seen) >= 5
 
     wait(has_moved_on)
-    session.choose("n_faces", n_faces=24)
+    session.choose("n_facets", n_facets=24)
     wait(lambda: session.results.coarsened is not None and not session.tasks)
-    wait(lambda: str(session.results.coarsened.n_faces) in frame.title)
+    wait(lambda: str(session.results.coarsened.n_facets) in frame.title)

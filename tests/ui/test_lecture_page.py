@@ -30,7 +30,7 @@ CIGAR = icosphere(2).moved(rotation=np.diag([10.0, 12.0, 60.0]))
 @pytest.fixture
 def page(shown, preferences):
     session = Session(InlineRunner())
-    session.choose(n_faces=12, method="annealing", settings=(("iterations", 25),), l_max=4)
+    session.choose(n_facets=12, method="annealing", settings=(("iterations", 25),), l_max=4)
     session.adopt([Particle(name="egg", mesh=EGG), Particle(name="cigar", mesh=CIGAR)])
     window = shown(QWidget())
     toast = Toast(window)
@@ -120,8 +120,8 @@ def test_that_the_lesson_follows_the_particle_and_the_choices(page, wait):
     page.particle.setCurrentIndex(1)
     assert page._session.choices.selected == "cigar"
     wait(lambda: page.annealing._lesson.imitated is page._session.results.surface, 20.0)
-    page._session.choose(n_faces=8)
-    wait(lambda: page.annealing._lesson.n_faces == 8)
+    page._session.choose(n_facets=8)
+    wait(lambda: page.annealing._lesson.n_facets == 8)
     page._session.choose(settings=(("iterations", 5000),))
     wait(lambda: "at most 2,000" in page.annealing.sentence.text())
 

@@ -198,7 +198,7 @@ def test_that_a_polyhedron_keeps_volume_area_and_aspect_ratio(newcomer):
     fit, solid = column(newcomer.window, "Fit"), column(newcomer.window, "Polyhedron")
     for name in ("Volume", "Surface area", "Aspect ratio"):
         assert solid[name] == pytest.approx(fit[name], rel=1e-3), name
-    assert newcomer.window.session.results.coarsened.n_faces == 20
+    assert newcomer.window.session.results.coarsened.n_facets == 20
     assert "20 facets" in newcomer.window.page.triptych.frames["polyhedron"]._title.text()
 
 

@@ -39,7 +39,7 @@ VALUES = {
     FitPanel: {"l_max": 17, "star_point": "kernel_centre", "rule": "first", "reference": "ellipsoid"},
     CoarseningPanel: {
         "stop_at": "error",
-        "n_faces": 33,
+        "n_facets": 33,
         "n_triangles": 77,
         "largest_error": 0.0035,
         "target": "particle",
@@ -137,7 +137,7 @@ def test_that_another_method_drops_the_settings_of_the_first(shown):
 @pytest.mark.parametrize(
     ("stop", "field", "typed", "told"),
     [
-        ("faces", "n_faces", 12, 12),
+        ("faces", "n_facets", 12, 12),
         ("triangles", "n_triangles", 44, 44),
         ("error", "largest_error", 2.5, 0.025),
     ],
@@ -148,7 +148,7 @@ def test_that_the_number_of_what_is_stopped_at_is_the_one_that_can_be_set(shown,
     panel.valueChanged.connect(said.append)
     panel.stop_at.setCurrentIndex(panel.stop_at.findData(stop))
     panel.stop_at.activated.emit(panel.stop_at.currentIndex())
-    names = ("n_faces", "n_triangles", "largest_error")
+    names = ("n_facets", "n_triangles", "largest_error")
     assert [name for name in names if getattr(panel, name).isVisible()] == [field]
     getattr(panel, field).field.setValue(typed)
     assert said == [{"stop_at": stop}, {field: told}]

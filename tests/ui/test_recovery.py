@@ -26,7 +26,7 @@ from regolith_studio.ui.app import open_window
 projects.AUTOSAVE_SECONDS = 0
 window = open_window(views="image")
 window.show()
-window.session.topics.particles.connect(lambda: window.session.choose(n_faces=17, seed=4))
+window.session.topics.particles.connect(lambda: window.session.choose(n_facets=17, seed=4))
 app.exec()
 """
 QUICK = "quadric"
@@ -54,7 +54,7 @@ def test_that_what_a_killed_window_knew_is_offered_and_brought_back(shown, prefe
     window.projects.offer_recovery()
     box = window.findChild(QMessageBox, "recovery")
     box.button(QMessageBox.StandardButton.Yes).click()
-    assert (window.session.choices.n_faces, window.session.choices.seed) == (17, 4)
+    assert (window.session.choices.n_facets, window.session.choices.seed) == (17, 4)
     wait(lambda: not left.exists(), 170.0)
     assert stale_autosaves() == []
 
@@ -63,10 +63,10 @@ def test_that_what_a_killed_window_knew_is_offered_and_brought_back(shown, prefe
 def left(preferences):  # noqa: ARG001
     """What two windows have left that crashed one after the other: with 11 facets, then with 33."""
     made = []
-    for number, n_faces in enumerate((11, 33)):
+    for number, n_facets in enumerate((11, 33)):
         path = autosave_path().with_name(f"autosave-{999999990 + number}.regolith")
         path.parent.mkdir(parents=True, exist_ok=True)
-        Project.of(Session(InlineRunner(), Choices(n_faces=n_faces, method=QUICK))).save(path)
+        Project.of(Session(InlineRunner(), Choices(n_facets=n_facets, method=QUICK))).save(path)
         os.utime(path, (1_000_000 + number, 1_000_000 + number))
         made.append(path)
     return made
@@ -82,12 +82,12 @@ def test_that_what_is_brought_back_is_kept_until_there_is_a_newer_copy(shown, pr
     older, newer = left
     window = shown(MainWindow(Session(InlineRunner(), Choices(method=QUICK)), preferences, "image"))
     recovered(window, QMessageBox.StandardButton.Yes)
-    assert window.session.choices.n_faces == 33
+    assert window.session.choices.n_facets == 33
     assert newer.exists(), "this window may crash before it has kept anything"
     assert stale_autosaves() == [older], "another window must not take it away"
     window.projects._timer.start(0)
     wait(lambda: not newer.exists())
-    assert read_project(autosave_path()).recipe.n_faces == 33
+    assert read_project(autosave_path()).recipe.n_facets == 33
     assert stale_autosaves() == [older], "nobody was asked about it"
 
 
@@ -98,7 +98,7 @@ def test_that_the_next_crash_is_offered_where_the_first_is_declined(shown, prefe
     asked = [box for box in window.findChildren(QMessageBox, "recovery") if box.isVisible()]
     assert len(asked) == 1
     asked[0].button(QMessageBox.StandardButton.Yes).click()
-    assert window.session.choices.n_faces == 11
+    assert window.session.choices.n_facets == 11
 
 
 def test_that_a_copy_is_never_seen_without_its_lock(shown, preferences, monkeypatch):
@@ -114,5 +114,5 @@ def test_that_a_copy_is_never_seen_without_its_lock(shown, preferences, monkeypa
     assert seen == [True]
 
 
-def _holds(folder, n_faces):
-    return any(read_project(path).recipe.n_faces == n_faces for path in folder.glob("autosave-*.regolith"))
+def _holds(folder, n_facets):
+    return any(read_project(path).recipe.n_facets == n_facets for path in folder.glob("autosave-*.regolith"))

@@ -305,7 +305,7 @@ def test_that_a_study_of_names_and_piles_is_drawn(page):
 def test_that_a_study_says_what_it_lacks(page, dataset):
     page.start_study()
     assert "no dataset yet" in page._context.toast.sentence.text()
-    page.study.key.setCurrentIndex(page.study.key.findData("n_faces"))
+    page.study.key.setCurrentIndex(page.study.key.findData("n_facets"))
     assert page.study.values.text() == "8, 20, 60"
     page.start_study()
     assert "open particles" in page._context.toast.sentence.text()

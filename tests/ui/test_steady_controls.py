@@ -114,7 +114,7 @@ def test_that_no_control_of_dataset_moves_while_one_is_made(window, watched, tmp
     watched.does("build", page.build_in, tmp_path / "a name that is long" / "dataset")
     for key, box in page.targets.boxes.items():
         watched.does(key, box.click)
-    watched.does("other choices", lambda: window.session.choose(n_faces=35, stop_at="error", seed=123456))
+    watched.does("other choices", lambda: window.session.choose(n_facets=35, stop_at="error", seed=123456))
 
 
 def test_that_no_control_of_scan_moves_from_volume_to_particles(watched):
@@ -142,7 +142,7 @@ def test_that_no_control_of_studies_moves_with_a_study(window, watched):
     window.session.keep([entry.id for entry in window.session.particles[:2]])
     page = watched.go("studies")
     watched.does("losses", page.start, Kind.COARSENING_STUDY)
-    watched.does("other choices", lambda: window.session.choose(n_faces=12))
+    watched.does("other choices", lambda: window.session.choose(n_facets=12))
 
 
 def test_that_no_control_of_the_angle_of_repose_moves_with_consequences_and_problems(watched):

@@ -28,7 +28,7 @@ def window(shown, preferences, wait):
     shown(made)
     wait(lambda: made.session.results.coarsened is not None and not made.session.tasks, SECONDS)
     made.session.adopt([entry.particle for entry in made.session.particles[:2]])
-    made.session.choose(method="quadric", n_faces=12, level=2, l_max=4)
+    made.session.choose(method="quadric", n_facets=12, level=2, l_max=4)
     wait(lambda: not made.session.tasks, SECONDS)
     return made
 
@@ -88,13 +88,13 @@ def test_that_one_loss_always_stays(shown):
 
 def test_that_studies_say_how_many_facets_they_take_where_polyhedra_stop_at_an_error(window, settled):
     page = window.go("studies")
-    window.session.choose(n_faces=24)
+    window.session.choose(n_facets=24)
     settled(window)
     assert page.bar.remark.text() == ""
     window.session.choose(stop_at="error")
     settled(window)
     assert page.bar.remark.text() == "compared at 24 facets each, not at an error"
-    window.session.choose(stop_at="faces")
+    window.session.choose(stop_at="facets")
     settled(window)
     assert page.bar.remark.text() == ""
 

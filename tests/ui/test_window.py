@@ -104,14 +104,14 @@ def test_that_a_dragged_slider_is_one_step_of_undo(window, wait):
         slider.setValue(value)
         QTest.qWait(8)
     slider.setSliderDown(False)
-    wait(lambda: window.session.choices.n_faces == 30)
+    wait(lambda: window.session.choices.n_facets == 30)
     window.activateWindow()
     assert QTest.qWaitForWindowActive(window, 5000)
     QTest.keySequence(window, "Ctrl+Z")
-    wait(lambda: window.session.choices.n_faces == 20)
-    assert window.page.coarsening.value()["n_faces"] == 20
+    wait(lambda: window.session.choices.n_facets == 20)
+    assert window.page.coarsening.value()["n_facets"] == 20
     QTest.keySequence(window, "Ctrl+Shift+Z")
-    wait(lambda: window.page.coarsening.value()["n_faces"] == 30)
+    wait(lambda: window.page.coarsening.value()["n_facets"] == 30)
 
 
 def test_that_another_particle_fills_all_three_views(window, wait, settled):
@@ -228,18 +228,18 @@ def test_that_the_recipe_is_what_is_chosen(window, tmp_path, monkeypatch):
     monkeypatch.setattr(
         "regolith_studio.ui.commands.QFileDialog.getSaveFileName", lambda *_: (str(target), "")
     )
-    window.session.choose(n_faces=12, seed=5)
+    window.session.choose(n_facets=12, seed=5)
     window.menus.by_name["save_recipe"].trigger()
     recipe = json.loads(target.read_text())
-    assert (recipe["n_faces"], recipe["seed"], recipe["inputs"]) == (12, 5, ["sample:all"])
-    window.session.choose(n_faces=30)
+    assert (recipe["n_facets"], recipe["seed"], recipe["inputs"]) == (12, 5, ["sample:all"])
+    window.session.choose(n_facets=30)
     window.commands.open_paths([target])
-    assert (window.session.choices.n_faces, window.session.choices.seed) == (12, 5)
-    drawn = {"population": {"sources": ["ma165"], "n": 9000}, "n_faces": 14}
+    assert (window.session.choices.n_facets, window.session.choices.seed) == (12, 5)
+    drawn = {"population": {"sources": ["ma165"], "n": 9000}, "n_facets": 14}
     target.write_text(json.dumps(drawn))
     reading = [task.id for task in window.session.tasks if task.lane == "load"]
     window.commands.open_paths([target])
-    assert window.session.choices.n_faces == 14
+    assert window.session.choices.n_facets == 14
     assert "Run as a batch" in window.toast.sentence.text()
     assert {task.id for task in window.session.tasks if task.lane == "load"} <= set(reading)
 

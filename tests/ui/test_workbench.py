@@ -98,12 +98,12 @@ def test_that_a_project_is_saved_and_brought_back(window, wait, tmp_path, monkey
     monkeypatch.setattr(
         "regolith_studio.ui.projects.QFileDialog.getSaveFileName", lambda *_: (str(target), "")
     )
-    window.session.choose(selected="flat-1", n_faces=14, l_max=6)
+    window.session.choose(selected="flat-1", n_facets=14, l_max=6)
     window.go("sample").filter.setText("flat")
     window.menus.by_name["save_project"].trigger()
     assert not window.projects.modified
     assert window.windowTitle().startswith("work – ")
-    window.session.choose(n_faces=30)
+    window.session.choose(n_facets=30)
     assert window.projects.modified
     assert window.windowTitle().startswith("work * – ")
     assert worth_asking((), window.projects.unsaved()) == ["work.regolith has changes that are not saved."]
@@ -111,14 +111,14 @@ def test_that_a_project_is_saved_and_brought_back(window, wait, tmp_path, monkey
     window.go("explore")
     window.commands.open_paths([target])
     wait(lambda: window.session.choices.selected == "flat-1" and not window.projects.modified, SECONDS)
-    assert (window.session.choices.n_faces, window.session.choices.l_max) == (14, 6)
+    assert (window.session.choices.n_facets, window.session.choices.l_max) == (14, 6)
     assert window.pages.current == "sample"
     assert window.page.filter.text() == "flat"
     assert window.preferences.recent[0] == str(target)
 
 
 def test_that_a_crash_leaves_a_state_that_can_be_brought_back(window, wait):
-    window.session.choose(n_faces=13)
+    window.session.choose(n_facets=13)
     window.projects._autosave()
     assert autosave_path().exists()
     assert stale_autosaves() == []  # this process lives
@@ -126,12 +126,12 @@ def test_that_a_crash_leaves_a_state_that_can_be_brought_back(window, wait):
     left.write_text(Project.of(window.session).model_dump_json())
     assert stale_autosaves() == [left]
     os.utime(left, (moment := datetime(2026, 3, 9, 7, 5).astimezone().timestamp(), moment))
-    window.session.choose(n_faces=40)
+    window.session.choose(n_facets=40)
     window.projects.offer_recovery()
     box = window.findChild(QMessageBox, "recovery")
     assert box.informativeText() == "It was kept at 2026-03-09 07:05."
     box.button(QMessageBox.StandardButton.Yes).click()
-    assert window.session.choices.n_faces == 13
+    assert window.session.choices.n_facets == 13
     window.projects._timer.setInterval(0)
     wait(lambda: not left.exists(), SECONDS)
     wait(lambda: not window.session.tasks, SECONDS)

@@ -23,7 +23,7 @@ from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.half_spaces import HalfSpaces
 
 SIDES = 6
-FEW_FACES = (0, 12, 20, 0)
+FEW_FACETS = (0, 12, 20, 0)
 """Facets that are begun with, by the number of the start; 0 for all."""
 FLUSH = 0.02
 """Triangles of the hull belong to a side of the box up to this sine, and this distance at unit volume."""
@@ -34,7 +34,7 @@ INWARD = 1e-3
 def boxed(
     target: Target,
     problems: tuple[Problem, Problem, Problem],
-    n_faces: int,
+    n_facets: int,
     start: int,
     rng: np.random.Generator,
     steps: tuple[int, int],
@@ -46,15 +46,15 @@ def boxed(
     problems
         With the volume as only condition, with all, and with all but the sphericity.
     start
-        Number of the start; there are as many as :data:`FEW_FACES`, and nothing comes after them.
+        Number of the start; there are as many as :data:`FEW_FACETS`, and nothing comes after them.
     rng
         Chooses the other half-spaces.
     steps
         Of the free and of the bound descent.
     """
-    if start >= len(FEW_FACES):
+    if start >= len(FEW_FACETS):
         return
-    few = FEW_FACES[start] if 0 < ALIKE * FEW_FACES[start] < n_faces else n_faces
+    few = FEW_FACETS[start] if 0 < ALIKE * FEW_FACETS[start] < n_facets else n_facets
     planes = boxed_planes(target, few, rng)
     if planes is None:
         return
@@ -62,19 +62,19 @@ def boxed(
     best: Attempt | None = None
     for found in _in_box(target, free, full, rest, planes, steps):
         best = found if found.better_than(best) else best
-        if few == n_faces:
+        if few == n_facets:
             yield found
     if best is None or not best.exact:
         return
-    if best.n_facets < n_faces:
+    if best.n_facets < n_facets:
         begun = best
         for problem in (full, problems[1]):
-            for found in _grown(target, problem, begun, n_faces, steps[1]):
-                best = found if found.better_than(best) or len(best.offsets) < n_faces else best
+            for found in _grown(target, problem, begun, n_facets, steps[1]):
+                best = found if found.better_than(best) or len(best.offsets) < n_facets else best
                 yield found
-            if best.n_facets == n_faces:
+            if best.n_facets == n_facets:
                 break
-    if len(best.offsets) == n_faces:
+    if len(best.offsets) == n_facets:
         yield from onward(problems[1], best, steps[1])
 
 
@@ -96,23 +96,23 @@ def _in_box(
         yield from compromise(target, full, rest, planes, steps[1], only_rounder=True)
 
 
-def _grown(target: Target, full: Problem, begun: Attempt, n_faces: int, steps: int) -> Iterator[Attempt]:
-    """The real facets of a polyhedron and further ones, up to `n_faces`; nothing where a held one is lost."""
+def _grown(target: Target, full: Problem, begun: Attempt, n_facets: int, steps: int) -> Iterator[Attempt]:
+    """The real facets and further ones, up to `n_facets`; nothing where a held facet is lost."""
     real = facet_areas(HalfSpaces(begun.normals, begun.offsets)) >= SMALLEST_FACET
     if real[: full.held].all():
         normals, offsets = begun.normals[real], begun.offsets[real]
         point = measured(full, normals, offsets, tangents_of(normals), NOWHERE)
-        yield from with_more_facets(target, full, attempt(full, point), n_faces, steps)
+        yield from with_more_facets(target, full, attempt(full, point), n_facets, steps)
 
 
 def boxed_planes(
-    target: Target, n_faces: int, rng: np.random.Generator
+    target: Target, n_facets: int, rng: np.random.Generator
 ) -> tuple[FloatArray, FloatArray] | None:
     """The sides of the particle's least box first, then groups of the hull's triangles that lie elsewhere.
 
-    ``None`` where nothing lies elsewhere, or `n_faces` leaves no half-space for it.
+    ``None`` where nothing lies elsewhere, or `n_facets` leaves no half-space for it.
     """
-    if n_faces <= SIDES:
+    if n_facets <= SIDES:
         return None
     box = target.box
     sides = np.vstack([box.axes, -box.axes])
@@ -127,7 +127,7 @@ def boxed_planes(
     if not elsewhere.any():
         return None
     others, offsets = grouped_planes(
-        normals[elsewhere], areas[elsewhere], centres[elsewhere], rng.random(n_faces - SIDES), 10
+        normals[elsewhere], areas[elsewhere], centres[elsewhere], rng.random(n_facets - SIDES), 10
     )
     offsets = np.maximum(offsets, 0.05) * (1.0 - INWARD * rng.random(len(offsets)))
     return np.vstack([sides, others]), np.concatenate([reach, offsets])

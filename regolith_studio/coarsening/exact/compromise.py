@@ -138,14 +138,14 @@ def with_sphericity_held(full: Problem, state: State, bound_steps: int) -> Itera
 
 
 def with_facets_back(
-    target: Target, problems: tuple[Problem, ...], judge: LossFunction, found: Attempt, n_faces: int
+    target: Target, problems: tuple[Problem, ...], judge: LossFunction, found: Attempt, n_facets: int
 ) -> Attempt:
     """A polyhedron that misses a condition with all its facets, at the descriptors that it has.
 
     Each of the problems is tried until all facets are back; their searches for boxes are ever finer, since
     one that is overlooked would change the descriptors. The sphericity goes free at last.
     """
-    if found.exact or found.n_facets == n_faces:
+    if found.exact or found.n_facets == n_facets:
         return found
     most = judge.value(found.normals, found.offsets) + FACETS_COST
     real, best = found.without_redundant(), found
@@ -153,11 +153,11 @@ def with_facets_back(
         held, point = as_it_is(problem, real.normals, real.offsets)
         if point.worst > TOLERANCE:
             continue
-        for more in with_more_facets(target, held, attempt(held, point), n_faces, 0):
+        for more in with_more_facets(target, held, attempt(held, point), n_facets, 0):
             worth = more.exact and more.n_facets > best.n_facets
             if worth and judge.value(more.normals, more.offsets) <= most:
                 best = replace(more, worst=found.worst)
-        if best.n_facets == n_faces:
+        if best.n_facets == n_facets:
             break
     return best
 

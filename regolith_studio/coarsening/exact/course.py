@@ -101,7 +101,7 @@ class Attempt:
         )
 
 
-def start_planes(target: Target, n_faces: int, rng: np.random.Generator) -> tuple[FloatArray, FloatArray]:
+def start_planes(target: Target, n_facets: int, rng: np.random.Generator) -> tuple[FloatArray, FloatArray]:
     """Half-spaces through groups of the hull's triangles, in general position, each with a facet.
 
     Groups of a smooth needle can all run from end to end, so that nothing bounds the ends; then half-spaces
@@ -114,24 +114,24 @@ def start_planes(target: Target, n_faces: int, rng: np.random.Generator) -> tupl
         hull.face_area_vectors[sound] / areas[sound, None],
         areas[sound],
         hull.triangles[sound].mean(axis=1),
-        rng.random(n_faces),
+        rng.random(n_facets),
         10,
     )
-    offsets = np.maximum(offsets, 0.05) * (1.0 + TIE_BREAK * rng.random(n_faces))
+    offsets = np.maximum(offsets, 0.05) * (1.0 + TIE_BREAK * rng.random(n_facets))
     if not _bounds_a_solid(normals, offsets):
-        normals, offsets = touching_planes(hull.vertices, n_faces, rng)
+        normals, offsets = touching_planes(hull.vertices, n_facets, rng)
     cuts, more_normals, more_offsets = _with_cuts(target, normals, offsets, CUT_DEPTHS[0])
     return (more_normals, more_offsets) if cuts >= 0 else (normals, offsets)
 
 
 def touching_planes(
-    points: FloatArray, n_faces: int, rng: np.random.Generator
+    points: FloatArray, n_facets: int, rng: np.random.Generator
 ) -> tuple[FloatArray, FloatArray]:
     """Half-spaces that touch points about the origin, with the normals of an ellipsoid of their extents."""
     rotation = np.linalg.qr(rng.normal(size=(3, 3)))[0]
-    normals = fibonacci_directions(n_faces) @ rotation / np.ptp(points, axis=0)
+    normals = fibonacci_directions(n_facets) @ rotation / np.ptp(points, axis=0)
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    offsets = (points @ normals.T).max(axis=0) * (1.0 + TIE_BREAK * rng.random(n_faces))
+    offsets = (points @ normals.T).max(axis=0) * (1.0 + TIE_BREAK * rng.random(n_facets))
     return normals, offsets
 
 

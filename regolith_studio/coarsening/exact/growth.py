@@ -19,7 +19,7 @@ from regolith_studio.coarsening.target import Target
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.directions import fibonacci_directions
 
-FEW_FACES = (
+FEW_FACETS = (
     (0.15, (20, 12, 30, 50)),
     (0.085, (20, 30, 50, 12)),
     (0.055, (30, 20, 50, 12)),
@@ -34,21 +34,21 @@ BEYOND = 6.0
 """Where half-spaces wait for their cut, in units of the largest offset."""
 
 
-def numbers_to_grow_from(target: Target, n_faces: int, keeps_sphericity: bool) -> tuple[int, ...]:
-    """Facets of the polyhedra that are solved before there are `n_faces`, the most promising first.
+def numbers_to_grow_from(target: Target, n_facets: int, keeps_sphericity: bool) -> tuple[int, ...]:
+    """Facets of the polyhedra that are solved before there are `n_facets`, the most promising first.
 
-    `n_faces` itself stands for a start with all of them; it is always among them. Numbers whose Goldberg
+    `n_facets` itself stands for a start with all of them; it is always among them. Numbers whose Goldberg
     bound is below the particle's sphericity are not.
     """
     surplus = more_surface_than_hull(target) if keeps_sphericity else -np.inf
-    order = next(few for least, few in FEW_FACES if surplus >= least)
+    order = next(few for least, few in FEW_FACETS if surplus >= least)
     wanted = target.descriptors["sphericity"] if keeps_sphericity else 0.0
     numbers = [
-        few if ALIKE * few < n_faces else n_faces for few in order if greatest_sphericity(few) > wanted
+        few if ALIKE * few < n_facets else n_facets for few in order if greatest_sphericity(few) > wanted
     ]
     if not keeps_sphericity:
-        numbers.insert(0, n_faces)
-    return tuple(dict.fromkeys([*numbers, n_faces]))
+        numbers.insert(0, n_facets)
+    return tuple(dict.fromkeys([*numbers, n_facets]))
 
 
 def more_surface_than_hull(target: Target) -> float:
@@ -62,46 +62,46 @@ def grown(
     target: Target,
     free: Problem,
     full: Problem,
-    n_faces: int,
-    few_faces: int,
+    n_facets: int,
+    few_facets: int,
     starts: int,
     rng: np.random.Generator,
     free_steps: int,
     bound_steps: int,
 ) -> Iterator[Attempt]:
-    """`n_faces` half-spaces, cut out of the best of `starts` polyhedra with `few_faces`.
+    """`n_facets` half-spaces, cut out of the best of `starts` polyhedra with `few_facets`.
 
     Where none of them meets all conditions, the nearest comes, with half-spaces that bound nothing. Other
     parameters as of :func:`regolith_studio.coarsening.exact.course.course`; `rng` chooses the starts.
     """
     few: Attempt | None = None
     for _ in range(starts):
-        start = start_planes(target, few_faces, rng)
+        start = start_planes(target, few_facets, rng)
         for found in course(target, free, full, start, free_steps, bound_steps):
             if found.better_than(few):
                 few = found
     if few is None:
         return
     if few.exact:
-        yield from with_more_facets(target, full, few, n_faces, bound_steps)
+        yield from with_more_facets(target, full, few, n_facets, bound_steps)
     else:
-        yield waiting(full, few, n_faces)
+        yield waiting(full, few, n_facets)
 
 
 def with_more_facets(
-    target: Target, problem: Problem, few: Attempt, n_faces: int, steps: int
+    target: Target, problem: Problem, few: Attempt, n_facets: int, steps: int
 ) -> Iterator[Attempt]:
     """Polyhedra with ever more cuts, each number of them polished and followed by a descent of `steps` steps.
 
-    Only those of `n_faces` half-spaces come. Where cuts cannot be kept, the last exact polyhedron comes with
+    Only those of `n_facets` half-spaces come. Where cuts cannot be kept, the last exact polyhedron comes with
     its half-spaces that bound nothing.
     """
-    for size in stages(len(few.offsets), n_faces):
+    for size in stages(len(few.offsets), n_facets):
         normals, offsets = with_waiting(few.normals, few.offsets, size)
         point = measured(problem, normals, offsets, tangents_of(normals), NOWHERE)
         more: Attempt | None = None
         for found in mended(target, problem, point, steps):
-            if size == n_faces:
+            if size == n_facets:
                 yield found
             if found.better_than(more):
                 more = found
@@ -110,25 +110,25 @@ def with_more_facets(
         few = more
     else:
         return
-    yield waiting(problem, few, n_faces)
+    yield waiting(problem, few, n_facets)
 
 
-def waiting(problem: Problem, few: Attempt, n_faces: int) -> Attempt:
-    """The same polyhedron with half-spaces that bound nothing, `n_faces` in all."""
-    normals, offsets = with_waiting(few.normals, few.offsets, n_faces)
+def waiting(problem: Problem, few: Attempt, n_facets: int) -> Attempt:
+    """The same polyhedron with half-spaces that bound nothing, `n_facets` in all."""
+    normals, offsets = with_waiting(few.normals, few.offsets, n_facets)
     return attempt(problem, measured(problem, normals, offsets, tangents_of(normals), NOWHERE))
 
 
-def stages(few_faces: int, n_faces: int) -> Iterator[int]:
-    """Numbers of facets on the way, the last of them `n_faces`."""
-    size = few_faces
-    while size < n_faces:
-        size = min(int(FACTOR * size), n_faces)
+def stages(few_facets: int, n_facets: int) -> Iterator[int]:
+    """Numbers of facets on the way, the last of them `n_facets`."""
+    size = few_facets
+    while size < n_facets:
+        size = min(int(FACTOR * size), n_facets)
         yield size
 
 
-def with_waiting(normals: FloatArray, offsets: FloatArray, n_faces: int) -> tuple[FloatArray, FloatArray]:
-    """The half-spaces and, up to `n_faces`, others that lie far outside and bound nothing yet."""
-    more = n_faces - len(offsets)
+def with_waiting(normals: FloatArray, offsets: FloatArray, n_facets: int) -> tuple[FloatArray, FloatArray]:
+    """The half-spaces and, up to `n_facets`, others that lie far outside and bound nothing yet."""
+    more = n_facets - len(offsets)
     far = np.full(more, BEYOND * float(offsets.max()))
     return np.vstack([normals, fibonacci_directions(more)]), np.concatenate([offsets, far])

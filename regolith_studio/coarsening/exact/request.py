@@ -106,11 +106,11 @@ class Request:
 
 
 def reason_for(
-    target: Target, request: Request, n_faces: int, n_real: int, found: Mapping[str, float]
+    target: Target, request: Request, n_facets: int, n_real: int, found: Mapping[str, float]
 ) -> str | None:
     """One sentence about the condition that is missed by most, and one about facets that are missing.
 
-    ``None`` where the descriptors `found` meet all conditions to 1e-6 with `n_real` = `n_faces` facets. The
+    ``None`` where the descriptors `found` meet all conditions to 1e-6 with `n_real` = `n_facets` facets. The
     aspect ratio is named where two diameters are within that and their ratio is not.
     """
     errors = relative_errors(target.descriptors, found)
@@ -119,15 +119,15 @@ def reason_for(
         missed["aspect_ratio"] = errors["aspect_ratio"]
     worst = max(missed, key=lambda key: missed[key], default=None)
     if worst is None or missed[worst] <= EXACT:
-        return None if n_real == n_faces else facets_reason(n_real, n_faces)
+        return None if n_real == n_facets else facets_reason(n_real, n_facets)
     wanted = target.descriptors["sphericity"]
-    fewer = "" if n_real == n_faces else f" The result has {n_real} facets instead of {n_faces}."
-    if "sphericity" in missed and (bound := sphericity_reason(wanted, n_faces)) is not None:
+    fewer = "" if n_real == n_facets else f" The result has {n_real} facets instead of {n_facets}."
+    if "sphericity" in missed and (bound := sphericity_reason(wanted, n_facets)) is not None:
         return bound + fewer
     rough = worst == "sphericity" and found[worst] > wanted
     advice = ROUGH_ADVICE if rough else ADVICE
     return (
-        f"No polyhedron with {n_faces} faces was found that meets all descriptors:"
+        f"No polyhedron with {n_facets} faces was found that meets all descriptors:"
         f" {_reported(worst, request).replace('_', ' ')} is off by {100 * missed[worst]:.2g} %; {advice}"
         + fewer
     )
@@ -151,19 +151,19 @@ def own_planes(target: Target, below: int) -> HalfSpaces | None:
     return HalfSpaces(own[:, :3], own[:, 3]) if len(own) < below else None
 
 
-def own_reason(n_own: int, n_faces: int) -> str:
+def own_reason(n_own: int, n_facets: int) -> str:
     """One sentence about a convex particle with fewer facets than it shall have."""
     return (
-        f"The result has {n_own} facets instead of {n_faces}: the particle is convex and has {n_own} facets"
+        f"The result has {n_own} facets instead of {n_facets}: the particle is convex and has {n_own} facets"
         " itself, and no other polyhedron was found that meets all descriptors."
     )
 
 
-def facets_reason(n_real: int, n_faces: int) -> str:
+def facets_reason(n_real: int, n_facets: int) -> str:
     """One sentence about half-spaces that bound no facet."""
     return (
-        f"The result has {n_real} facets instead of {n_faces}: no place was found where the other half-spaces"
-        " bound a facet and all descriptors are met."
+        f"The result has {n_real} facets instead of {n_facets}: no place was found where the other"
+        " half-spaces bound a facet and all descriptors are met."
     )
 
 

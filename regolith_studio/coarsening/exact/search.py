@@ -9,7 +9,7 @@ import numpy as np
 from regolith_studio.coarsening.bounds import sphericity_reason
 from regolith_studio.coarsening.core.box_search import DENSE_ANGLE, FINE_ANGLE, SAMPLE_ANGLE
 from regolith_studio.coarsening.evaluation import LossFunction
-from regolith_studio.coarsening.exact.boxed import FEW_FACES, boxed
+from regolith_studio.coarsening.exact.boxed import FEW_FACETS, boxed
 from regolith_studio.coarsening.exact.compromise import compromise, with_facets_back
 from regolith_studio.coarsening.exact.course import Attempt, course, densely_checked, start_planes
 from regolith_studio.coarsening.exact.evening import COST, evened, has_small_facets
@@ -78,13 +78,13 @@ class Search:
         self,
         target: Target,
         weights: LossWeights,
-        n_faces: int,
+        n_facets: int,
         level: Level,
         retries: int,
         seed: np.random.SeedSequence,
     ) -> None:
         request = Request.of(target, weights)
-        self._target, self._request, self._n_faces, self._level = target, request, n_faces, level
+        self._target, self._request, self._n_faces, self._level = target, request, n_facets, level
         self._rng = np.random.default_rng(seed)
         self._free = request.problem(target.rays, SAMPLE_ANGLE, only_volume=True)
         self._full = request.problem(target.rays, SAMPLE_ANGLE)
@@ -94,10 +94,10 @@ class Search:
         self._judge = LossFunction(target, weights, everything=True)
         self._round_asked = bool(request.asked[SPHERICITY])
         wanted = target.descriptors["sphericity"]
-        self._hopeless = self._round_asked and sphericity_reason(wanted, n_faces) is not None
+        self._hopeless = self._round_asked and sphericity_reason(wanted, n_facets) is not None
         self._total = ROUND_STARTS if self._hopeless else level.starts + retries
         self._numbers = (
-            (n_faces,) if self._hopeless else numbers_to_grow_from(target, n_faces, self._round_asked)
+            (n_facets,) if self._hopeless else numbers_to_grow_from(target, n_facets, self._round_asked)
         )
         self._record = Record(self._judge, self._total)
         self._planes: tuple[FloatArray, FloatArray]
@@ -151,14 +151,14 @@ class Search:
         counts = {"starts": float(self._tried), "exact": float(self._record.met)}
         if not self._record.met and self._itself is not None:
             solid, found = self._itself, describe(self._itself)
-            reason: str | None = own_reason(solid.n_faces, self._n_faces)
+            reason: str | None = own_reason(solid.n_facets, self._n_faces)
         else:
             outcome = self._evened() or self._record.outcome or self._found()
             outcome = with_facets_back(
                 self._target, self._checks, self._judge, self._kept(outcome), self._n_faces
             )
             solid, found = outcome.solid, outcome.descriptors
-            reason = reason_for(self._target, self._request, self._n_faces, solid.n_faces, found)
+            reason = reason_for(self._target, self._request, self._n_faces, solid.n_facets, found)
         yield from self._record.ended(solid.half_spaces)
         history = tuple(self._record.history)
         return MethodResult(solid.half_spaces, history, reason, counts, polyhedron=solid, achieved=found)
@@ -235,7 +235,7 @@ class Search:
         """Whether the sphericity is missed by so much that other starts would miss it too."""
         best = self._record.best
         nearly_met = best is not None and best.worst < AS_GOOD_AS_MET
-        enough = self._hopeless or self._tried >= len(FEW_FACES)
+        enough = self._hopeless or self._tried >= len(FEW_FACETS)
         return enough and sum(self._misses) > OUT_OF_REACH and not nearly_met
 
     @property

@@ -25,7 +25,7 @@ class CoarseningMethod(Protocol):
     def run(
         self,
         target: "Target",
-        n_faces: int,
+        n_facets: int,
         weights: "LossWeights",
         seed: "np.random.SeedSequence",
         settings: Any,

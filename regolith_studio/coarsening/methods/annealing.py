@@ -108,7 +108,7 @@ class AnnealingMethod:
     def run(
         self,
         target: Target,
-        n_faces: int,
+        n_facets: int,
         weights: LossWeights,
         seed: np.random.SeedSequence,
         settings: AnnealingSettings,
@@ -116,7 +116,7 @@ class AnnealingMethod:
         """One step an iteration, and step 0 for the start."""
         rng = np.random.default_rng(seed)
         evaluate = LossFunction(target, weights)
-        points = _start(target, n_faces, rng)
+        points = _start(target, n_facets, rng)
         now = _judged(evaluate, points)
         if now is None:
             raise GeometryError("The decimated convex hull bounds no polyhedron to start from.")
@@ -152,11 +152,11 @@ class AnnealingMethod:
         return MethodResult(HalfSpaces.from_points(result), tuple(history), steps=counts)
 
 
-def _start(target: Target, n_faces: int, rng: np.random.Generator) -> FloatArray:
-    half_spaces = quadric_half_spaces(target, n_faces)
+def _start(target: Target, n_facets: int, rng: np.random.Generator) -> FloatArray:
+    half_spaces = quadric_half_spaces(target, n_facets)
     points = half_spaces.points
-    if len(points) < n_faces:
-        extra = np.arange(n_faces - len(points)) % len(points)
+    if len(points) < n_facets:
+        extra = np.arange(n_facets - len(points)) % len(points)
         points = np.vstack([points, points[extra] * (1.0 + 1e-3)])
     ties: FloatArray = 1.0 + TIE_BREAK * rng.uniform(-1.0, 1.0, (len(points), 1))
     return points * ties

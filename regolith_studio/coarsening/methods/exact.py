@@ -56,13 +56,13 @@ class ExactMethod:
     def run(
         self,
         target: Target,
-        n_faces: int,
+        n_facets: int,
         weights: LossWeights,
         seed: np.random.SeedSequence,
         settings: ExactSettings,
     ) -> Generator[MethodStep, None, MethodResult]:
         """A step for each better polyhedron; the first is the start, the last what is reported."""
-        search = Search(target, weights, n_faces, LEVELS[settings.level], settings.retries, seed)
+        search = Search(target, weights, n_facets, LEVELS[settings.level], settings.retries, seed)
         yield from search.from_starts()
         yield from search.compromises()
         return (yield from search.ending())

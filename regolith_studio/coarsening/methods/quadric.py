@@ -31,13 +31,13 @@ class QuadricSettings:
     restore_volume: bool = field(default=False, metadata={"label": "Restore the volume"})
 
 
-def variants(target: Target, n_faces: int) -> dict[str, dict[str, float]]:
+def variants(target: Target, n_facets: int) -> dict[str, dict[str, float]]:
     """Errors of the three readings of the baseline: ``mesh``, ``half_spaces``, ``volume_restored``."""
-    half_spaces = quadric_half_spaces(target, n_faces)
+    half_spaces = quadric_half_spaces(target, n_facets)
     polyhedron = ConvexPolyhedron.from_half_spaces(half_spaces)
     restored = ConvexPolyhedron.from_half_spaces(restored_volume(half_spaces))
     solids: Mapping[str, Mesh | ConvexPolyhedron] = {
-        "mesh": decimated_hull(target, n_faces),
+        "mesh": decimated_hull(target, n_facets),
         "half_spaces": polyhedron,
         "volume_restored": restored,
     }
@@ -62,16 +62,16 @@ class QuadricMethod:
     def run(
         self,
         target: Target,
-        n_faces: int,
+        n_facets: int,
         weights: LossWeights,
         seed: np.random.SeedSequence,  # noqa: ARG002
         settings: QuadricSettings,
     ) -> Generator[MethodStep, None, MethodResult]:
         """One step; the loss is that of the half-spaces."""
-        half_spaces = quadric_half_spaces(target, n_faces)
+        half_spaces = quadric_half_spaces(target, n_facets)
         if settings.restore_volume:
             half_spaces = restored_volume(half_spaces)
-        others = variants(target, n_faces)
+        others = variants(target, n_facets)
         chosen = others["volume_restored" if settings.restore_volume else "half_spaces"]
         value = loss(weights, chosen, chosen[JACCARD])
         yield MethodStep(1, 1, value, half_spaces)

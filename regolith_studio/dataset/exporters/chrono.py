@@ -58,7 +58,7 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
 
 def _obj(key: str, shape: ConvexPolyhedron) -> bytes:
     """Triangles, so that every reader takes them; indices from 1."""
-    lines = [f"# regolith-studio, volume 1, {shape.n_faces} facets", f"o {key}"]
+    lines = [f"# regolith-studio, volume 1, {shape.n_facets} facets", f"o {key}"]
     lines += ["v " + " ".join(map(repr, corner)) for corner in shape.vertices.tolist()]
     lines += ["f " + " ".join(str(index + 1) for index in face) for face in shape.mesh.faces.tolist()]
     return ("\n".join(lines) + "\n").encode("ascii")

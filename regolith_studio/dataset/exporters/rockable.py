@@ -40,7 +40,7 @@ def _block(key: str, shape: ConvexPolyhedron, rounding: float) -> tuple[str, flo
     lines = ["<", f"name {key}", f"radius {radius!r}", "preCompDone y"]
     lines += [f"nv {core.n_vertices}", *(_row(corner) for corner in core.vertices)]
     lines += [f"ne {len(body.edges)}", *(f"{first} {second}" for first, second in body.edges)]
-    lines += [f"nf {core.n_faces}"]
+    lines += [f"nf {core.n_facets}"]
     lines += [" ".join(map(str, (len(facet), *facet))) for facet in core.facets]
     lines += [
         f"obb.extent {_row((high - low) / 2 + radius)}",

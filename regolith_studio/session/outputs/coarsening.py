@@ -62,7 +62,7 @@ def error_table(done: Sequence[CoarsenedParticle]) -> Table:
     rows: list[tuple[Cell, ...]] = [
         (
             each.name,
-            coarse.n_faces,
+            coarse.n_facets,
             coarse.n_vertices,
             coarse.n_triangles,
             *[_per_cent(coarse.errors[key], coarse.bounds[key]) for key in LOSS_KEYS],
@@ -86,8 +86,8 @@ def coarsening_entry(each: CoarsenedParticle, coarse: Coarsened) -> dict[str, An
         "name": each.name,
         "file": f"{each.name}.stl",
         "method": coarse.method,
-        "n_faces_asked": coarse.n_faces_asked,
-        "n_faces": coarse.n_faces,
+        "n_facets_asked": coarse.n_facets_asked,
+        "n_facets": coarse.n_facets,
         "n_vertices": coarse.n_vertices,
         "n_triangles": coarse.n_triangles,
         "errors": dict(coarse.errors),

@@ -136,7 +136,7 @@ def _fidelity(summary: Summary) -> str:
     rows = [
         [
             each["name"],
-            *[str(each[key]) for key in ("n_faces", "n_vertices", "n_triangles")],
+            *[str(each[key]) for key in ("n_facets", "n_vertices", "n_triangles")],
             *[f"{each['errors'][key]:.2%}" for key in LOSS_KEYS],
             f"{each['jaccard_distance']:.3f}",
         ]

@@ -53,7 +53,7 @@ def summary(count: int, choices: Choices) -> list[tuple[str, str]]:
         target = tr(
             "the surface of the spherical-harmonics fit at l<sub>max</sub> = {l_max}", l_max=choices.l_max
         )
-    size = count * (84 + 50 * (4 * choices.face_count - 12)) / 1024
+    size = count * (84 + 50 * (4 * choices.facet_count - 12)) / 1024
     files = tr("{count}, as unit-volume STL files, {size:,.0f} KiB in all", count=count, size=size)
     if choices.stop_at == "error":
         files = tr("{count}, as unit-volume STL files", count=count)

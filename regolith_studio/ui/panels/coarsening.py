@@ -14,7 +14,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from regolith_studio.coarsening.coarsen import FACES_LIMITS
+from regolith_studio.coarsening.coarsen import FACETS_LIMITS
 from regolith_studio.coarsening.methods import METHODS
 from regolith_studio.ui.icons import icon
 from regolith_studio.ui.theme import Theme, current_theme
@@ -27,21 +27,21 @@ from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
 from regolith_studio.ui.widgets.settings_form import SettingsForm
 from regolith_studio.ui.widgets.steady_texts import SteadyTexts
 
-STOPS = {"faces": mark("Facets n"), "triangles": mark("Triangles"), "error": mark("Error ≤")}
+STOPS = {"facets": mark("Facets n"), "triangles": mark("Triangles"), "error": mark("Error ≤")}
 FACES = NumberSpec(
     "",
     mark("Number of facets"),
-    FACES_LIMITS[0],
+    FACETS_LIMITS[0],
     60,
-    limit=FACES_LIMITS[1],
+    limit=FACETS_LIMITS[1],
     tip=mark("Half-spaces of Eq. 5; n facets in general position have 2n−4 vertices and 4n−12 triangles."),
 )
 TRIANGLES = NumberSpec(
     "",
     mark("Most triangles"),
-    4 * FACES_LIMITS[0] - 12,
+    4 * FACETS_LIMITS[0] - 12,
     228,
-    limit=4 * FACES_LIMITS[1] - 12,
+    limit=4 * FACETS_LIMITS[1] - 12,
     tip=mark("The polyhedron has as many facets as surely have no more triangles than this."),
 )
 ERROR = NumberSpec(
@@ -67,7 +67,7 @@ class CoarseningPanel(QWidget):
     """Edits the coarsening, all but the weights of its loss."""
 
     FIELDS = (
-        *("stop_at", "n_faces", "n_triangles", "largest_error"),
+        *("stop_at", "n_facets", "n_triangles", "largest_error"),
         *("target", "method", "settings", "seed"),
     )
     valueChanged = Signal(dict)  # noqa: N815
@@ -79,10 +79,10 @@ class CoarseningPanel(QWidget):
         self.stop_at = ChoiceBox("stop_at", tr("What says how fine the polyhedron is"), STOPS)
         self.stop_at.setToolTip(self.stop_at.accessibleName())
         self.stop_at.setMinimumContentsLength(max(len(tr(label)) for label in STOPS.values()))
-        self.n_faces = _amount(FACES, "n_faces")
+        self.n_facets = _amount(FACES, "n_facets")
         self.n_triangles = _amount(TRIANGLES, "n_triangles")
         self.largest_error = _amount(ERROR, "largest_error")
-        self._amounts = {"faces": self.n_faces, "triangles": self.n_triangles, "error": self.largest_error}
+        self._amounts = {"facets": self.n_facets, "triangles": self.n_triangles, "error": self.largest_error}
         self.target = ChoiceBox("target", tr("What is imitated"), TARGET_LABELS)
         self.method = ChoiceBox("method", tr("Coarsening method"), {k: m.label for k, m in METHODS.items()})
         self.seed = _seed_field()
@@ -110,7 +110,7 @@ class CoarseningPanel(QWidget):
         settings = form.value() if form else {}
         return {
             "stop_at": self.stop_at.value(),
-            "n_faces": int(self.n_faces.value()),
+            "n_facets": int(self.n_facets.value()),
             "n_triangles": int(self.n_triangles.value()),
             "largest_error": _share(self.largest_error.value()),
             "target": self.target.value(),
@@ -122,7 +122,7 @@ class CoarseningPanel(QWidget):
     def setValue(self, value: Mapping[str, Any]) -> None:
         """Show other choices."""
         self.stop_at.setValue(value["stop_at"])
-        self.n_faces.setValue(value["n_faces"])
+        self.n_facets.setValue(value["n_facets"])
         self.n_triangles.setValue(value["n_triangles"])
         self.largest_error.setValue(100.0 * value["largest_error"])
         self._show_amount()
@@ -182,7 +182,7 @@ class CoarseningPanel(QWidget):
         layout.addWidget(SteadyTexts((self.outcome,), LINES))
 
     def _connect(self) -> None:
-        self.n_faces.valueChanged.connect(lambda n: self.valueChanged.emit({"n_faces": int(n)}))
+        self.n_facets.valueChanged.connect(lambda n: self.valueChanged.emit({"n_facets": int(n)}))
         self.n_triangles.valueChanged.connect(lambda n: self.valueChanged.emit({"n_triangles": int(n)}))
         self.largest_error.valueChanged.connect(
             lambda percent: self.valueChanged.emit({"largest_error": _share(percent)})

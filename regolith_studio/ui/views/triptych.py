@@ -129,10 +129,10 @@ class Triptych(QSplitter):
         self.pointer.forget()
         self._draw_polyhedron()
         self.frames[POLYHEDRON].set_texts(
-            tr("Polyhedron, {count} facets", count=solid.n_faces),
+            tr("Polyhedron, {count} facets", count=solid.n_facets),
             tr("{count} vertices, {triangles} triangles", count=solid.n_vertices, triangles=solid.n_triangles)
             + _shortfall(results),
-            tr("{count} facets", count=solid.n_faces),
+            tr("{count} facets", count=solid.n_facets),
         )
         self.comparison.set_shapes(self._shapes, POLYHEDRON)
 
@@ -288,6 +288,6 @@ def _lengths(bounds: FloatArray) -> str:
 def _shortfall(results: Results) -> str:
     """A few words where a finished coarsening has fewer facets than were asked for."""
     done = results.coarsened
-    if done is None or done.n_faces == done.n_faces_asked:
+    if done is None or done.n_facets == done.n_facets_asked:
         return ""
-    return tr("; {count} facets were asked for", count=done.n_faces_asked)
+    return tr("; {count} facets were asked for", count=done.n_facets_asked)

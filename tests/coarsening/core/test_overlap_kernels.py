@@ -51,16 +51,16 @@ def test_that_a_cube_shares_the_sphere_inside_it() -> None:
     assert shared(target, CUBE, np.full(6, side))[0] == pytest.approx(1.0 - caps, abs=3e-3)
 
 
-@pytest.mark.parametrize("n_faces", [4, 5, 6, 7, 20])
+@pytest.mark.parametrize("n_facets", [4, 5, 6, 7, 20])
 @pytest.mark.parametrize("shift", [0.0, 0.35])
 def test_that_the_shared_volume_does_not_need_the_planes_that_rays_meet(
-    target: Target, n_faces: int, shift: float
+    target: Target, n_facets: int, shift: float
 ) -> None:
     """Seen from beside its middle, the particle is crossed several times by some rays and never by others."""
-    rng = np.random.default_rng(n_faces)
-    normals = np.vstack([CUBE, rng.normal(size=(20, 3))])[-n_faces:]
+    rng = np.random.default_rng(n_facets)
+    normals = np.vstack([CUBE, rng.normal(size=(20, 3))])[-n_facets:]
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    offsets, directions = rng.uniform(0.4, 0.7, n_faces), fibonacci_directions(2_100)
+    offsets, directions = rng.uniform(0.4, 0.7, n_facets), fibonacci_directions(2_100)
     mesh = target.mesh.moved(shift=(shift, 0.1, 0.0))
     crossings = cast(mesh.vertices, mesh.faces, bundle_of(directions))
     dual = normals / offsets[:, None]
@@ -68,7 +68,7 @@ def test_that_the_shared_volume_does_not_need_the_planes_that_rays_meet(
     expected = shared_volume(*crossings, 1e-3, radius)
     table = crossings_of(directions, *crossings)
     for function in (shared_by_planes, shared_by_planes.py_func):  # type: ignore[attr-defined]
-        if function is shared_by_planes or n_faces == 4:
+        if function is shared_by_planes or n_facets == 4:
             with np.errstate(divide="ignore"):
                 found = function(dual, table, 1e-3)
             assert found == pytest.approx(expected, rel=1e-12)

@@ -39,11 +39,11 @@ def shapes(dataset: Dataset) -> list[Shown]:
         tip = tr(
             "{name}: {faces} facets, {vertices} vertices, stands for {count} particles",
             name=one.name,
-            faces=solid.n_faces,
+            faces=solid.n_facets,
             vertices=solid.n_vertices,
             count=one.n_members,
         )
-        words = f"{100 * weight:.1f} %\n" + tr("{count} facets", count=solid.n_faces)
+        words = f"{100 * weight:.1f} %\n" + tr("{count} facets", count=solid.n_facets)
         shown.append((float(weight), Shown(solid.mesh, words, tip, coarsened=True)))
     return _by_share(shown)
 

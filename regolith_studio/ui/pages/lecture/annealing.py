@@ -146,8 +146,8 @@ class AnnealingView(QWidget):
             tr(
                 "loss {loss:.4g}; {facets} facets of {planes} planes",
                 loss=step.evaluation.loss,
-                facets=solid.n_faces,
-                planes=lesson.n_faces,
+                facets=solid.n_facets,
+                planes=lesson.n_facets,
             ),
         )
         self._plot_loss(number)
@@ -191,7 +191,7 @@ class AnnealingView(QWidget):
             tr(
                 "loss {loss:.4g}; {facets} facets; veil: what is imitated",
                 loss=exact.loss,
-                facets=exact.n_faces,
+                facets=exact.n_facets,
             ),
         )
         self.exact_formula.set_lines(*words.exact_lines(lesson))

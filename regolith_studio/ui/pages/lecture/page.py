@@ -166,7 +166,7 @@ class LecturePage(PageWidget):
             return
         seed = choices.seed + self._seed
         settings = choices.settings if choices.method == "annealing" else ()
-        wanted = (mesh, choices.face_count, choices.weights, settings, seed)
+        wanted = (mesh, choices.facet_count, choices.weights, settings, seed)
         if self._made_for.get("annealing") == wanted:
             return
         self._made_for["annealing"] = wanted
@@ -180,7 +180,7 @@ class LecturePage(PageWidget):
         self.request.setText(
             tr(
                 "{count} planes, imitating {imitated}, seed {seed}",
-                count=choices.face_count,
+                count=choices.facet_count,
                 imitated=imitated,
                 seed=seed,
             )

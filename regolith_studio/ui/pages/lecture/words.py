@@ -108,7 +108,7 @@ def sentence_of(step: AnnealingStep, lesson: AnnealingLesson) -> str:
         return tr(
             "The start: the convex hull, decimated to {count} planes. In each step one plane is moved at"
             " random, and the move is taken or not.",
-            count=lesson.n_faces,
+            count=lesson.n_facets,
         )
     moved = tr(
         "Plane {number} of {count} is moved by {distance:.3g} µm",

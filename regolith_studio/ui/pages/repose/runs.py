@@ -23,7 +23,7 @@ from regolith_studio.ui.widgets.curve_plot import Curve, CurvePlot
 
 AGAINST: Mapping[str, tuple[str, ...]] = {
     mark("Static friction"): ("case", "contact", "static_friction"),
-    mark("Facets a particle"): ("particles", "mean_faces"),
+    mark("Facets a particle"): ("particles", "mean_facets"),
     mark("Rolling resistance"): ("case", "contact", "rolling_friction"),
     mark("Gravity [m/s²]"): ("case", "test", "gravity"),
     mark("Wall friction"): ("case", "test", "wall_friction"),

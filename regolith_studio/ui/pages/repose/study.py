@@ -30,7 +30,7 @@ from regolith_studio.ui.widgets.labels import remark
 
 VARIED: Mapping[str, tuple[str, str]] = {
     "static_friction": (mark("Static friction"), "0.2, 0.4, 0.8"),
-    "n_faces": (mark("Facets of the open particles"), "8, 20, 60"),
+    "n_facets": (mark("Facets of the open particles"), "8, 20, 60"),
     "preset": (mark("Weights of the loss, open particles"), "overlap, size, all"),
     "rolling_friction": (mark("Rolling resistance"), "0, 0.1, 0.3"),
     "cohesion": (mark("Cohesion"), "none, scaled"),

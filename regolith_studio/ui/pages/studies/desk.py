@@ -105,5 +105,5 @@ class VariationDesk:
     def _is_outdated(self, key: str) -> bool:
         made, now = self._made[key], self._session.choices
         if key == "faces":
-            made = made.replaced(stop_at="faces", n_faces=now.face_count)
+            made = made.replaced(stop_at="facets", n_facets=now.facet_count)
         return made.weights != now.weights or depends(Kind.COARSENING_STUDY, made, now)

@@ -107,7 +107,7 @@ class SolidGallery(QWidget):
         item.setToolTip(
             tr(
                 "{count} facets, Jaccard distance J = {distance:.3f}, loss of this row {loss:.3g}",
-                count=found.n_faces,
+                count=found.n_facets,
                 distance=found.jaccard_distance,
                 loss=found.loss,
             )

@@ -74,7 +74,7 @@ class RowsBar(QWidget):
     def show_facets(self, choices: Choices) -> None:
         """Say how many facets studies take where polyhedra stop at an error."""
         stops = choices.stop_at == "error"
-        words = tr("compared at {count} facets each, not at an error", count=choices.face_count)
+        words = tr("compared at {count} facets each, not at an error", count=choices.facet_count)
         self.remark.setText(words if stops else "")
 
     def _menu(self) -> QMenu:

@@ -47,7 +47,7 @@ class FacesPlot(BandPlot):
         if study is None:
             self.set_series([])
             return
-        x = tuple(float(row.n_faces) for row in study.rows)
+        x = tuple(float(row.n_facets) for row in study.rows)
         values, (low, high) = (each.clip(min=LEAST_DRAWN) for each in (100 * study.rmsre, 100 * study.bands))
         self.set_series(
             [
