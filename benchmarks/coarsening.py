@@ -168,7 +168,7 @@ def report_evaluations(rounds: Array, n_facets: int) -> None:
     """Microseconds of each side, median ratio and the middle 80 % of the ratios."""
     names = list(PLAIN)
     print(
-        f"\n| one evaluation of the loss, {n_facets} faces | ours, us | plain program | us | ratio | 80 % |"
+        f"\n| one evaluation of the loss, {n_facets} facets | ours, us | plain program | us | ratio | 80 % |"
     )
     print("| --- | ---: | --- | ---: | ---: | --- |")
     for number, (title, _, _, against) in enumerate(CASES):

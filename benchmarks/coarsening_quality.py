@@ -1,7 +1,7 @@
 """How well the exact method keeps its promise: ``python -m benchmarks.coarsening_quality FOLDER...``.
 
 Every closed particle of each folder (or of the shipped sample, where none is named) is coarsened with all
-weights 1, for each number of faces and each level. Printed for each: particles met to 1e-6; others that came
+weights 1, for each number of facets and each level. Printed for each: particles met to 1e-6; others that came
 with a reason; those with all facets; the largest error of V, S, Dmin, Dmax and AR among particles without a
 reason; the median Jaccard distance; median and longest processor time of one thread, with the target measured
 before. ``--independent`` measures errors by benchmarks/independent.py, which shares no code with the method;

@@ -40,7 +40,7 @@ def acts() -> dict[str, Act]:
     return {
         "another particle": lambda window: window.session.select(window.session.particles[3].id),
         "drag l_max": lambda window: _drag(window, "l_max", range(2, 29, 2)),
-        "drag the number of faces": lambda window: _drag(window, "n_facets", range(10, 40, 3)),
+        "drag the number of facets": lambda window: _drag(window, "n_facets", range(10, 40, 3)),
         "annealing": lambda window: window.session.choose(method="annealing"),
         "distance map": lambda window: _commands(window, "explore.heat"),
         "overlay, wipe, section, box, point": _marks,

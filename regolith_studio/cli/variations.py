@@ -83,7 +83,7 @@ class VariedOptions:
 def faces(
     *, meshes: Meshes, output: Folder, faces: Counts = "8,12,16,20,30,50", varied: VariedOptions
 ) -> None:
-    """RMSRE of the descriptors against the number of faces."""
+    """RMSRE of the descriptors against the number of facets."""
     varied.run("faces", faces, meshes, output)
 
 

@@ -21,12 +21,12 @@ def greatest_sphericity(n_facets: int) -> float:
         If `n_facets` is below 4.
     """
     if n_facets < 4:
-        raise ValueError(f"a polyhedron has at least 4 faces, got {n_facets}")
+        raise ValueError(f"a polyhedron has at least 4 facets, got {n_facets}")
     w = n_facets * np.pi / (6 * (n_facets - 2))
     return float((36 * np.pi / (54 * (n_facets - 2) * np.tan(w) * (4 * np.sin(w) ** 2 - 1))) ** (1 / 3))
 
 
-def least_faces(sphericity: float) -> int | None:
+def min_facets(sphericity: float) -> int | None:
     """Fewest facets whose Goldberg bound reaches `sphericity`; ``None`` above 100,000 facets."""
     if greatest_sphericity(MOST_FACES) < sphericity:
         return None
@@ -81,6 +81,6 @@ def sphericity_reason(sphericity: float, n_facets: int) -> str | None:
     most = greatest_sphericity(n_facets)
     if sphericity <= most:
         return None
-    needed = least_faces(sphericity)
-    ask = "more than 100,000 faces" if needed is None else f"at least {needed} faces"
+    needed = min_facets(sphericity)
+    ask = "more than 100,000 facets" if needed is None else f"at least {needed} facets"
     return f"Sphericity {sphericity:.3f} needs {ask}; with {n_facets} the most is {most:.3f}."

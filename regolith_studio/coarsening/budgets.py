@@ -21,7 +21,7 @@ from regolith_studio.geometry.mesh import Mesh
 
 @dataclass(frozen=True)
 class Trial:
-    """One number of faces that was tried, and how it went."""
+    """One number of facets that was tried, and how it went."""
 
     n_facets: int
     largest_error: float
@@ -43,7 +43,7 @@ def facets_for_triangles(n_triangles: int) -> int:
     n_facets = (int(n_triangles) + 12) // 4
     low, high = FACETS_LIMITS
     if n_facets < low:
-        raise InputError(f"{n_triangles} triangles are too few: {low} faces have up to {4 * low - 12}.")
+        raise InputError(f"{n_triangles} triangles are too few: {low} facets have up to {4 * low - 12}.")
     return min(n_facets, high)
 
 
@@ -63,7 +63,7 @@ def largest_error(result: Coarsened, weights: LossWeights, jaccard_limit: float 
     return max(errors, default=0.0)
 
 
-def fewest_faces(
+def fewest_facets(
     mesh: Mesh | Target,
     limit: float,
     jaccard_limit: float | None = None,
@@ -73,10 +73,10 @@ def fewest_faces(
     particle_index: int = 0,
     settings: Any = None,
 ) -> Generator[CoarseningProgress | Trial, None, Coarsened]:
-    """The polyhedron with the fewest faces whose weighted descriptors are all off by at most `limit`.
+    """The polyhedron with the fewest facets whose weighted descriptors are all off by at most `limit`.
 
-    Doubles the number of faces from 5 until the limit is met, then halves the interval; yields the steps of
-    each coarsening, counted through, and each :class:`Trial`. Where not even 200 faces meet the limit, the
+    Doubles the number of facets from 5 until the limit is met, then halves the interval; yields the steps of
+    each coarsening, counted through, and each :class:`Trial`. Where not even 200 facets meet the limit, the
     trial with the least error is the result, and its `reason` says so.
 
     Parameters
@@ -131,8 +131,8 @@ def fewest_faces(
 
 
 def coarsen_below(mesh: Mesh | Target, limit: float, **options: Any) -> Coarsened:
-    """The result of :func:`fewest_faces`, whose `options` it takes."""
-    steps = fewest_faces(mesh, limit, **options)
+    """The result of :func:`fewest_facets`, whose `options` it takes."""
+    steps = fewest_facets(mesh, limit, **options)
     while True:
         try:
             next(steps)
@@ -157,7 +157,7 @@ def _least(failed: Sequence[Trial], limit: float) -> Coarsened:
     """The best of the trials, with the reason why it is not good enough."""
     least = min(failed, key=lambda trial: trial.largest_error)
     reason = (
-        f"Not even {failed[-1].n_facets} faces bring all errors below {100 * limit:g} %:"
-        f" the least is {100 * least.largest_error:.2g} %, with {least.n_facets} faces."
+        f"Not even {failed[-1].n_facets} facets bring all errors below {100 * limit:g} %:"
+        f" the least is {100 * least.largest_error:.2g} %, with {least.n_facets} facets."
     )
     return replace(least.result, reason=reason)

@@ -122,7 +122,7 @@ def _dataset(folder: Path) -> LibraryEntry:
         kind="dataset",
         name=document.name,
         sha256=dataset_hash(folder),
-        detail=f"{len(document.representatives)} shapes of {span} faces, weighted by {document.weighting}",
+        detail=f"{len(document.representatives)} shapes of {span} facets, weighted by {document.weighting}",
         facts=_facts(document),
         mesh=shape_of(heaviest).mesh,
     )
@@ -189,7 +189,7 @@ def _record(path: Path, format: str) -> dict[str, Any]:
 
 def _fineness(coarsening: CoarseningRecordModel) -> str:
     if coarsening.largest_error is None:
-        return f"{coarsening.n_facets} faces"
+        return f"{coarsening.n_facets} facets"
     return f"errors below {100 * coarsening.largest_error:g} %"
 
 

@@ -35,7 +35,7 @@ class MeshRecord(Record):
         str, Field(pattern=MESH_PATH, description="Relative to dataset.json, with forward slashes.")
     ]
     sha256: Sha256
-    n_facets: Annotated[int, Field(ge=4, description="Polygonal facets, which is what n faces means.")]
+    n_facets: Annotated[int, Field(ge=4, description="Polygonal facets, which is what n facets means.")]
     n_vertices: Annotated[int, Field(ge=4)]
     n_triangles: Annotated[int, Field(ge=4)]
 

@@ -74,7 +74,7 @@ def check_count(count: int, n_facets: int) -> None:
     most = LARGEST_DOCUMENT // (_RECORD_BYTES + _FACE_BYTES * n_facets)
     if count > most:
         raise InputError(
-            f"A dataset of {count:,} particles of {n_facets} faces is larger than can be read again; make "
+            f"A dataset of {count:,} particles of {n_facets} facets is larger than can be read again; make "
             f"several of at most {most:,}, or leave the dataset out."
         )
 

@@ -80,8 +80,8 @@ class RadiusFunction:
 
     @property
     def hidden_cubes(self) -> FloatArray:
-        """Three times the volume a solid angle that lies behind the first crossing, shape (n,)."""
-        return np.asarray(self.volume**3 - self.first**3)
+        """Three times the volume per solid angle behind the first crossing, shape (n,)."""
+        return np.maximum(self.volume**3 - self.first**3, 0.0)
 
     def with_rule(self, rule: str) -> "RadiusFunction":
         """The same rays by another rule."""
@@ -112,7 +112,9 @@ def sample_radius(
     else:
         raise GeometryError("Some rays do not leave the particle: the mesh is open, repair it first.")
     first, outermost, cubes, crossings, _ = table.T
-    return RadiusFunction(centre, rays, first, outermost, np.cbrt(cubes), crossings.astype(np.int64), rule)
+    # cbrt(r^3) differs from r by rounding, and not by the same on all processors
+    volume = np.where(crossings == 1, first, np.cbrt(cubes))
+    return RadiusFunction(centre, rays, first, outermost, volume, crossings.astype(np.int64), rule)
 
 
 def _crossings(mesh: Mesh, centre: FloatArray, rays: FloatArray) -> FloatArray:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
-from regolith_studio.coarsening.budgets import Trial, fewest_faces
+from regolith_studio.coarsening.budgets import Trial, fewest_facets
 from regolith_studio.coarsening.coarsen import DEFAULT_METHOD, FACETS_LIMITS, coarsening_steps
 from regolith_studio.coarsening.progress import CoarseningProgress
 from regolith_studio.coarsening.result import Coarsened
@@ -63,8 +63,8 @@ class CoarseningOrder:
     def fineness(self) -> str:
         """How fine the polyhedra are, to be put into a sentence."""
         if self.largest_error is None:
-            return f"{self.n_facets} faces"
-        return f"the fewest faces whose errors are all below {100 * self.largest_error:g} %"
+            return f"{self.n_facets} facets"
+        return f"the fewest facets whose errors are all below {100 * self.largest_error:g} %"
 
 
 @dataclass(frozen=True)
@@ -171,7 +171,7 @@ def _told(mesh: Mesh, order: CoarseningOrder, index: int) -> Generator[Step, Non
     if order.largest_error is None:
         steps = coarsening_steps(_target(mesh), order.n_facets, **common)
     else:
-        steps = fewest_faces(_target(mesh), order.largest_error, **common)
+        steps = fewest_facets(_target(mesh), order.largest_error, **common)
     tried = ""
     while True:
         try:
@@ -179,7 +179,7 @@ def _told(mesh: Mesh, order: CoarseningOrder, index: int) -> Generator[Step, Non
         except StopIteration as end:
             return end.value
         if isinstance(step, Trial):
-            tried = f"{step.n_facets} faces: {100 * step.largest_error:.2g} %"
+            tried = f"{step.n_facets} facets: {100 * step.largest_error:.2g} %"
             continue
         yield Partial(step)
         yield Progress(step.step, step.steps, tried)

@@ -43,7 +43,7 @@ def draw_solids(
     Parameters
     ----------
     order
-        Method, number of faces, settings, seed and target of all.
+        Method, number of facets, settings, seed and target of all.
     rows
         Whose weights are taken; those of Fig. 8 by default.
     """

@@ -45,7 +45,7 @@ def coarsening_figure(study: CoarseningStudy) -> Figure:
 
 
 def facet_count_figure(study: CoarseningStudy) -> Figure:
-    """Errors against the number of faces, with bootstrap bands."""
+    """Errors against the number of facets, with bootstrap bands."""
     counts = [row.n_facets for row in study.rows]
     values, (low, high) = 100 * study.rmsre, 100 * study.bands
     figure = Figure(figsize=(6.0, 4.0), layout="constrained")

@@ -109,7 +109,7 @@ def paper_rows(method: str = DEFAULT_METHOD, n_facets: int = 20, **settings: Any
 
 
 def facet_count_rows(like: StudyRow, counts: Sequence[float] = FACET_COUNTS) -> tuple[StudyRow, ...]:
-    """One row for each number of faces, ascending.
+    """One row for each number of facets, ascending.
 
     Raises
     ------
@@ -118,8 +118,10 @@ def facet_count_rows(like: StudyRow, counts: Sequence[float] = FACET_COUNTS) -> 
     """
     for count in counts:
         if count != int(count):
-            raise InputError(f"Numbers of faces are whole numbers, got {count:g}.")
-    return tuple(like.relabelled(f"{int(count)} faces", n_facets=int(count)) for count in sorted(set(counts)))
+            raise InputError(f"Numbers of facets are whole numbers, got {count:g}.")
+    return tuple(
+        like.relabelled(f"{int(count)} facets", n_facets=int(count)) for count in sorted(set(counts))
+    )
 
 
 def tradeoff_rows(like: StudyRow, factors: Sequence[float] = OVERLAP_FACTORS) -> tuple[StudyRow, ...]:

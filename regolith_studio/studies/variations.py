@@ -183,8 +183,8 @@ VARIATIONS: Mapping[str, Variation] = {
     for each in (
         Variation(
             "faces",
-            "Error against the number of faces",
-            "Numbers of faces",
+            "Error against the number of facets",
+            "Numbers of facets",
             tuple(map(float, FACET_COUNTS)),
             facet_count_rows,
             rmsre_table,

@@ -1720,7 +1720,7 @@
    <translation>Fehler gegen l&lt;sub&gt;max&lt;/sub&gt; (Bild 3)</translation>
   </message>
   <message>
-   <source>Error against the number of faces</source>
+   <source>Error against the number of facets</source>
    <translation>Fehler gegen die Anzahl der Facetten</translation>
   </message>
   <message>
@@ -3368,12 +3368,12 @@
   </message>
   <message>
    <location filename="ui/translation/sentences.py" />
-   <source>No polyhedron with {faces} faces was found that meets all descriptors: {name} is off by {error} %; a convex shape with the other descriptors has less surface, so a weight of 0 would free it.</source>
+   <source>No polyhedron with {faces} facets was found that meets all descriptors: {name} is off by {error} %; a convex shape with the other descriptors has less surface, so a weight of 0 would free it.</source>
    <translation>Es fand sich kein Polyeder mit {faces} Facetten, das alle Deskriptoren trifft: {name} weicht um {error} % ab; ein konvexer Körper mit den übrigen Deskriptoren hat weniger Oberfläche, also gäbe ein Gewicht von 0 Raum.</translation>
   </message>
   <message>
    <location filename="ui/translation/sentences.py" />
-   <source>No polyhedron with {faces} faces was found that meets all descriptors: {name} is off by {error} %; more faces or a weight of 0 would free it.</source>
+   <source>No polyhedron with {faces} facets was found that meets all descriptors: {name} is off by {error} %; more facets or a weight of 0 would free it.</source>
    <translation>Es fand sich kein Polyeder mit {faces} Facetten, das alle Deskriptoren trifft: {name} weicht um {error} % ab; mehr Facetten oder ein Gewicht von 0 gäben Raum.</translation>
   </message>
   <message>
@@ -3398,7 +3398,7 @@
   </message>
   <message>
    <location filename="ui/translation/sentences.py" />
-   <source>Not even {faces} faces bring all errors below {limit} %: the least is {error} %, with {count} faces.</source>
+   <source>Not even {faces} facets bring all errors below {limit} %: the least is {error} %, with {count} facets.</source>
    <translation>Nicht einmal {faces} Facetten bringen alle Fehler unter {limit} %: Der kleinste ist {error} %, mit {count} Facetten.</translation>
   </message>
   <message>
@@ -3459,7 +3459,7 @@
    <translation>Körner werden nummeriert</translation>
   </message>
   <message>
-   <source>Numbers of faces</source>
+   <source>Numbers of facets</source>
    <translation>Anzahlen der Facetten</translation>
   </message>
   <message>
@@ -4342,7 +4342,7 @@
   </message>
   <message>
    <location filename="ui/pages/studies/variation_panel.py" />
-   <source>Root mean squared relative error of each descriptor against the number of faces.</source>
+   <source>Root mean squared relative error of each descriptor against the number of facets.</source>
    <translation>Wurzel des mittleren quadratischen relativen Fehlers jedes Deskriptors gegen die Anzahl der Facetten.</translation>
   </message>
   <message>
@@ -4973,12 +4973,12 @@
   </message>
   <message>
    <location filename="ui/translation/sentences.py" />
-   <source>Sphericity {sphericity} needs at least {needed} faces; with {faces} the most is {most}.</source>
+   <source>Sphericity {sphericity} needs at least {needed} facets; with {faces} the most is {most}.</source>
    <translation>Die Sphärizität {sphericity} braucht mindestens {needed} Facetten; mit {faces} sind höchstens {most} möglich.</translation>
   </message>
   <message>
    <location filename="ui/translation/sentences.py" />
-   <source>Sphericity {sphericity} needs more than 100,000 faces; with {faces} the most is {most}.</source>
+   <source>Sphericity {sphericity} needs more than 100,000 facets; with {faces} the most is {most}.</source>
    <translation>Die Sphärizität {sphericity} braucht mehr als 100,000 Facetten; mit {faces} sind höchstens {most} möglich.</translation>
   </message>
   <message>
@@ -7685,7 +7685,7 @@
   </message>
   <message>
    <location filename="ui/translation/sentences.py" />
-   <source>{count} faces</source>
+   <source>{count} facets</source>
    <translation>{count} Facetten</translation>
   </message>
   <message>

@@ -6,8 +6,8 @@ import pytest
 from regolith_studio.coarsening.bounds import (
     attainable_errors,
     greatest_sphericity,
-    least_faces,
     least_loss,
+    min_facets,
     sphericity_reason,
 )
 from regolith_studio.coarsening.weights import LossWeights
@@ -27,15 +27,15 @@ def test_that_the_platonic_solids_attain_goldbergs_bound() -> None:
 
 
 def test_that_the_fewest_faces_are_the_first_whose_bound_reaches() -> None:
-    n = least_faces(0.957)
+    n = min_facets(0.957)
     assert n is not None
     assert greatest_sphericity(n) >= 0.957 > greatest_sphericity(n - 1)
-    assert least_faces(0.999999999) is None
+    assert min_facets(0.999999999) is None
 
 
 def test_that_an_impossible_sphericity_is_explained_with_numbers() -> None:
     assert sphericity_reason(0.957, 20) == (
-        f"Sphericity 0.957 needs at least {least_faces(0.957)} faces; with 20 the most is 0.948."
+        f"Sphericity 0.957 needs at least {min_facets(0.957)} facets; with 20 the most is 0.948."
     )
     assert sphericity_reason(0.9, 20) is None
 

@@ -1,18 +1,18 @@
-"""Faces from triangles, and the fewest faces below an error."""
+"""Facets from triangles, and the fewest facets below an error."""
 
 import pytest
 
-from regolith_studio.coarsening.budgets import Trial, coarsen_below, facets_for_triangles, fewest_faces
+from regolith_studio.coarsening.budgets import Trial, coarsen_below, facets_for_triangles, fewest_facets
 from regolith_studio.coarsening.coarsen import coarsen
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.mesh import Mesh
 
 
-@pytest.mark.parametrize(("triangles", "faces"), [(8, 5), (67, 19), (68, 20), (10_000, 200)])
-def test_that_a_budget_of_triangles_is_never_exceeded(triangles: int, faces: int) -> None:
-    assert facets_for_triangles(triangles) == faces
-    assert min(4 * faces - 12, 788) <= triangles
+@pytest.mark.parametrize(("triangles", "facets"), [(8, 5), (67, 19), (68, 20), (10_000, 200)])
+def test_that_a_budget_of_triangles_is_never_exceeded(triangles: int, facets: int) -> None:
+    assert facets_for_triangles(triangles) == facets
+    assert min(4 * facets - 12, 788) <= triangles
 
 
 def test_that_too_few_triangles_are_refused() -> None:
@@ -26,8 +26,8 @@ def test_that_triangles_are_counted_in_whole_numbers(triangles: float) -> None:
         facets_for_triangles(triangles)  # type: ignore[arg-type]
 
 
-def test_that_the_fewest_faces_meet_the_limit_and_one_less_does_not(particle: Mesh) -> None:
-    steps = fewest_faces(particle, 0.01, settings={"retries": 1})
+def test_that_the_fewest_facets_meet_the_limit_and_one_less_does_not(particle: Mesh) -> None:
+    steps = fewest_facets(particle, 0.01, settings={"retries": 1})
     tried, counted = [], []
     while True:
         try:
@@ -51,8 +51,8 @@ def test_that_a_limit_out_of_reach_gives_the_least_error_and_says_so(particle: M
     weights = LossWeights.of(volume=1.0, sphericity=1.0)
     found = coarsen_below(particle, 1e-9, method="quadric", weights=weights)
     assert found.reason is not None
-    assert found.reason.startswith("Not even 200 faces bring all errors below 1e-07 %: the least is ")
-    assert f" %, with {found.n_facets_asked} faces." in found.reason
+    assert found.reason.startswith("Not even 200 facets bring all errors below 1e-07 %: the least is ")
+    assert f" %, with {found.n_facets_asked} facets." in found.reason
     for n_facets in (5, 20, 200):
         other = coarsen(particle, n_facets, "quadric", weights)
         assert max(other.errors["volume"], other.errors["sphericity"]) >= max(
@@ -63,4 +63,4 @@ def test_that_a_limit_out_of_reach_gives_the_least_error_and_says_so(particle: M
 @pytest.mark.parametrize("limit", [0.0, -1.0, float("nan"), float("inf")])
 def test_that_a_limit_must_be_positive(particle: Mesh, limit: float) -> None:
     with pytest.raises(InputError, match="above 0"):
-        next(fewest_faces(particle, limit))
+        next(fewest_facets(particle, limit))

@@ -200,7 +200,7 @@ def test_that_bad_meshes_are_refused_in_one_sentence() -> None:
 
 
 def test_that_a_hull_with_too_few_triangles_is_refused_by_the_baseline() -> None:
-    with pytest.raises(InputError, match="fewer than the 50 faces"):
+    with pytest.raises(InputError, match="fewer than the 50 facets"):
         coarsen(icosphere(0), 50, "quadric")
 
 

@@ -134,6 +134,11 @@ def test_that_a_point_inside_a_ring_is_found_where_the_centre_of_mass_lies_outsi
     assert (np.hypot(x, y) - 2.0) ** 2 + z**2 < 0.5**2
 
 
+def test_that_no_volume_of_a_star_shaped_body_is_hidden_not_even_by_rounding():
+    radius = sample_radius(icosphere(3), (0.3, 0.1, -0.2), fibonacci_directions(500))
+    assert (radius.hidden_cubes == 0.0).all()
+
+
 def test_that_nothing_of_a_convex_body_is_hidden(ellipsoid):
     body = ellipsoid(3.0, 2.0, 1.0)
     assert hidden_surface_share(body, np.zeros(3)) == 0.0

@@ -54,19 +54,19 @@ def test_that_a_preset_brings_its_weights_and_a_moved_weight_marks_it_modified()
 
 
 @pytest.mark.parametrize(
-    ("stop", "faces", "error", "most", "words"),
+    ("stop", "facets", "error", "most", "words"),
     [
-        ("faces", 12, None, 12, "12 faces"),
-        ("triangles", 17, None, 17, "17 faces"),  # 17 facets have up to 56 triangles, 18 have 60
-        ("error", 12, 0.025, 200, "the fewest faces whose errors are all below 2.5 %"),
+        ("facets", 12, None, 12, "12 facets"),
+        ("triangles", 17, None, 17, "17 facets"),  # 17 facets have up to 56 triangles, 18 have 60
+        ("error", 12, 0.025, 200, "the fewest facets whose errors are all below 2.5 %"),
     ],
 )
 def test_that_one_of_three_numbers_says_how_fine_a_polyhedron_is(
-    stop: str, faces: int, error: float | None, most: int, words: str
+    stop: str, facets: int, error: float | None, most: int, words: str
 ) -> None:
     order = Choices(stop_at=stop, n_facets=12, n_triangles=59, largest_error=0.025).order
     assert (order.n_facets, order.largest_error, order.max_facets, order.fineness) == (
-        *(faces, error, most),
+        *(facets, error, most),
         words,
     )
 

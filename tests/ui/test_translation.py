@@ -78,8 +78,8 @@ def test_that_sentences_of_the_layers_below_are_told_anew(speaking):
         f"Die Sphärizität 0.970 braucht mindestens {re.findall(r'[0-9]+', reason)[2]} Facetten;"
         f" mit 10 sind höchstens {greatest_sphericity(10):.3f} möglich."
     )
-    off = "No polyhedron with 8 faces was found that meets all descriptors: convex hull volume is off by 3 %;"
-    german = retold(f"{off} more faces or a weight of 0 would free it.")
+    off = "No polyhedron with 8 facets was found that meets all descriptors: sphericity is off by 3 %;"
+    german = retold(f"{off} more facets or a weight of 0 would free it.")
     assert "8 Facetten" in german
     assert "Volumen der konvexen Hülle weicht um 3 % ab" in german
     both = retold(f"{reason} The result has 8 facets instead of 10.")
@@ -109,7 +109,7 @@ def test_that_names_of_rows_are_told_part_by_part(speaking):
     assert retold("Volume only") == "Nur Volumen"
     assert retold("Aspect ratio × 2") == "Seitenverhältnis × 2"
     assert retold("Overlap + size + sphericity") == "Überdeckung + Größe + Sphärizität"
-    assert retold("12 faces") == "12 Facetten"
+    assert retold("12 facets") == "12 Facetten"
 
 
 def test_that_a_filter_takes_the_words_that_are_read_and_the_english_ones(speaking):

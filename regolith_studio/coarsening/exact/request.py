@@ -29,9 +29,9 @@ FLAT, COPLANAR = 1e-6, 1e-5
 """Concavity and triangles that count as none; difference of the planes of one facet. At unit volume."""
 
 
-ADVICE = "more faces or a weight of 0 would free it."
+ADVICE = "more facets or a weight of 0 would free it."
 ROUGH_ADVICE = "a convex shape with the other descriptors has less surface, so a weight of 0 would free it."
-"""More faces do not help where a particle has more surface than they can."""
+"""More facets do not help where a particle has more surface than they can."""
 
 
 @dataclass(frozen=True)
@@ -127,7 +127,7 @@ def reason_for(
     rough = worst == "sphericity" and found[worst] > wanted
     advice = ROUGH_ADVICE if rough else ADVICE
     return (
-        f"No polyhedron with {n_facets} faces was found that meets all descriptors:"
+        f"No polyhedron with {n_facets} facets was found that meets all descriptors:"
         f" {_reported(worst, request).replace('_', ' ')} is off by {100 * missed[worst]:.2g} %; {advice}"
         + fewer
     )

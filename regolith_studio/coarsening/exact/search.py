@@ -84,7 +84,7 @@ class Search:
         seed: np.random.SeedSequence,
     ) -> None:
         request = Request.of(target, weights)
-        self._target, self._request, self._n_faces, self._level = target, request, n_facets, level
+        self._target, self._request, self._n_facets, self._level = target, request, n_facets, level
         self._rng = np.random.default_rng(seed)
         self._free = request.problem(target.rays, SAMPLE_ANGLE, only_volume=True)
         self._full = request.problem(target.rays, SAMPLE_ANGLE)
@@ -109,7 +109,7 @@ class Search:
         """A step for each better polyhedron until one is good enough; the first is the first start itself."""
         for tried in range(1, self._total + 1):
             self._tried = tried
-            self._planes = start_planes(self._target, self._n_faces, self._rng)
+            self._planes = start_planes(self._target, self._n_facets, self._rng)
             if tried == 1:
                 value = self._judge.value(*self._planes)
                 yield MethodStep(0, self._total, value, HalfSpaces(*self._planes))
@@ -130,9 +130,9 @@ class Search:
         if not self._round_asked or self._record.met or self._misses or self._itself is not None:
             return
         few_planes = [
-            with_waiting(*start_planes(self._target, few, self._rng), self._n_faces)
+            with_waiting(*start_planes(self._target, few, self._rng), self._n_facets)
             for few in COMPROMISES
-            if few < self._n_faces
+            if few < self._n_facets
         ]
         for planes in (self._planes, (best.normals, best.offsets), *few_planes):
             yield from self._record.told(self._total, self._compromise(planes))
@@ -151,14 +151,14 @@ class Search:
         counts = {"starts": float(self._tried), "exact": float(self._record.met)}
         if not self._record.met and self._itself is not None:
             solid, found = self._itself, describe(self._itself)
-            reason: str | None = own_reason(solid.n_facets, self._n_faces)
+            reason: str | None = own_reason(solid.n_facets, self._n_facets)
         else:
             outcome = self._evened() or self._record.outcome or self._found()
             outcome = with_facets_back(
-                self._target, self._checks, self._judge, self._kept(outcome), self._n_faces
+                self._target, self._checks, self._judge, self._kept(outcome), self._n_facets
             )
             solid, found = outcome.solid, outcome.descriptors
-            reason = reason_for(self._target, self._request, self._n_faces, solid.n_facets, found)
+            reason = reason_for(self._target, self._request, self._n_facets, solid.n_facets, found)
         yield from self._record.ended(solid.half_spaces)
         history = tuple(self._record.history)
         return MethodResult(solid.half_spaces, history, reason, counts, polyhedron=solid, achieved=found)
@@ -185,7 +185,7 @@ class Search:
     @cached_property
     def _itself(self) -> ConvexPolyhedron | None:
         """The particle, where it is a convex polyhedron with fewer facets, and so meets all conditions."""
-        planes = own_planes(self._target, self._n_faces)
+        planes = own_planes(self._target, self._n_facets)
         if planes is None:
             return None
         solid = ConvexPolyhedron.from_half_spaces(planes)
@@ -195,8 +195,8 @@ class Search:
     def _solved(self) -> Iterator[Attempt]:
         """From few facets or from all at once, in turns; nothing where the sphericity is above its bound."""
         few = self._numbers[(self._tried - 1) % len(self._numbers)]
-        if few < self._n_faces:
-            sizes = self._n_faces, few, self._level.few_starts
+        if few < self._n_facets:
+            sizes = self._n_facets, few, self._level.few_starts
             yield from grown(self._target, self._free, self._full, *sizes, self._rng, *self._steps)
         elif not self._hopeless:
             yield from self._all_at_once()
@@ -208,7 +208,7 @@ class Search:
         """With six half-spaces on the sides of the particle's box, where a condition is about the box."""
         if needs_box(self._full):
             problems = self._free, self._full, self._rest
-            yield from boxed(self._target, problems, self._n_faces, self._tried - 1, self._rng, self._steps)
+            yield from boxed(self._target, problems, self._n_facets, self._tried - 1, self._rng, self._steps)
 
     def _as_round_as_can_be(self) -> Iterator[MethodStep]:
         """The way to the sphericity from below; it is noted by how much it is missed."""
@@ -228,8 +228,8 @@ class Search:
         if self._tried < self._level.starts or best is None or not best.exact:
             return False
         best = self._record.best = confirmed(self._request, self._checks, best)
-        all_facets = best.n_facets == self._n_faces
-        return best.exact and (all_facets or self._tried >= self._level.starts + STARTS_FOR_FACETS)
+        has_all_facets = best.n_facets == self._n_facets
+        return best.exact and (has_all_facets or self._tried >= self._level.starts + STARTS_FOR_FACETS)
 
     def _out_of_reach(self) -> bool:
         """Whether the sphericity is missed by so much that other starts would miss it too."""
@@ -242,7 +242,7 @@ class Search:
     def _whole(self) -> bool:
         """Whether a polyhedron with all facets meets all conditions."""
         best = self._record.best
-        return best is not None and best.exact and best.n_facets == self._n_faces
+        return best is not None and best.exact and best.n_facets == self._n_facets
 
     @property
     def _steps(self) -> tuple[int, int]:

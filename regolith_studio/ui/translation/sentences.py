@@ -20,14 +20,14 @@ SENTENCES = (
         " l_max comes closer, and on flat or long grains so does an ellipsoid as reference."
     ),
     mark("The centre of mass lies outside the particle; the point with the least hidden volume is used."),
-    mark("Sphericity {sphericity} needs at least {needed} faces; with {faces} the most is {most}."),
-    mark("Sphericity {sphericity} needs more than 100,000 faces; with {faces} the most is {most}."),
+    mark("Sphericity {sphericity} needs at least {needed} facets; with {faces} the most is {most}."),
+    mark("Sphericity {sphericity} needs more than 100,000 facets; with {faces} the most is {most}."),
     mark(
-        "No polyhedron with {faces} faces was found that meets all descriptors: {name} is off by {error} %;"
-        " more faces or a weight of 0 would free it."
+        "No polyhedron with {faces} facets was found that meets all descriptors: {name} is off by {error} %;"
+        " more facets or a weight of 0 would free it."
     ),
     mark(
-        "No polyhedron with {faces} faces was found that meets all descriptors: {name} is off by {error} %;"
+        "No polyhedron with {faces} facets was found that meets all descriptors: {name} is off by {error} %;"
         " a convex shape with the other descriptors has less surface, so a weight of 0 would free it."
     ),
     mark(
@@ -40,7 +40,8 @@ SENTENCES = (
     ),
     mark("The result has {real} facets instead of {faces}."),
     mark(
-        "Not even {faces} faces bring all errors below {limit} %: the least is {error} %, with {count} faces."
+        "Not even {faces} facets bring all errors below {limit} %: the least is {error} %, with {count}"
+        " facets."
     ),
     mark("1 grain from 1 connected body"),
     mark("1 grain from {bodies} connected bodies"),
@@ -60,7 +61,7 @@ SENTENCES = (
     mark("The file says that a voxel is {size}, which no scan has; give the size of a voxel."),
     mark("{name} only"),
     mark("{name} × {factor}"),
-    mark("{count} faces"),
+    mark("{count} facets"),
     mark("Overlap + {symbols}"),
     mark("at least {limit}"),
     mark("at most {limit}"),

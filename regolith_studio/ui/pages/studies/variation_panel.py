@@ -32,13 +32,13 @@ class Shown(Protocol):
 
 
 class FacesPlot(BandPlot):
-    """A curve a descriptor against the number of faces."""
+    """A curve a descriptor against the number of facets."""
 
     def __init__(self) -> None:
         super().__init__(
             tr("Faces"),
             tr("RMSRE [%], at least {least:g}", least=LEAST_DRAWN),
-            tr("Root mean squared relative error of each descriptor against the number of faces."),
+            tr("Root mean squared relative error of each descriptor against the number of facets."),
             log_y=True,
         )
 
