@@ -81,7 +81,7 @@ def test_that_sentences_of_the_layers_below_are_told_anew(speaking):
     off = "No polyhedron with 8 facets was found that meets all descriptors: sphericity is off by 3 %;"
     german = retold(f"{off} more facets or a weight of 0 would free it.")
     assert "8 Facetten" in german
-    assert "Volumen der konvexen Hülle weicht um 3 % ab" in german
+    assert "Sphärizität weicht um 3 % ab" in german
     both = retold(f"{reason} The result has 8 facets instead of 10.")
     assert both == f"{retold(reason)} Das Ergebnis hat 8 statt 10 Facetten."
     assert retold("A closed mesh without faults.") == "Ein geschlossenes, fehlerfreies Netz."
