@@ -10,9 +10,9 @@ import time
 
 import numpy as np
 
-from regolith_studio.model.materials import materials
-from regolith_studio.model.models import MODELS
-from regolith_studio.model.sample import Sample
+from regolith_studio.shape_models.materials import materials
+from regolith_studio.shape_models.models import MODELS
+from regolith_studio.shape_models.sample import Sample
 
 L_MAX = 20
 N_DRAWS = 10_000

@@ -23,9 +23,9 @@ if TYPE_CHECKING:
     from regolith_studio.descriptors.describe import describe
     from regolith_studio.harmonics.fit import fit_harmonics
     from regolith_studio.harmonics.surface import reconstruct
-    from regolith_studio.model.models.gaussian_field import GaussianFieldModel as GaussianRadiusModel
     from regolith_studio.readers.registry import read_mesh, read_particles
     from regolith_studio.readers.sample import sample_particles
+    from regolith_studio.shape_models.models.gaussian_field import GaussianFieldModel as GaussianRadiusModel
 
 __version__ = "0.1.0"
 __all__ = [
@@ -46,7 +46,7 @@ __all__ = [
 ]
 
 _DOORS = {
-    "GaussianRadiusModel": "model.models.gaussian_field:GaussianFieldModel",
+    "GaussianRadiusModel": "shape_models.models.gaussian_field:GaussianFieldModel",
     "LossWeights": "coarsening.weights:LossWeights",
     "build_dataset": "dataset.build:build_dataset",
     "coarsen": "coarsening.coarsen:coarsen",

@@ -194,7 +194,7 @@ def population(
     from regolith_studio.errors import InputError
     from regolith_studio.jobs.generating import GenerateOrder
     from regolith_studio.jobs.studying import study_population
-    from regolith_studio.model.sample import Sample
+    from regolith_studio.shape_models.sample import Sample
     from regolith_studio.studies.population import KEYS
     from regolith_studio.studies.population_tables import target_table
 

@@ -8,8 +8,8 @@ import numpy as np
 from regolith_studio.descriptors.distributions import Distribution
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.jobs.events import Progress, Started, Steps
-from regolith_studio.model.draws import Draws
-from regolith_studio.model.sample import Sample
+from regolith_studio.shape_models.draws import Draws
+from regolith_studio.shape_models.sample import Sample
 from regolith_studio.studies.population import KEYS
 from regolith_studio.studies.population_work import STEP, descriptors_of
 

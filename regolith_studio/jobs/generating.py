@@ -17,15 +17,15 @@ from regolith_studio.jobs.crew import Crew, hired
 from regolith_studio.jobs.events import Job, Progress, Started, Steps
 from regolith_studio.jobs.examining import Examined, examine
 from regolith_studio.jobs.fitting import FIT_DEGREE, FitOrder, fit_sample
-from regolith_studio.model.chunks import joined
-from regolith_studio.model.draws import Draws, virtual_mesh
-from regolith_studio.model.materials import MaterialCard
-from regolith_studio.model.models import DEFAULT_MODEL, MODELS
-from regolith_studio.model.protocol import FittedModel, SizeRange
-from regolith_studio.model.sample import Sample
-from regolith_studio.model.settings import model_settings
-from regolith_studio.model.size_law import checked_bounds
 from regolith_studio.readers.shape_files import ShapeSource, radius_of
+from regolith_studio.shape_models.chunks import joined
+from regolith_studio.shape_models.draws import Draws, virtual_mesh
+from regolith_studio.shape_models.materials import MaterialCard
+from regolith_studio.shape_models.models import DEFAULT_MODEL, MODELS
+from regolith_studio.shape_models.protocol import FittedModel, SizeRange
+from regolith_studio.shape_models.sample import Sample
+from regolith_studio.shape_models.settings import model_settings
+from regolith_studio.shape_models.size_law import checked_bounds
 
 STL_HEADER = "Regolith Studio, virtual particle, micrometres"
 CARD_MODEL = "log_field"

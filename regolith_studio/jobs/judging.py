@@ -21,11 +21,11 @@ from regolith_studio.jobs.generating import (
     sample_of_meshes,
 )
 from regolith_studio.jobs.studying import study_population
-from regolith_studio.model.draws import Draws, virtual_mesh
-from regolith_studio.model.models import MODELS
-from regolith_studio.model.protocol import FittedModel
-from regolith_studio.model.sample import Sample
 from regolith_studio.readers.shape_files import ShapeSource
+from regolith_studio.shape_models.draws import Draws, virtual_mesh
+from regolith_studio.shape_models.models import MODELS
+from regolith_studio.shape_models.protocol import FittedModel
+from regolith_studio.shape_models.sample import Sample
 from regolith_studio.studies.population import PopulationStudy, drawn_by_itself
 from regolith_studio.studies.population_distances import WEIGHTINGS
 

@@ -30,9 +30,9 @@ from regolith_studio.harmonics.surface import gallery
 from regolith_studio.harmonics.synthesis import radii_on_icosphere
 from regolith_studio.jobs.coarsening import CoarseningOrder
 from regolith_studio.jobs.events import Partial, Progress, Started, Steps
-from regolith_studio.model.draws import virtual_mesh
-from regolith_studio.model.materials import materials
-from regolith_studio.model.spectra import with_amplitudes
+from regolith_studio.shape_models.draws import virtual_mesh
+from regolith_studio.shape_models.materials import materials
+from regolith_studio.shape_models.spectra import with_amplitudes
 
 MOST_STEPS = 2_000
 """Iterations of a lesson at most: every one of them keeps its polyhedra."""

@@ -10,7 +10,7 @@ from regolith_studio.jobs.batch import call, value_of
 from regolith_studio.jobs.coarsening import CoarseningOrder
 from regolith_studio.jobs.crew import Crew, hired
 from regolith_studio.jobs.events import Job, Partial, Progress, Started, Step, Steps
-from regolith_studio.model.sample import Sample
+from regolith_studio.shape_models.sample import Sample
 from regolith_studio.studies.coarsening import TargetChoice, coarsening_study
 from regolith_studio.studies.lmax import lmax_study
 from regolith_studio.studies.population import population_study

@@ -14,15 +14,15 @@ from regolith_studio.harmonics import files as fit_files
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.surface import radii
-from regolith_studio.model import files as model_files
-from regolith_studio.model.materials import MaterialCard, card_from, materials
-from regolith_studio.model.protocol import FittedModel
-from regolith_studio.model.sample import Sample
-from regolith_studio.model.sphere_grid import sphere_grid
 from regolith_studio.readers.npz import read_bytes, read_npz
 from regolith_studio.readers.sentences import sentence_about
 from regolith_studio.readers.shape_documents import FitDocument, ModelDocument, check_document
 from regolith_studio.readers.units import unit_factor
+from regolith_studio.shape_models import files as model_files
+from regolith_studio.shape_models.materials import MaterialCard, card_from, materials
+from regolith_studio.shape_models.protocol import FittedModel
+from regolith_studio.shape_models.sample import Sample
+from regolith_studio.shape_models.sphere_grid import sphere_grid
 
 LARGEST_TEXT = 512 * 1024**2
 REFERENCE_DEGREE = 60

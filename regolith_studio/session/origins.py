@@ -15,7 +15,7 @@ from regolith_studio.session.recipe_inputs import Population, VolumeEntry
 
 if TYPE_CHECKING:  # what draws shapes takes a third of a second to import: the window begins without it
     from regolith_studio.jobs.judging import DrawnShapes, FittedShapes
-    from regolith_studio.model.protocol import FittedModel
+    from regolith_studio.shape_models.protocol import FittedModel
 
 Known = tuple[str, str, str]
 """A particle that an origin gives: what tells it from the others there, its name and its group."""
@@ -103,7 +103,7 @@ class Drawn:
         level
             Subdivisions of the icosahedron that their surfaces are drawn on.
         """
-        from regolith_studio.model.materials import materials
+        from regolith_studio.shape_models.materials import materials
 
         name, wish = fitted.source.name, drawn.order
         shipped = drawn.model is fitted.model and fitted.source.content == materials().get(name)

@@ -6,14 +6,14 @@ from pathlib import Path
 
 from regolith_studio.errors import FileError
 from regolith_studio.jobs.loading import free_name
-from regolith_studio.model.files import write_model
-from regolith_studio.model.protocol import FittedModel
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.origins import Drawn, Files, Grains, Origin, Place, Shipped
 from regolith_studio.session.recipe import SAMPLE, Outputs, Recipe
 from regolith_studio.session.recipe_dataset import Standing
 from regolith_studio.session.recipe_inputs import Chosen, FilesEntry
 from regolith_studio.session.results import ParticleEntry
+from regolith_studio.shape_models.files import write_model
+from regolith_studio.shape_models.protocol import FittedModel
 
 
 @dataclass(frozen=True)

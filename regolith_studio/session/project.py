@@ -8,12 +8,12 @@ from typing import Any, Literal, Self
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from regolith_studio.errors import FileError, of_the_entry
-from regolith_studio.model.protocol import FittedModel
 from regolith_studio.readers.npz import read_bytes
 from regolith_studio.session.outputs.staging import write_bytes
 from regolith_studio.session.portrait import Portrait
 from regolith_studio.session.recipe import LARGEST, SAMPLE, Recipe
 from regolith_studio.session.session import Session
+from regolith_studio.shape_models.protocol import FittedModel
 
 FORMAT: Literal["regolith-studio project"] = "regolith-studio project"
 SUFFIX = ".regolith"

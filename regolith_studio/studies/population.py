@@ -13,10 +13,10 @@ import numpy as np
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.model.draws import Draws
-from regolith_studio.model.judging import novelty_in_frame
-from regolith_studio.model.models import MODELS
-from regolith_studio.model.sample import Sample
+from regolith_studio.shape_models.draws import Draws
+from regolith_studio.shape_models.judging import novelty_in_frame
+from regolith_studio.shape_models.models import MODELS
+from regolith_studio.shape_models.sample import Sample
 from regolith_studio.studies.population_distances import (
     Distances,
     Intervals,

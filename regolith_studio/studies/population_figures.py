@@ -13,7 +13,7 @@ from scipy.stats import gaussian_kde
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.model.models import MODELS
+from regolith_studio.shape_models.models import MODELS
 from regolith_studio.studies.figure_files import write_figure
 from regolith_studio.studies.population import PopulationStudy
 from regolith_studio.studies.population_distances import WEIGHTINGS, class_weights

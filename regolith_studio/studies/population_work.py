@@ -10,10 +10,10 @@ import numpy as np
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.model.draws import Draws, virtual_mesh
-from regolith_studio.model.models import MODELS
-from regolith_studio.model.principal_axes import canonical
-from regolith_studio.model.sample import Sample
+from regolith_studio.shape_models.draws import Draws, virtual_mesh
+from regolith_studio.shape_models.models import MODELS
+from regolith_studio.shape_models.principal_axes import canonical
+from regolith_studio.shape_models.sample import Sample
 from regolith_studio.studies.progress import StudyProgress
 
 LEVEL = 3

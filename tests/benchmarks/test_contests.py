@@ -12,8 +12,8 @@ from benchmarks.descriptors import by_trimesh, polyhedron, stone
 from regolith_studio.dem.repose import measure_repose
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.imaging.stl import stl_bytes
-from regolith_studio.model.models import MODELS
-from regolith_studio.model.sample import Sample
+from regolith_studio.shape_models.models import MODELS
+from regolith_studio.shape_models.sample import Sample
 
 pytestmark = pytest.mark.filterwarnings("default")  # the plain programs are full of them
 

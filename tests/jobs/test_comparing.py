@@ -5,8 +5,8 @@ import pytest
 
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.jobs.comparing import compare_distributions
-from regolith_studio.model.draws import Draws
-from regolith_studio.model.sample import Sample
+from regolith_studio.shape_models.draws import Draws
+from regolith_studio.shape_models.sample import Sample
 
 RADII = np.array([1.0, 2.0, 3.0, 4.0])
 

@@ -6,8 +6,8 @@ import pytest
 from regolith_studio.jobs.events import Partial, Progress, Started, Step
 from regolith_studio.jobs.generating import GenerateOrder, draw
 from regolith_studio.jobs.judging import JudgedShapes, judge_shapes
-from regolith_studio.model.materials import materials
-from regolith_studio.model.sample import Sample
+from regolith_studio.shape_models.materials import materials
+from regolith_studio.shape_models.sample import Sample
 
 PNG = b"\x89PNG"
 

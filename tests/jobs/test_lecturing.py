@@ -11,7 +11,7 @@ from regolith_studio.harmonics.fit import fit_harmonics
 from regolith_studio.jobs.coarsening import CoarseningOrder
 from regolith_studio.jobs.events import Partial
 from regolith_studio.jobs.lecturing import anneal_slowly, draw_field, grow_fit
-from regolith_studio.model.materials import materials
+from regolith_studio.shape_models.materials import materials
 
 WEIGHTS = LossWeights.from_preset("all")
 

@@ -20,7 +20,7 @@ import numpy  # noqa: F401 (imported before the readers are instrumented)
 import pydantic  # noqa: F401
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
-import regolith_studio.model.models  # noqa: F401 (numba must not see instrumented code)
+import regolith_studio.shape_models.models  # noqa: F401 (numba must not see instrumented code)
 
 with atheris.instrument_imports(include=["regolith_studio.readers", "zipfile", "tifffile"]):
     from regolith_studio.errors import RegolithError

@@ -21,13 +21,13 @@ from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.harmonics.files import write_fits
 from regolith_studio.harmonics.fit import fit_harmonics
-from regolith_studio.model.files import write_model
-from regolith_studio.model.materials import materials, write_card
-from regolith_studio.model.models import MODELS
-from regolith_studio.model.sample import Sample
 from regolith_studio.readers.shape_files import read_shape_source
 from regolith_studio.session.project import Project, read_project
 from regolith_studio.session.recipe import Recipe, read_recipe
+from regolith_studio.shape_models.files import write_model
+from regolith_studio.shape_models.materials import materials, write_card
+from regolith_studio.shape_models.models import MODELS
+from regolith_studio.shape_models.sample import Sample
 
 Bad = tuple[str, bytes, str]
 OLD_DATASET = Path(__file__).parents[1] / "dataset" / "old_versions" / "1"

@@ -20,8 +20,6 @@ from regolith_studio.jobs.grain_recipe import GrainRecipe
 from regolith_studio.jobs.judging import draw_shapes, fit_shapes
 from regolith_studio.jobs.runners.inline import InlineRunner
 from regolith_studio.jobs.scanning import find_grains, read_scan
-from regolith_studio.model.materials import materials
-from regolith_studio.model.spectra import relative_amplitudes, with_amplitudes
 from regolith_studio.readers.shape_files import ShapeSource
 from regolith_studio.session.batch.prepared import entry_of
 from regolith_studio.session.choices import Choices
@@ -31,6 +29,8 @@ from regolith_studio.session.portrait import Portrait
 from regolith_studio.session.project import Project, read_project
 from regolith_studio.session.recipe import Outputs, read_recipe
 from regolith_studio.session.session import Session
+from regolith_studio.shape_models.materials import materials
+from regolith_studio.shape_models.spectra import relative_amplitudes, with_amplitudes
 
 CHOICES = Choices(method="annealing", settings=(("iterations", 12),), level=2, l_max=4, n_facets=12, seed=3)
 ONLY_DATASET = Outputs(descriptors=False, meshes=False, summary=False)

@@ -16,13 +16,13 @@ from regolith_studio.imaging.stl import stl_bytes
 from regolith_studio.jobs.events import Progress, Started
 from regolith_studio.jobs.extracting import VolumeInput, extract_file
 from regolith_studio.jobs.grain_recipe import GrainRecipe
-from regolith_studio.model.files import write_model
-from regolith_studio.model.materials import materials
 from regolith_studio.readers.registry import read_mesh
 from regolith_studio.resources import resource
 from regolith_studio.session.batch.prepared import read_grain, read_index
 from regolith_studio.session.performing import perform
 from regolith_studio.session.recipe import recipe_of
+from regolith_studio.shape_models.files import write_model
+from regolith_studio.shape_models.materials import materials
 
 BASE: dict[str, Any] = {"method": "quadric", "level": 2, "l_max": 4, "n_facets": 12, "target": "particle"}
 GREY = str(resource("samples", "ct", "synthetic-grey.tif"))

@@ -12,11 +12,11 @@ from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.descriptors.distributions import Distribution
 from regolith_studio.harmonics.coefficients import degrees
 from regolith_studio.jobs.runners.inline import InlineRunner
-from regolith_studio.model.models import MODELS
-from regolith_studio.model.sample import Sample
 from regolith_studio.readers.shape_files import ShapeSource, read_shape_source
 from regolith_studio.session.session import Session
 from regolith_studio.session.tasks import Task
+from regolith_studio.shape_models.models import MODELS
+from regolith_studio.shape_models.sample import Sample
 from regolith_studio.studies.population import KEYS
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.page import PageContext

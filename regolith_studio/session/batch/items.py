@@ -11,15 +11,15 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.generating import PAPER_DEGREE, drawn_names, groups_of
 from regolith_studio.jobs.loading import Problem, files_in, free_name
-from regolith_studio.model.draws import Draws, virtual_mesh
-from regolith_studio.model.materials import materials
-from regolith_studio.model.protocol import FittedModel
 from regolith_studio.readers.registry import MeshFile, read_file
 from regolith_studio.readers.sample import sample_particles
 from regolith_studio.readers.shape_files import read_shape_source
 from regolith_studio.session.batch.prepared import MODEL, Prepared, read_grain, read_index
 from regolith_studio.session.recipe import SAMPLE, Recipe
 from regolith_studio.session.recipe_inputs import Chosen, Population
+from regolith_studio.shape_models.draws import Draws, virtual_mesh
+from regolith_studio.shape_models.materials import materials
+from regolith_studio.shape_models.protocol import FittedModel
 
 NOTHING = Prepared()
 

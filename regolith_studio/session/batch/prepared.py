@@ -26,8 +26,6 @@ from regolith_studio.jobs.extracting import VolumeInput, extract_each, fingerpri
 from regolith_studio.jobs.generating import GenerateOrder, expansion_of, fit_model, sample_of_meshes
 from regolith_studio.jobs.grain_recipe import GrainRecipe, read_grain_recipe
 from regolith_studio.jobs.loading import Problem, files_in, load_particles
-from regolith_studio.model.files import write_model
-from regolith_studio.model.materials import materials
 from regolith_studio.readers.hashing import sha256_of
 from regolith_studio.readers.shape_files import is_shape_source, read_shape_source
 from regolith_studio.readers.volume_header import RawLayout
@@ -35,6 +33,8 @@ from regolith_studio.session.outputs.extraction import RECIPE, recipe_document
 from regolith_studio.session.outputs.staging import json_bytes, staged_folder
 from regolith_studio.session.recipe import Recipe
 from regolith_studio.session.recipe_inputs import Population, RawVolume, VolumeEntry
+from regolith_studio.shape_models.files import write_model
+from regolith_studio.shape_models.materials import materials
 
 INDEX = "grains.json"
 MODEL = "model"

@@ -21,10 +21,10 @@ from regolith_studio.dem.engine_table import HEADINGS, engine_rows
 from regolith_studio.dem.engines import ENGINES
 from regolith_studio.dem.evaluation.settings import EvaluationSettings
 from regolith_studio.descriptors.catalogue import CATALOGUE
-from regolith_studio.model.materials import materials
-from regolith_studio.model.models import MODELS
 from regolith_studio.resources import resource
 from regolith_studio.scene import cameras, sectioning, shapes
+from regolith_studio.shape_models.materials import materials
+from regolith_studio.shape_models.models import MODELS
 from regolith_studio.studies.variations import VARIATIONS
 from regolith_studio.ui.translation import CONTEXT
 from regolith_studio.ui.translation.language import translation_file

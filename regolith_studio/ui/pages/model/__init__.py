@@ -14,7 +14,7 @@ def build(context: PageContext) -> PageWidget:
 
 def prepare() -> None:
     """Load the models."""
-    from regolith_studio.model.models import MODELS
+    from regolith_studio.shape_models.models import MODELS
 
     list(MODELS)
 

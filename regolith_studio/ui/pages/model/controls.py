@@ -22,7 +22,7 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.errors import InputError
 from regolith_studio.jobs.generating import CARD_MODEL, GenerateOrder
-from regolith_studio.model.models import DEFAULT_MODEL, MODELS
+from regolith_studio.shape_models.models import DEFAULT_MODEL, MODELS
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.labels import heading, remark
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec

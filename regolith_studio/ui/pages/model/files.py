@@ -6,11 +6,11 @@ from pathlib import Path
 from PySide6.QtWidgets import QFileDialog, QWidget
 
 from regolith_studio.errors import RegolithError
-from regolith_studio.model.files import write_model
-from regolith_studio.model.materials import MaterialCard, write_card
-from regolith_studio.model.protocol import FittedModel
-from regolith_studio.model.sample import Sample
 from regolith_studio.readers.shape_files import ShapeSource
+from regolith_studio.shape_models.files import write_model
+from regolith_studio.shape_models.materials import MaterialCard, write_card
+from regolith_studio.shape_models.protocol import FittedModel
+from regolith_studio.shape_models.sample import Sample
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.toast import Toast
 

@@ -20,8 +20,8 @@ from PySide6.QtWidgets import (
 )
 
 from regolith_studio.jobs.judging import JudgedShapes
-from regolith_studio.model.models import MODELS
 from regolith_studio.session.tasks import Task
+from regolith_studio.shape_models.models import MODELS
 from regolith_studio.studies.population import PopulationStudy
 from regolith_studio.studies.population_tables import distance_table, pair_table, ranking_table, target_table
 from regolith_studio.studies.tables import Table

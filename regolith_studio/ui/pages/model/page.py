@@ -22,11 +22,11 @@ from regolith_studio.jobs.judging import (
     fit_shapes,
     judge_shapes,
 )
-from regolith_studio.model.protocol import FittedModel
-from regolith_studio.model.sample import Sample
-from regolith_studio.model.spectra import can_be_edited, relative_amplitudes, with_amplitudes
 from regolith_studio.readers.shape_files import ShapeSource, read_shape_source
 from regolith_studio.session.origins import Drawn
+from regolith_studio.shape_models.protocol import FittedModel
+from regolith_studio.shape_models.sample import Sample
+from regolith_studio.shape_models.spectra import can_be_edited, relative_amplitudes, with_amplitudes
 from regolith_studio.ui.following import Following
 from regolith_studio.ui.layout import padded, scrolled_column, side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget

@@ -7,11 +7,11 @@ from regolith_studio.errors import InputError
 from regolith_studio.jobs.fitting import FIT_DEGREE
 from regolith_studio.jobs.generating import CARD_MODEL
 from regolith_studio.jobs.judging import Origin
-from regolith_studio.model.materials import MaterialCard, materials
-from regolith_studio.model.models import MODELS
-from regolith_studio.model.sample import Sample
 from regolith_studio.readers.shape_files import ShapeSource
 from regolith_studio.session.session import Session
+from regolith_studio.shape_models.materials import MaterialCard, materials
+from regolith_studio.shape_models.models import MODELS
+from regolith_studio.shape_models.sample import Sample
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.translation.sentences import retold
 

@@ -4,7 +4,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QTableWidget, QTableWidgetItem, QWidget
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
-from regolith_studio.model.models import MODELS
+from regolith_studio.shape_models.models import MODELS
 from regolith_studio.studies.tables import Cell, Table
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.translation.sentences import retold

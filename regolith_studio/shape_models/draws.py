@@ -1,0 +1,137 @@
+"""Virtual particles: coefficients that a model drew, and the closed surfaces they bound."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from math import isqrt
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from regolith_studio.errors import GeometryError
+from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats, locked_integers
+from regolith_studio.geometry.directions import icosphere
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.harmonics.coefficients import ShCoefficients
+from regolith_studio.harmonics.icosphere_edges import icosphere_edges
+from regolith_studio.harmonics.surface import DEFAULT_LEVEL, reconstruct
+from regolith_studio.harmonics.synthesis import radii_between, radii_on_icosphere
+from regolith_studio.shape_models.sphere_grid import enclosed_volumes, sphere_grid
+
+Scale = Literal["radius", "log_radius"]
+EXPONENTIAL_DEGREE = 3
+"""Grids for the exponential of an expansion have this many times its degree."""
+
+
+@dataclass(frozen=True, eq=False)
+class Draws:
+    """Particles drawn from a fitted model.
+
+    Parameters
+    ----------
+    coefficients
+        Shape (n, (l_max + 1)^2); of the radius or of its natural logarithm, as `scale` says.
+    scale
+        ``radius`` or ``log_radius``.
+    model
+        Key of the model.
+    seed
+        That gives the same particles again.
+    unit
+        Length unit of the radii.
+    rejected
+        Draws that were thrown away because a radius was not positive or the size out of range.
+    parents
+        Index of the measured particle that each draw began with, shape (n,); -1 where there is none.
+    components
+        Index of the mixture's component, shape (n,); 0 where there is only one.
+    """
+
+    coefficients: FloatArray
+    scale: Scale
+    model: str
+    seed: int
+    unit: str = "um"
+    rejected: int = 0
+    parents: IntArray | None = None
+    components: IntArray | None = None
+
+    def __post_init__(self) -> None:
+        rows = locked_floats(self.coefficients, (None, None), "coefficients")
+        object.__setattr__(self, "coefficients", rows)
+        for name, filler in (("parents", -1), ("components", 0)):
+            given = getattr(self, name)
+            values = np.full(len(rows), filler) if given is None else given
+            object.__setattr__(self, name, locked_integers(values, (len(rows),), name))
+
+    def __reduce__(self) -> tuple[Callable[..., "Draws"], tuple[Any, ...]]:
+        return Draws, tuple(getattr(self, name) for name in self.__dataclass_fields__)
+
+    def __len__(self) -> int:
+        return len(self.coefficients)
+
+    @property
+    def l_max(self) -> int:
+        """Degree of the expansions."""
+        return isqrt(self.coefficients.shape[1]) - 1
+
+    @property
+    def acceptance(self) -> float:
+        """Share of all draws that were kept."""
+        return len(self) / (len(self) + self.rejected) if len(self) else 1.0
+
+    def equivalent_radii(self) -> FloatArray:
+        """Radius of the sphere with each particle's volume, shape (n,)."""
+        factor = 1.5 if self.scale == "radius" else EXPONENTIAL_DEGREE
+        grid = sphere_grid(int(factor * self.l_max) + 1, self.l_max)
+        found = np.empty(len(self))
+        for first in range(0, len(self), 1000):
+            values = self.coefficients[first : first + 1000] @ grid.basis
+            radii = values if self.scale == "radius" else np.exp(values)
+            found[first : first + 1000] = np.cbrt(3 * enclosed_volumes(radii, grid) / (4 * np.pi))
+        return found
+
+    def chosen(self, indices: ArrayLike) -> "Draws":
+        """Some of the particles, by index."""
+        picks = np.asarray(indices, dtype=np.int64)
+        parents, components = np.asarray(self.parents)[picks], np.asarray(self.components)[picks]
+        return replace(self, coefficients=self.coefficients[picks], parents=parents, components=components)
+
+    def particle(self, index: int, l_max: int | None = None) -> ShCoefficients:
+        """Coefficients of the radius of one particle, up to `l_max` (by default that of the draws).
+
+        Where the draws are of the logarithm this cuts the expansion of its exponential, which may swing
+        below zero where the logarithm itself cannot: :func:`virtual_mesh` is the safe way to a surface.
+        """
+        degree = self.l_max if l_max is None else l_max
+        values = ShCoefficients(self.coefficients[index])
+        if self.scale == "radius":
+            return values.truncated(degree) if degree <= self.l_max else values.padded(degree)
+        fine = EXPONENTIAL_DEGREE * max(degree, self.l_max) + 1
+        inner, outer = sphere_grid(fine, self.l_max), sphere_grid(fine, degree)
+        return ShCoefficients(outer.expanded(np.exp(values.values[None] @ inner.basis))[0])
+
+
+def virtual_mesh(draws: Draws, index: int, level: int = DEFAULT_LEVEL) -> Mesh:
+    """Closed mesh of one drawn particle on ``icosphere(level)``, with the volume of its smooth surface.
+
+    The vertices stand out a little, as in :func:`regolith_studio.harmonics.surface.reconstruct`.
+
+    Raises
+    ------
+    GeometryError
+        If the expansion has a negative radius, which no model of this package draws.
+    """
+    drawn = ShCoefficients(draws.coefficients[index])
+    if draws.scale == "radius":
+        return reconstruct(drawn, level=level)
+    sphere = icosphere(level)
+    radius, between = np.exp(radii_on_icosphere(drawn, level)), np.exp(radii_between(drawn, level))
+    if not np.isfinite(radius).all():
+        raise GeometryError("The logarithm of a radius is too large to be a size.")
+    flat = Mesh(
+        sphere.vertices * (radius + icosphere_edges(level).shortfalls(radius, between))[:, None], sphere.faces
+    )
+    grid = sphere_grid(EXPONENTIAL_DEGREE * draws.l_max + 1, draws.l_max)
+    volume = enclosed_volumes(np.exp(drawn.values[None] @ grid.basis), grid)[0]
+    return Mesh(flat.vertices * np.cbrt(volume / flat.volume), sphere.faces)

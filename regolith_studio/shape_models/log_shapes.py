@@ -1,0 +1,81 @@
+"""Shapes without size: the logarithm of the radius of the particle of equivalent radius one."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.harmonics.coefficients import degrees
+from regolith_studio.shape_models.draws import EXPONENTIAL_DEGREE
+from regolith_studio.shape_models.sample import Sample
+from regolith_studio.shape_models.sphere_grid import enclosed_volumes, sphere_grid
+
+_BATCH = 500
+
+
+@dataclass(frozen=True, eq=False)
+class LogShapes:
+    """The particles of a sample, size and shape apart.
+
+    Parameters
+    ----------
+    coefficients
+        Of ln(r / r_eq), shape (n, (l_max + 1)^2).
+    equivalent_radii
+        r_eq, shape (n,).
+    left_out
+        Particles of the sample whose radius is not positive everywhere.
+    """
+
+    coefficients: FloatArray
+    equivalent_radii: FloatArray
+    left_out: int
+
+    @property
+    def powers(self) -> FloatArray:
+        """P_l = sum over m of the squared coefficients, shape (n, l_max + 1); P_0 is set to zero."""
+        length = self.coefficients.shape[1]
+        starts = np.arange(round(length**0.5)) ** 2
+        found = np.add.reduceat(self.coefficients**2, starts, axis=1)
+        found[:, 0] = 0.0
+        return np.asarray(found)
+
+
+def log_shapes(sample: Sample) -> LogShapes:
+    """Size and shape of the particles with a positive radius.
+
+    Raises
+    ------
+    InputError
+        If fewer than two particles have one.
+    """
+    usable = sample.star_shaped()
+    l_max = usable.l_max
+    grid = sphere_grid(EXPONENTIAL_DEGREE * l_max + 1, l_max)
+    rows = np.empty_like(usable.coefficients)
+    for first in range(0, len(usable), _BATCH):
+        radii = usable.coefficients[first : first + _BATCH] @ grid.basis
+        sizes = usable.equivalent_radii[first : first + _BATCH, None]
+        rows[first : first + _BATCH] = grid.expanded(np.log(np.maximum(radii, 1e-3 * sizes) / sizes))
+    return LogShapes(rows, usable.equivalent_radii, len(sample) - len(usable))
+
+
+def sized(shapes: FloatArray, equivalent_radii: FloatArray) -> FloatArray:
+    """The shapes (coefficients of ln r, any size) with c_00 set so that they have these radii exactly."""
+    l_max = round(shapes.shape[1] ** 0.5) - 1
+    grid = sphere_grid(EXPONENTIAL_DEGREE * l_max + 1, l_max)
+    rows = shapes.copy()
+    rows[:, 0] = 0.0
+    volumes = enclosed_volumes(np.exp(rows @ grid.basis), grid)
+    present = np.log(3 * volumes / (4 * np.pi)) / 3
+    rows[:, 0] = np.sqrt(4 * np.pi) * (np.log(equivalent_radii) - present)
+    return rows
+
+
+def directed(powers: FloatArray, rng: np.random.Generator) -> FloatArray:
+    """Coefficients with given power at each degree (n, l_max + 1) and directions that are random."""
+    n, length = len(powers), powers.shape[1] ** 2
+    rows = rng.standard_normal((n, length))
+    starts = np.arange(powers.shape[1]) ** 2
+    found = np.add.reduceat(rows**2, starts, axis=1)
+    return np.asarray(rows * np.sqrt(powers / found)[:, degrees(length)])

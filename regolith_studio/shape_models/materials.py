@@ -1,0 +1,149 @@
+"""Material cards: a whole model of a material in one small JSON file.
+
+A card holds the relative amplitudes sqrt(A_l) / mu of a size-normalised angular power spectrum and a
+log-normal law of sizes: what publications print. Its model is a field in ln r. To first order
+ln(r / mean) = r / mean - 1, so that A_l of ln r is 4 pi times the squared relative amplitude.
+"""
+
+import json
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+from types import MappingProxyType
+from typing import Annotated, Self
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from regolith_studio.errors import FileError, InputError, of_the_entry, reason_of
+from regolith_studio.resources import resource
+from regolith_studio.shape_models.models.log_field import LogField, LogFieldModel, LogFieldSettings
+from regolith_studio.shape_models.sample import Sample
+from regolith_studio.shape_models.size_law import LogNormalSizes
+
+LARGEST_CARD = 1_000_000
+Positive = Annotated[float, Field(gt=0.0)]
+Amplitude = Annotated[float, Field(ge=0.0, le=1.0)]
+
+
+class MaterialCard(BaseModel):
+    """One material; frozen, and the same in memory and in JSON."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+
+    name: str = Field(min_length=1, pattern=r"^[a-z0-9_]+$")
+    label: str = Field(min_length=1)
+    origin: str = Field(min_length=1, description="Where the numbers come from, one sentence.")
+    n_particles: int = Field(ge=2, description="Particles that the statistics were taken of.")
+    unit: str = "um"
+    median_radius: Positive = Field(description="Median equivalent radius, by number.")
+    log_deviation: Annotated[float, Field(gt=0.0, le=5.0)] = Field(description="Of ln r_eq.")
+    relative_amplitudes: tuple[Amplitude, ...] = Field(
+        min_length=2, description="sqrt(A_l) / mu for l = 1, 2, ..., mu the mean of c_00."
+    )
+
+    @property
+    def l_max(self) -> int:
+        """Highest degree that the card knows."""
+        return len(self.relative_amplitudes)
+
+    @classmethod
+    def of(cls, sample: Sample, name: str, label: str, origin: str, l_max: int | None = None) -> Self:
+        """The card of a sample, by the pooled field in ln r; numbers rounded to three digits.
+
+        Raises
+        ------
+        InputError
+            If the sample has no such degree, or its amplitudes are those of no particles.
+        """
+        degree = sample.l_max if l_max is None else l_max
+        settings = LogFieldSettings(degree, "pooled", "log_normal", size_dependent=False)
+        field = LogFieldModel().fit(sample, settings)
+        radii = sample.star_shaped().equivalent_radii
+        try:
+            return cls(
+                name=name,
+                label=label,
+                origin=origin,
+                n_particles=len(radii),
+                unit=sample.unit,
+                median_radius=_rounded(float(np.exp(np.log(radii).mean()))),
+                log_deviation=_rounded(max(float(np.log(radii).std(ddof=1)), 1e-9)),
+                relative_amplitudes=tuple(
+                    _rounded(float(value)) for value in np.sqrt(field.spectrum[1:] / (4 * np.pi))
+                ),
+            )
+        except ValidationError as error:
+            raise InputError(
+                f"The sample makes no card: {of_the_entry(error.errors(include_url=False))}."
+            ) from error
+
+    def model(self, l_max: int = 10) -> LogField:
+        """The field in ln r of the material.
+
+        Raises
+        ------
+        InputError
+            If the card does not reach `l_max`.
+        """
+        if not 1 <= l_max <= self.l_max:
+            raise InputError(f"The card {self.name} reaches from l = 1 to {self.l_max}, got l_max = {l_max}.")
+        amplitudes = np.array([0.0, *self.relative_amplitudes[:l_max]])
+        sizes = LogNormalSizes(
+            np.ones(1), np.array([np.log(self.median_radius)]), np.array([self.log_deviation])
+        )
+        return LogField(4 * np.pi * amplitudes**2, sizes, self.unit, self.median_radius)
+
+
+def materials() -> Mapping[str, MaterialCard]:
+    """The shipped cards by name."""
+    return MappingProxyType(_shipped())
+
+
+@cache
+def _shipped() -> dict[str, MaterialCard]:
+    cards = [read_card(path) for path in sorted(resource("materials").glob("*.json"))]
+    return {card.name: card for card in cards}
+
+
+def read_card(path: Path) -> MaterialCard:
+    """A card from its file.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be read or is no card.
+    """
+    try:
+        return card_from(path.read_bytes(), path.name)
+    except OSError as error:
+        raise FileError(f"{path.name} cannot be read: {reason_of(error)}.") from error
+
+
+def card_from(content: bytes, name: str) -> MaterialCard:
+    """A card from the bytes of the file called `name`.
+
+    Raises
+    ------
+    FileError
+        If it is no card.
+    """
+    if len(content) > LARGEST_CARD:
+        raise FileError(f"{name} is larger than a material card can be.")
+    try:
+        return MaterialCard.model_validate_json(content)
+    except ValidationError as error:
+        raise FileError(
+            f"{name} is no material card: {of_the_entry(error.errors(include_url=False))}."
+        ) from error
+
+
+def write_card(card: MaterialCard, path: Path) -> Path:
+    """Write the card; the same card gives the same bytes."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(json.dumps(card.model_dump(), indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    return path
+
+
+def _rounded(value: float) -> float:
+    return float(f"{value:.3g}")

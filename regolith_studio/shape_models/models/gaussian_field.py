@@ -1,0 +1,135 @@
+"""The paper's model: an isotropic Gaussian random field on the sphere (section 2.3).
+
+c_00 is N(mu, A_0), c_lm is N(0, A_l), all independent. Nothing keeps the radius positive: draws whose
+radius is not are thrown away and counted, which the paper does not mention.
+"""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from regolith_studio.errors import InputError
+from regolith_studio.geometry.arrays import FloatArray, locked_floats
+from regolith_studio.harmonics.coefficients import degrees
+from regolith_studio.shape_models.chunks import DrawnByChunks, accepted, chunks
+from regolith_studio.shape_models.draws import Draws
+from regolith_studio.shape_models.positive import acceptable
+from regolith_studio.shape_models.protocol import SizeRange
+from regolith_studio.shape_models.sample import Sample
+from regolith_studio.shape_models.size_law import checked_bounds
+
+KEY = "gaussian_field"
+
+
+@dataclass(frozen=True)
+class GaussianFieldSettings:
+    """Parameters
+    ----------
+    l_max
+        Degree of the particles; the paper's is 10 (section 3.1).
+    """
+
+    l_max: int = 10
+
+
+@dataclass(frozen=True, eq=False)
+class GaussianField(DrawnByChunks):
+    """The field's numbers.
+
+    Parameters
+    ----------
+    mean
+        mu, the mean of c_00.
+    spectrum
+        A_0 .. A_l_max, shape (l_max + 1,): variance of c_00, and of each c_lm.
+    unit
+        Length unit of the sample.
+
+    Raises
+    ------
+    InputError
+        If mu is not positive or a variance is negative or not finite.
+    """
+
+    mean: float
+    spectrum: FloatArray
+    unit: str = "um"
+    key: ClassVar[str] = KEY
+
+    def __post_init__(self) -> None:
+        values = np.asarray(self.spectrum, dtype=np.float64)
+        if not (self.mean > 0 and np.isfinite(self.mean)):
+            raise InputError(f"The mean of c_00 must be positive, got {self.mean:g}.")
+        if values.ndim != 1 or not len(values) or not (np.isfinite(values).all() and (values >= 0).all()):
+            raise InputError("A spectrum needs one variance A_l for each degree, none of them negative.")
+        object.__setattr__(self, "spectrum", locked_floats(values, (None,), "spectrum"))
+
+    def __reduce__(self) -> tuple[Callable[..., "GaussianField"], tuple[Any, ...]]:
+        return GaussianField, (self.mean, self.spectrum, self.unit)
+
+    @property
+    def l_max(self) -> int:
+        """Degree of the particles it draws."""
+        return len(self.spectrum) - 1
+
+    def with_spectrum(self, spectrum: ArrayLike) -> "GaussianField":
+        """The field with another spectrum, edited by hand."""
+        return replace(self, spectrum=np.asarray(spectrum, dtype=np.float64))
+
+    def parts(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Draws]:
+        """`n` particles of the field with a positive radius, and in the range of equivalent radii if given.
+
+        Raises
+        ------
+        InputError
+            If `n` is negative, the range is none, or hardly any draw is acceptable.
+        """
+        bounds = checked_bounds(size_range)
+        for rng, wanted in chunks(n, seed):
+            rows, rejected = accepted(partial(self._propose, rng), partial(acceptable, bounds), wanted)
+            yield Draws(rows, "radius", KEY, seed, self.unit, rejected)
+
+    def _propose(self, rng: np.random.Generator, n: int) -> FloatArray:
+        length = (self.l_max + 1) ** 2
+        rows = rng.standard_normal((n, length)) * np.sqrt(self.spectrum)[degrees(length)]
+        rows[:, 0] += self.mean
+        return rows
+
+    def stored(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
+        """Plain values for JSON, no arrays."""
+        return {"mean": self.mean, "spectrum": self.spectrum.tolist(), "unit": self.unit}, {}
+
+
+class GaussianFieldModel:
+    """Unbiased estimates: mu = mean of c_00, A_0 its variance (n - 1), A_l = mean of c_lm^2."""
+
+    key = KEY
+    label = "Gaussian field (the paper's)"
+    summary = "Independent normal coefficients; draws with a negative radius are thrown away."
+    Settings = GaussianFieldSettings
+
+    def fit(self, sample: Sample, settings: GaussianFieldSettings | None = None) -> GaussianField:
+        """The field of a sample; the mean of c_lm for l >= 1 is zero by the model and not subtracted.
+
+        Raises
+        ------
+        InputError
+            If the sample is not expanded to the settings' l_max.
+        """
+        rows = sample.truncated((settings or GaussianFieldSettings()).l_max).coefficients
+        l_max = round(rows.shape[1] ** 0.5) - 1
+        sums = np.add.reduceat((rows**2).mean(axis=0), np.arange(l_max + 1) ** 2)
+        spectrum = sums / (2 * np.arange(l_max + 1) + 1)
+        spectrum[0] = rows[:, 0].var(ddof=1)
+        return GaussianField(float(rows[:, 0].mean()), spectrum, sample.unit)
+
+    def restored(self, values: Mapping[str, Any], _arrays: Mapping[str, NDArray[Any]]) -> GaussianField:
+        """The field from what it stored."""
+        return GaussianField(float(values["mean"]), values["spectrum"], str(values["unit"]))
+
+
+MODEL = GaussianFieldModel()

@@ -1,0 +1,226 @@
+"""A parametric model whose particles have facets: a Gaussian field about an ellipsoid, drawn to its hull.
+
+Fields with random phases are too dented for how rough they are: the facets and edges of real grains are
+phases. Here a rough isotropic field in ln r about an ellipsoid is drawn most of the way to its convex hull,
+which makes the facets; its degrees are given their power; it is drawn once more towards its hull, or away
+from it, until it fills the share of it that it should; and it is stretched until its ellipsoid of inertia is
+the one wanted. Size, elongation, flatness, the power of each degree and that share come from a Gaussian
+copula. How far the first drawing goes, and what is asked for, are fitted so that what comes out has the
+sample's extents, sphericities and shares. No measured particle is kept; sizes beyond the sample get the
+shapes of its ends.
+"""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from regolith_studio.errors import InputError
+from regolith_studio.geometry.arrays import FloatArray, locked_floats
+from regolith_studio.shape_models.chunks import CHUNK, DrawnByChunks, chunks
+from regolith_studio.shape_models.copula import GaussianCopula
+from regolith_studio.shape_models.draws import Draws
+from regolith_studio.shape_models.forms import log_ellipsoids, with_forms
+from regolith_studio.shape_models.hull_aims import Aim, Request, come_to, numbers_and_aim
+from regolith_studio.shape_models.log_shapes import log_shapes, sized
+from regolith_studio.shape_models.protocol import SizeRange
+from regolith_studio.shape_models.sample import Sample
+from regolith_studio.shape_models.shape_numbers import CONVEXITY, FORM, POWERS, shape_grid, with_powers
+from regolith_studio.shape_models.size_law import SIZE_LAWS, SizeLaw, checked_bounds, size_law_from
+
+KEY = "hull_field"
+DEGREES = (3, 20)
+ROUGHNESS = 2.5
+"""Amplitude of the field that is drawn to its hull, over that of the finished surface."""
+FACETINGS = (0.6, 0.7, 0.8, 0.9, 1.0)
+"""How far it may be drawn to its hull first; the fit chooses."""
+USUAL_FACETING, FEWEST_TO_CHOOSE = 0.9, 50
+"""That of a fit to so few particles that they cannot tell."""
+N_TRIED, N_COMPARED = CHUNK, 2 * CHUNK
+"""Particles by which what comes out is compared with the sample: to choose, and after."""
+ROUNDS = 6
+"""Corrections of what is asked for, with each of the facetings, and after."""
+FORM_STEPS = (1, 2)
+"""Corrections of the form before and after the share of the hull is set."""
+
+
+@dataclass(frozen=True)
+class HullFieldSettings:
+    """Parameters
+    ----------
+    l_max
+        Degree of ln r, 3 to 20.
+    size_law
+        Key of ``SIZE_LAWS``.
+    """
+
+    l_max: int = 10
+    size_law: str = field(default="kernel", metadata={"label": "Law of sizes", "choices": tuple(SIZE_LAWS)})
+
+
+@dataclass(frozen=True, eq=False)
+class HullField(DrawnByChunks):
+    """The field's numbers.
+
+    Parameters
+    ----------
+    numbers
+        Joint distribution of the columns of :mod:`~regolith_studio.shape_models.shape_numbers`, as measured.
+    sizes
+        Law of equivalent radii.
+    spectrum
+        A_l of ln r of the measured particles, shape (l_max + 1,), A_0 = 0; to be looked at.
+    unit
+        Length unit of the sample.
+    shift, spread
+        What is asked for is median + shift + spread (drawn - median), shapes (l_max + 4,).
+    faceting
+        How far the rough field is drawn to its hull, 0 to 1.
+    """
+
+    numbers: GaussianCopula
+    sizes: SizeLaw
+    spectrum: FloatArray
+    unit: str = "um"
+    shift: FloatArray | None = None
+    spread: FloatArray | None = None
+    faceting: float = USUAL_FACETING
+    key: ClassVar[str] = KEY
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "spectrum", locked_floats(self.spectrum, (None,), "spectrum"))
+        length = self.l_max + 4
+        if len(self.numbers.correlations) != length:
+            raise InputError(f"A field of degree {self.l_max} needs {length} numbers a particle.")
+        for name, filler in (("shift", np.zeros), ("spread", np.ones)):
+            given = getattr(self, name)
+            values = filler(length) if given is None else given
+            object.__setattr__(self, name, locked_floats(values, (length,), name))
+
+    def __reduce__(self) -> tuple[Callable[..., "HullField"], tuple[Any, ...]]:
+        return HullField, tuple(getattr(self, name) for name in self.__dataclass_fields__ if name != "key")
+
+    @property
+    def l_max(self) -> int:
+        """Degree of ln r."""
+        return len(self.spectrum) - 1
+
+    def parts(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Draws]:
+        """`n` particles; their equivalent radii follow the law of sizes, cut to the range if given.
+
+        Raises
+        ------
+        InputError
+            If `n` is negative or the range is none.
+        """
+        bounds = checked_bounds(size_range)
+        for rng, wanted in chunks(n, seed):
+            radii, _ = self.sizes.draw(CHUNK, rng, bounds)
+            shapes = self._shapes(self.numbers.draw(np.log(radii), rng), rng)
+            yield Draws(sized(shapes, radii)[:wanted], "log_radius", KEY, seed, self.unit)
+
+    def _shapes(self, numbers: FloatArray, rng: np.random.Generator) -> FloatArray:
+        """Coefficients of ln r, up to size, of particles that come out with these numbers (n, d)."""
+        shapes, asked = shape_grid(self.l_max), self._asked(numbers)
+        grid, form = shapes.grid, np.maximum(numbers[:, FORM], 0.0)
+        power = np.column_stack([np.zeros(len(asked)), np.exp(asked[:, POWERS])])
+        frames = Rotation.from_quat(rng.standard_normal((len(asked), 4))).as_matrix()
+        ellipsoids = log_ellipsoids(grid.directions, form, frames)
+        field = rng.standard_normal((len(asked), (self.l_max + 1) ** 2))
+        field[:, 0] = 0.0
+        rough = ellipsoids + with_powers(field, ROUGHNESS**2 * power) @ grid.basis
+        surface = grid.expanded(shapes.drawn(rough, self.faceting) - ellipsoids)
+        finished = ellipsoids + with_powers(surface, power) @ grid.basis
+        shares = 1 / (1 + np.exp(-asked[:, CONVEXITY]))
+        filled = shapes.with_convexities(with_forms(finished, form, grid, FORM_STEPS[0]), shares)
+        return grid.expanded(with_forms(filled, form, grid, FORM_STEPS[1]))
+
+    def _asked(self, numbers: FloatArray) -> FloatArray:
+        middle = self.numbers.quantiles[len(self.numbers.quantiles) // 2]
+        return np.asarray(middle + self.shift + np.asarray(self.spread) * (numbers - middle))
+
+    def corrected(self, aim: Aim, n: int) -> tuple["HullField", float]:
+        """The field with one more round of correction, and how far its particles were from the aim."""
+        rng = np.random.default_rng(np.random.SeedSequence(0))
+        radii, _ = self.sizes.draw(n, rng)
+        numbers, outer = come_to(self._shapes(self.numbers.draw(np.log(radii), rng), rng), radii)
+        request = Request(np.asarray(self.shift), np.asarray(self.spread))
+        better = aim.corrected(request, numbers, outer)
+        return replace(self, shift=better.shift, spread=better.spread), aim.distance(outer)
+
+    def stored(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
+        """Plain values for JSON, no arrays."""
+        values = {
+            "numbers": self.numbers.stored(),
+            "sizes": self.sizes.stored(),
+            "spectrum": self.spectrum.tolist(),
+            "unit": self.unit,
+            "shift": np.asarray(self.shift).tolist(),
+            "spread": np.asarray(self.spread).tolist(),
+            "faceting": self.faceting,
+        }
+        return values, {}
+
+
+class HullFieldModel:
+    """Measures the numbers of a sample's particles, and corrects what is asked for until they come out."""
+
+    key = KEY
+    label = "Field drawn to its hull"
+    summary = "Parametric, with facets: size, form, roughness and hull ratio go together as in the sample."
+    Settings = HullFieldSettings
+
+    def fit(self, sample: Sample, settings: HullFieldSettings | None = None) -> HullField:
+        """The field of a sample.
+
+        Raises
+        ------
+        InputError
+            If a setting is out of range, the sample is not expanded so far, or fewer than two particles have
+            a positive radius.
+        """
+        chosen = settings or HullFieldSettings()
+        if chosen.size_law not in SIZE_LAWS:
+            raise InputError(f"The size law must be one of {', '.join(SIZE_LAWS)}, got {chosen.size_law!r}.")
+        cut = sample.truncated(chosen.l_max)
+        if not DEGREES[0] <= chosen.l_max <= DEGREES[1]:
+            raise InputError(
+                f"A field drawn to its hull has l_max {DEGREES[0]} to {DEGREES[1]}, got {chosen.l_max}."
+            )
+        usable = cut.star_shaped()
+        table, aim = numbers_and_aim(usable.coefficients)
+        mean_powers = log_shapes(usable).powers.mean(axis=0)
+        sizes = SIZE_LAWS[chosen.size_law](usable.equivalent_radii)
+        spectrum = mean_powers / (2 * np.arange(chosen.l_max + 1) + 1)
+        plain = HullField(GaussianCopula.of(table), sizes, spectrum, sample.unit)
+        if len(usable) < FEWEST_TO_CHOOSE:
+            return _settled(plain, aim, N_COMPARED)[0]
+        tried = [_settled(replace(plain, faceting=share), aim, N_TRIED) for share in FACETINGS]
+        return _settled(min(tried, key=lambda each: each[1])[0], aim, N_COMPARED)[0]
+
+    def restored(self, values: Mapping[str, Any], _arrays: Mapping[str, NDArray[Any]]) -> HullField:
+        """The field from what it stored."""
+        numbers = values["numbers"]
+        return HullField(
+            GaussianCopula(np.array(numbers["quantiles"]), np.array(numbers["correlations"])),
+            size_law_from(values["sizes"]),
+            np.array(values["spectrum"]),
+            str(values["unit"]),
+            np.array(values["shift"]),
+            np.array(values["spread"]),
+            float(values["faceting"]),
+        )
+
+
+def _settled(field: HullField, aim: Aim, n: int) -> tuple[HullField, float]:
+    """The field after some rounds of correction, and how far from the aim it was in the last."""
+    distance = np.inf
+    for _ in range(ROUNDS):
+        field, distance = field.corrected(aim, n)
+    return field, distance
+
+
+MODEL = HullFieldModel()

@@ -1,0 +1,284 @@
+"""A model that real samples can hardly be told from: measured surfaces, turned within their ellipsoids.
+
+A measured particle is brought by a linear map to the sphere of inertia, turned there by a random rotation,
+and brought back by the map of an ellipsoid of its neighbourhood. Each step is linear, so the share of its
+convex hull that a particle fills stays as it was measured, and with it edges, faces and roughness; elongation
+and flatness are the neighbour's; what is new is how the surface lies on the form. Particles are mapped with
+all degrees that the sample has, up to twice the degree of the draws, and cut afterwards, as the measured ones
+are: so both lose the same by the cut. Where the sample has no more degrees than the draws, mapped particles
+are given the mean power that the measured ones have at each degree from the third on.
+
+It is a smoothed bootstrap: it makes no size and no form that was not measured in the neighbourhood. To go
+beyond the sample, take ``log_field``.
+"""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+from scipy.spatial.transform import Rotation
+
+from regolith_studio.errors import InputError
+from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
+from regolith_studio.harmonics.coefficients import degrees
+from regolith_studio.shape_models.chunks import CHUNK, DrawnByChunks, chunks
+from regolith_studio.shape_models.draws import Draws
+from regolith_studio.shape_models.linear_maps import Tables, mapped_radii, radius_tables
+from regolith_studio.shape_models.positive import positive_rows
+from regolith_studio.shape_models.principal_axes import PrincipalAxes, principal_axes
+from regolith_studio.shape_models.protocol import SizeRange
+from regolith_studio.shape_models.roughness import roughness_gain
+from regolith_studio.shape_models.sample import Sample
+from regolith_studio.shape_models.size_law import LogNormalSizes, checked_bounds
+from regolith_studio.shape_models.sphere_grid import enclosed_volumes, sphere_grid
+
+KEY = "sample_matched"
+OVERSAMPLING = 2
+"""Measured particles are mapped with degrees up to so many times that of the draws."""
+N_COMPARED = 2 * CHUNK
+"""Particles by which the power of mapped ones is compared with that of measured ones."""
+HALVINGS = 4
+"""A mapped particle whose cut has a negative radius is turned by half as much, so often, then not at all."""
+
+
+@dataclass(frozen=True)
+class SampleMatchedSettings:
+    """Parameters
+    ----------
+    l_max
+        Degree of the particles drawn.
+    turn
+        Mean angle of the rotation of a round particle, radians; angles are even between 0.6 and 1.4 times as
+        much, and smaller by short over long axis: on a long particle the same angle changes more, and more
+        turning makes it rougher than the measured one.
+    n_neighbours
+        The ellipsoid comes from one of so many particles nearest in elongation and flatness, itself among
+        them.
+    size_jitter
+        Standard deviation of ln r_eq about the measured one.
+    """
+
+    l_max: int = 10
+    turn: float = field(
+        default=0.45,
+        metadata={
+            "label": "Turn [rad]",
+            "maximum": 2.0,
+            "step": 0.1,
+            "decimals": 2,
+            "tip": "Mean rotation of a round particle; long ones are turned less.",
+        },
+    )
+    n_neighbours: int = field(
+        default=20,
+        metadata={"label": "Neighbours", "minimum": 1, "tip": "Particles that may lend their ellipsoid."},
+    )
+    size_jitter: float = field(
+        default=0.02,
+        metadata={
+            "label": "Size jitter",
+            "maximum": 1.0,
+            "decimals": 3,
+            "tip": "Deviation in ln r_eq.",
+        },
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class SampleMatched(DrawnByChunks):
+    """The measured particles and how far to leave them.
+
+    Parameters
+    ----------
+    coefficients
+        Of the measured radii, shape (n, (base l_max + 1)^2), positive everywhere.
+    settings
+        Of the fit.
+    unit
+        Length unit of the sample.
+    gain
+        Factor of each degree of mapped particles, shape (l_max + 1,); ones if ``None``.
+    """
+
+    coefficients: FloatArray
+    settings: SampleMatchedSettings
+    unit: str = "um"
+    gain: FloatArray | None = None
+    key: ClassVar[str] = KEY
+
+    def __post_init__(self) -> None:
+        rows = locked_floats(self.coefficients, (None, None), "coefficients")
+        if rows.shape[1] < (self.settings.l_max + 1) ** 2:
+            raise ValueError(f"{rows.shape[1]} coefficients do not reach l_max = {self.settings.l_max}")
+        object.__setattr__(self, "coefficients", rows)
+        gain = np.ones(self.l_max + 1) if self.gain is None else self.gain
+        object.__setattr__(self, "gain", locked_floats(gain, (self.l_max + 1,), "gain"))
+
+    def __reduce__(self) -> tuple[Callable[..., "SampleMatched"], tuple[Any, ...]]:
+        return SampleMatched, (self.coefficients, self.settings, self.unit, self.gain)
+
+    @property
+    def l_max(self) -> int:
+        """Degree of the particles it draws."""
+        return self.settings.l_max
+
+    @cached_property
+    def sizes(self) -> LogNormalSizes:
+        """Law of equivalent radii: the measured ones, each blurred a little; component i is particle i."""
+        radii = np.cbrt(3 * self._axes.volumes / (4 * np.pi))
+        return LogNormalSizes.kernel(radii, self.settings.size_jitter)
+
+    @cached_property
+    def _axes(self) -> PrincipalAxes:
+        return principal_axes(self.coefficients)
+
+    @cached_property
+    def _tables(self) -> Tables:
+        return radius_tables(self.coefficients)
+
+    @cached_property
+    def _neighbours(self) -> IntArray:
+        """Particles that may lend their ellipsoid: the nearest in the two axis ratios, shape (n, k).
+
+        Where a particle is not among the nearest of its neighbour, it stands there itself: so each ellipsoid
+        is lent as often as it was measured, and long and flat ones are not lost to the middle.
+        """
+        ratios = self._axes.log_ratios[:, [0, 2]]
+        spread = np.maximum(ratios.std(axis=0), 1e-9)
+        count = min(self.settings.n_neighbours, len(ratios))
+        found = np.asarray(cKDTree(ratios / spread).query(ratios / spread, k=np.arange(1, count + 1))[1])
+        own = np.arange(len(ratios))[:, None]
+        mutual = (found[found] == own[:, :, None]).any(axis=2)
+        return np.asarray(np.where(mutual, found, own), dtype=np.int64)
+
+    def parts(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Draws]:
+        """`n` particles; their equivalent radii are the measured ones blurred, cut to the range if given.
+
+        Where nothing was measured in the range, sizes are even in ln r and shapes those nearest in size.
+
+        Raises
+        ------
+        InputError
+            If `n` is negative or the range is none.
+        """
+        bounds = checked_bounds(size_range)
+        for rng, wanted in chunks(n, seed):
+            radii, parents = self.sizes.draw(CHUNK, rng, bounds)
+            column = rng.integers(self._neighbours.shape[1], size=CHUNK)
+            forms = self._neighbours[parents, column]
+            spins = _spins(rng, self.settings.turn) * self._roundness(parents, forms)[:, None]
+            rows = _sized(self._turned(parents, forms, spins), radii)
+            yield Draws(rows[:wanted], "radius", KEY, seed, self.unit, parents=parents[:wanted])
+
+    def _roundness(self, parents: IntArray, forms: IntArray) -> FloatArray:
+        """Short over long axis of whichever ellipsoid is the longer one, shape (n,)."""
+        shares = np.exp(self._axes.log_ratios[:, 0] - self._axes.log_ratios[:, 2])
+        return np.asarray(np.minimum(shares[parents], shares[forms]))
+
+    def _turned(self, parents: IntArray, forms: IntArray, spins: FloatArray) -> FloatArray:
+        """Coefficients of the particles `parents` on the ellipsoids of `forms`, turned by `spins` (n, 3)."""
+        rows = self._mapped(parents, forms, spins)
+        for halving in range(HALVINGS + 1):
+            bad = np.flatnonzero(~positive_rows(rows))
+            if not len(bad):
+                break
+            share = 0.0 if halving == HALVINGS else 0.5 ** (halving + 1)
+            own = parents[bad] if halving == HALVINGS else forms[bad]
+            rows[bad] = self._mapped(parents[bad], own, spins[bad] * share)
+        bad = np.flatnonzero(~positive_rows(rows))
+        rows[bad] = self.coefficients[parents[bad], : rows.shape[1]]
+        return rows
+
+    def _mapped(self, parents: IntArray, forms: IntArray, spins: FloatArray) -> FloatArray:
+        axes, lengths = self._axes.axes[parents], np.exp(self._axes.log_ratios)
+        back = np.swapaxes(axes, 1, 2) / lengths[forms][:, :, None]
+        turn_back = Rotation.from_rotvec(-spins).as_matrix()
+        inverses = (axes * lengths[parents][:, None, :]) @ turn_back @ back
+        grid = sphere_grid(_mapping_degree(self.l_max), self.l_max)
+        radii = mapped_radii(self._tables, parents, np.ascontiguousarray(inverses), grid.directions)
+        return np.asarray(grid.expanded(radii) * np.asarray(self.gain)[degrees((self.l_max + 1) ** 2)])
+
+    def roughened(self) -> "SampleMatched":
+        """The same with the gain by which its particles have the power of the measured ones."""
+        draws = replace(self, gain=None).draw(N_COMPARED, 0)
+        measured = self.coefficients[draws.parents, : draws.coefficients.shape[1]]
+        return replace(self, gain=roughness_gain(draws.coefficients, measured))
+
+    def stored(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
+        """The settings for JSON; the measured coefficients."""
+        settings = {name: getattr(self.settings, name) for name in self.settings.__dataclass_fields__}
+        values = {"settings": settings, "unit": self.unit, "gain": np.asarray(self.gain).tolist()}
+        return values, {"coefficients": self.coefficients}
+
+
+def _mapping_degree(l_max: int) -> int:
+    """Degree of the grid on which mapped radii are expanded: it separates all degrees up to 2.2 l_max."""
+    return int(1.6 * l_max) + 1
+
+
+def _spins(rng: np.random.Generator, turn: float) -> FloatArray:
+    """Rotation vectors (CHUNK, 3) with random axes."""
+    axes = rng.standard_normal((CHUNK, 3))
+    axes /= np.linalg.norm(axes, axis=1, keepdims=True)
+    return np.asarray(axes * turn * rng.uniform(0.6, 1.4, (CHUNK, 1)))
+
+
+def _sized(rows: FloatArray, radii: FloatArray) -> FloatArray:
+    """The radius functions with equivalent radii `radii` exactly."""
+    l_max = round(rows.shape[1] ** 0.5) - 1
+    grid = sphere_grid(3 * l_max // 2 + 1, l_max)
+    volumes = enclosed_volumes(rows @ grid.basis, grid)
+    return np.asarray(rows * (radii / np.cbrt(3 * volumes / (4 * np.pi)))[:, None])
+
+
+class SampleMatchedModel:
+    """Keeps the measured particles; nothing is estimated but their ellipsoids."""
+
+    key = KEY
+    label = "Matched to the sample"
+    summary = (
+        "Measured surfaces turned within their ellipsoids: sizes and shapes as in the sample, bodies new."
+    )
+    Settings = SampleMatchedSettings
+
+    def fit(self, sample: Sample, settings: SampleMatchedSettings | None = None) -> SampleMatched:
+        """The model of a sample; better the more degrees above the settings' l_max the sample has.
+
+        Raises
+        ------
+        InputError
+            If a setting is out of range, the sample is not expanded so far, or fewer than two particles have
+            a positive radius.
+        """
+        chosen = settings or SampleMatchedSettings()
+        if not 0 <= chosen.turn <= 2 or chosen.n_neighbours < 1 or not 0 <= chosen.size_jitter <= 1:
+            raise InputError(
+                "The turn must be 0 to 2 radians, the neighbours at least 1 and the size jitter 0 to 1, got "
+                f"{chosen.turn:g}, {chosen.n_neighbours} and {chosen.size_jitter:g}."
+            )
+        if chosen.l_max < 1:
+            raise InputError(f"Particles that can be turned need l_max of at least 1, got {chosen.l_max}.")
+        sample.truncated(chosen.l_max)  # refuses what the sample lacks
+        usable = sample.truncated(min(sample.l_max, OVERSAMPLING * chosen.l_max)).star_shaped()
+        cut = usable.truncated(chosen.l_max)
+        keep = np.flatnonzero(positive_rows(cut.coefficients))
+        if len(keep) < len(usable):
+            usable = usable.chosen(keep)
+        fitted = SampleMatched(usable.coefficients, chosen, sample.unit)
+        return fitted if usable.l_max >= OVERSAMPLING * chosen.l_max else fitted.roughened()
+
+    def restored(self, values: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> SampleMatched:
+        """The model from what it stored."""
+        return SampleMatched(
+            arrays["coefficients"],
+            SampleMatchedSettings(**values["settings"]),
+            str(values["unit"]),
+            values["gain"],
+        )
+
+
+MODEL = SampleMatchedModel()

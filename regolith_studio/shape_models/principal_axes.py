@@ -1,0 +1,84 @@
+"""The ellipsoid of inertia of a radius function, and a frame that turns with the particle."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.harmonics.coefficients import ShCoefficients
+from regolith_studio.harmonics.rotation import rotated
+from regolith_studio.shape_models.sphere_grid import enclosed_volumes, sphere_grid
+
+_BATCH = 500
+
+
+@dataclass(frozen=True, eq=False)
+class PrincipalAxes:
+    """Second moments about the star point of n bodies.
+
+    Parameters
+    ----------
+    axes
+        Unit vectors as columns, the shortest extent first, right-handed, shape (n, 3, 3).
+    lengths
+        Root of the second moment over the volume along each, ascending, shape (n, 3).
+    skews
+        Third moment along each over the volume, shape (n, 3).
+    volumes
+        Shape (n,).
+    """
+
+    axes: FloatArray
+    lengths: FloatArray
+    skews: FloatArray
+    volumes: FloatArray
+
+    @property
+    def log_ratios(self) -> FloatArray:
+        """ln of the lengths, without their mean, shape (n, 3)."""
+        logs = np.log(self.lengths)
+        return np.asarray(logs - logs.mean(axis=1, keepdims=True))
+
+
+def principal_axes(coefficients: FloatArray) -> PrincipalAxes:
+    """Of radius functions (n, (l_max + 1)^2), by quadrature of r^5 u u / 5 and r^6 (u e)^3 / 6."""
+    parts = [_of_batch(coefficients[i : i + _BATCH]) for i in range(0, len(coefficients), _BATCH)]
+    return PrincipalAxes(
+        *(np.concatenate([getattr(part, name) for part in parts]) for name in PrincipalAxes.__annotations__)
+    )
+
+
+def _of_batch(coefficients: FloatArray) -> PrincipalAxes:
+    l_max = round(coefficients.shape[1] ** 0.5) - 1
+    grid = sphere_grid(5 * l_max // 2 + 2, l_max)
+    radii = coefficients @ grid.basis
+    volumes = enclosed_volumes(radii, grid)
+    u = grid.directions
+    products = (u[:, :, None] * u[:, None, :]).reshape(-1, 9)
+    squared = radii * radii
+    second = ((squared * squared * radii * grid.weights) @ products / 5).reshape(-1, 3, 3) / volumes[
+        :, None, None
+    ]
+    squares, axes = np.linalg.eigh(second)
+    axes[np.linalg.det(axes) < 0, :, 0] *= -1
+    cubes = (products[:, :, None] * u[:, None, :]).reshape(-1, 27)
+    third = ((squared * squared * squared * grid.weights) @ cubes / 6).reshape(-1, 3, 3, 3)
+    skews = np.einsum("nabc,nai,nbi,nci->ni", third, axes, axes, axes, optimize=True)
+    return PrincipalAxes(axes, np.sqrt(np.maximum(squares, 1e-30)), skews / volumes[:, None], volumes)
+
+
+def canonical(coefficients: FloatArray) -> FloatArray:
+    """The particles at equivalent radius one in the frame of their axes, shape (n, (l_max + 1)^2).
+
+    The longest extent along x, the shortest along z; x and y point to the heavier side (third moment).
+    Mirror images stay different.
+    """
+    found = principal_axes(coefficients)
+    rows = np.empty_like(coefficients)
+    scales = np.cbrt(3 * found.volumes / (4 * np.pi))
+    for i, row in enumerate(coefficients):
+        frame = found.axes[i, :, ::-1].T
+        frame = frame * np.where(found.skews[i, ::-1] < 0, -1.0, 1.0)[:, None]
+        frame[2] = np.cross(frame[0], frame[1])
+        rows[i] = rotated(ShCoefficients(row), frame).values / scales[i]
+    return rows

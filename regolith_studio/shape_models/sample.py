@@ -1,0 +1,171 @@
+"""What a model is fitted to: the coefficients of the particles of one sample."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import isqrt
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from regolith_studio.errors import InputError
+from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
+from regolith_studio.harmonics.coefficients import ShCoefficients
+from regolith_studio.shape_models.sphere_grid import enclosed_volumes, sphere_grid
+
+FEWEST = 2
+IDENTICAL = 1e-9
+"""Spread of the coefficients, as a share of the mean radius, below which particles count as identical."""
+
+
+@dataclass(frozen=True, eq=False)
+class Sample:
+    """Radius functions of the particles of one sample, all expanded to the same degree.
+
+    Parameters
+    ----------
+    coefficients
+        Shape (n, (l_max + 1)^2), convention of :mod:`regolith_studio.harmonics.coefficients`.
+    names
+        One for each particle, as in its mesh.
+    unit
+        Length unit of the radii.
+
+    Raises
+    ------
+    InputError
+        If there are fewer than two particles, a coefficient is not finite, a mean radius is not
+        positive, or all particles are the same.
+    ValueError
+        If shapes and names do not go together.
+    """
+
+    coefficients: FloatArray
+    names: tuple[str, ...] = ()
+    unit: str = "um"
+
+    def __post_init__(self) -> None:
+        rows = np.asarray(self.coefficients, dtype=np.float64)
+        if rows.ndim != 2 or isqrt(rows.shape[1]) ** 2 != rows.shape[1] or not rows.shape[1]:
+            raise ValueError(f"coefficients must have shape (n, (l_max + 1)^2), got {rows.shape}")
+        names = tuple(self.names) or tuple(f"particle-{i + 1}" for i in range(len(rows)))
+        if len(names) != len(rows):
+            raise ValueError(f"{len(rows)} particles cannot have {len(names)} names")
+        _check(rows, names)
+        object.__setattr__(self, "coefficients", locked_floats(rows, (None, None), "coefficients"))
+        object.__setattr__(self, "names", names)
+
+    @classmethod
+    def of(cls, particles: Sequence[ShCoefficients], names: Sequence[str] = (), unit: str = "um") -> "Sample":
+        """From the coefficients of each particle.
+
+        Raises
+        ------
+        InputError
+            If they differ in l_max (:meth:`cut` of each makes them alike), or as the class itself.
+        """
+        degrees = sorted({particle.l_max for particle in particles})
+        if len(degrees) > 1:
+            counts = ", ".join(
+                f"{sum(each.l_max == degree for each in particles)} with l_max = {degree}"
+                for degree in degrees
+            )
+            raise InputError(
+                f"The particles were expanded to different degrees ({counts}); cut all of them to "
+                f"l_max = {degrees[0]} or fit them again."
+            )
+        if not particles:
+            raise InputError(f"A model needs at least {FEWEST} particles, got none.")
+        return cls(np.stack([each.values for each in particles]), tuple(names), unit)
+
+    def __reduce__(self) -> tuple[Callable[..., "Sample"], tuple[Any, ...]]:
+        return Sample, (self.coefficients, self.names, self.unit)
+
+    def __len__(self) -> int:
+        return len(self.coefficients)
+
+    @property
+    def l_max(self) -> int:
+        """Degree of all expansions."""
+        return isqrt(self.coefficients.shape[1]) - 1
+
+    @cached_property
+    def equivalent_radii(self) -> FloatArray:
+        """Radius of the sphere with each particle's volume, shape (n,); exact by quadrature."""
+        grid = sphere_grid(3 * self.l_max // 2 + 1, self.l_max)
+        volumes = enclosed_volumes(self.coefficients @ grid.basis, grid)
+        return np.asarray(np.cbrt(3 * volumes / (4 * np.pi)))
+
+    @cached_property
+    def lowest_radii(self) -> FloatArray:
+        """Smallest radius of each particle on a grid of twice the degree, shape (n,)."""
+        grid = sphere_grid(2 * self.l_max + 1, self.l_max)
+        return np.asarray((self.coefficients @ grid.basis).min(axis=1))
+
+    def particle(self, index: int) -> ShCoefficients:
+        """The coefficients of one particle."""
+        return ShCoefficients(self.coefficients[index])
+
+    def truncated(self, l_max: int) -> "Sample":
+        """All expansions cut at `l_max` (Eq. 4).
+
+        Raises
+        ------
+        InputError
+            If the sample was not expanded so far.
+        """
+        if not 0 <= l_max <= self.l_max:
+            raise InputError(f"The sample is expanded to l_max = {self.l_max}, so it has no l_max = {l_max}.")
+        if l_max == self.l_max:
+            return self
+        return Sample(self.coefficients[:, : (l_max + 1) ** 2], self.names, self.unit)
+
+    def chosen(self, indices: ArrayLike) -> "Sample":
+        """Some of the particles, by index."""
+        picks = np.asarray(indices, dtype=np.int64)
+        return Sample(self.coefficients[picks], tuple(self.names[i] for i in picks), self.unit)
+
+    def star_shaped(self) -> "Sample":
+        """Only the particles whose radius is positive everywhere, for models of its logarithm.
+
+        Raises
+        ------
+        InputError
+            If fewer than two are left.
+        """
+        keep = np.flatnonzero(self.lowest_radii > 0)
+        if len(keep) == len(self):
+            return self
+        if len(keep) < FEWEST:
+            raise InputError(
+                f"Only {len(keep)} of {len(self)} particles have a positive radius everywhere at l_max = "
+                f"{self.l_max}, and a model needs {FEWEST}: choose a lower l_max or fit with an ellipsoid."
+            )
+        return self.chosen(keep)
+
+    def halves(self, seed: int) -> tuple[IntArray, IntArray]:
+        """Indices of two random halves: to fit on, to judge on; determined by `seed` and the length."""
+        order = np.random.default_rng(np.random.SeedSequence(seed)).permutation(len(self))
+        return np.sort(order[: len(self) // 2]), np.sort(order[len(self) // 2 :])
+
+
+def _check(rows: FloatArray, names: tuple[str, ...]) -> None:
+    if len(rows) < FEWEST:
+        raise InputError(f"A model needs at least {FEWEST} different particles, got {len(rows)}.")
+    broken = np.flatnonzero(~np.isfinite(rows).all(axis=1))
+    if len(broken):
+        raise InputError(
+            f"{len(broken)} of {len(rows)} particles have coefficients that are not finite numbers, the "
+            f"first is {names[broken[0]]!r}: leave them out or fit them again."
+        )
+    flat = np.flatnonzero(~(rows[:, 0] > 0))
+    if len(flat):
+        raise InputError(
+            f"{len(flat)} of {len(rows)} particles have a mean radius that is not positive, the first is "
+            f"{names[flat[0]]!r}: leave them out."
+        )
+    if np.ptp(rows, axis=0).max() <= IDENTICAL * rows[:, 0].mean():
+        raise InputError(
+            f"All {len(rows)} particles are the same; a model needs at least two different ones."
+        )

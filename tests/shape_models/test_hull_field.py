@@ -1,0 +1,203 @@
+"""Hulls on a grid, the copula, and the field that is drawn to its hull."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.spatial import ConvexHull
+from scipy.stats import spearmanr
+
+from regolith_studio.descriptors.describe import describe
+from regolith_studio.errors import InputError
+from regolith_studio.shape_models.copula import GaussianCopula
+from regolith_studio.shape_models.draws import Draws, virtual_mesh
+from regolith_studio.shape_models.forms import forms, log_ellipsoids, with_forms
+from regolith_studio.shape_models.hull_aims import come_to, numbers_and_aim
+from regolith_studio.shape_models.hull_radii import ROWS, hull_grid, supports
+from regolith_studio.shape_models.materials import materials
+from regolith_studio.shape_models.models import MODELS
+from regolith_studio.shape_models.models.hull_field import HullFieldSettings
+from regolith_studio.shape_models.outer_numbers import SPHERICITY, of_log_radii, of_radii
+from regolith_studio.shape_models.sample import Sample
+from regolith_studio.shape_models.shape_numbers import (
+    CONVEXITY,
+    FORM,
+    POWERS,
+    shape_grid,
+    shape_numbers,
+)
+
+MODEL = MODELS["hull_field"]
+
+
+def _dented(n: int, seed: int = 0) -> np.ndarray:
+    rng = np.random.default_rng(seed)
+    rows = 0.05 * rng.normal(size=(n, 49))
+    rows[:, 0] = 0.0
+    return np.asarray(rows @ hull_grid(14, 6).grid.basis)
+
+
+def test_that_the_hull_of_an_ellipsoid_is_itself() -> None:
+    shapes = hull_grid(25, 4)
+    frames = np.eye(3)[None]
+    logs = log_ellipsoids(shapes.grid.directions, np.array([[0.3, 0.2]]), frames)
+    np.testing.assert_allclose(shapes.hulls(np.exp(logs)), np.exp(logs), rtol=0.01)
+
+
+def test_that_an_ellipsoid_has_the_axes_asked_for() -> None:
+    directions = np.vstack([np.eye(3), -np.eye(3)])
+    short, middle, long = np.exp(log_ellipsoids(directions, np.array([[0.3, 0.2]]), np.eye(3)[None]))[0, :3]
+    assert long / middle == pytest.approx(np.exp(0.3))
+    assert middle / short == pytest.approx(np.exp(0.2))
+    assert short * middle * long == pytest.approx(1.0)
+
+
+def test_that_hulls_on_the_grid_hold_the_hull_of_its_points() -> None:
+    shapes = hull_grid(14, 6)
+    radii = np.exp(_dented(5))
+    hulls = shapes.hulls(radii)
+    for radius, hull in zip(radii, hulls, strict=True):
+        planes = ConvexHull(radius[:, None] * shapes.grid.directions).equations
+        heights = shapes.grid.directions @ planes[:, :3].T
+        exact = np.where(heights > 1e-9, -planes[:, 3] / np.maximum(heights, 1e-9), np.inf).min(axis=1)
+        assert (hull >= exact * (1 - 1e-5)).all()
+        assert (hull / exact - 1).mean() < 0.03
+
+
+def test_that_compiled_hulls_equal_plain_python() -> None:
+    shapes = hull_grid(5, 2)
+    radii = np.exp(_dented(3)[:, : len(shapes.grid.weights)]).astype(np.float32)
+    plain = supports.py_func(radii, shapes.cosines, shapes.reaches)
+    np.testing.assert_array_equal(supports(radii, shapes.cosines, shapes.reaches), plain)
+    np.testing.assert_array_equal(plain, (radii[:, :, None] * shapes.cosines).max(axis=1))
+    assert len(shapes.cosines) % ROWS, "the last directions are fewer than a group"
+
+
+def test_that_a_surface_drawn_to_its_hull_fills_the_share_asked_for() -> None:
+    shapes = hull_grid(14, 6)
+    logs = _dented(40)
+    before = shapes.convexities(np.exp(logs))
+    wanted = np.clip(before + np.linspace(-0.03, 0.05, 40), 0.0, 0.98)
+    np.testing.assert_allclose(
+        shapes.convexities(np.exp(shapes.with_convexities(logs, wanted))), wanted, atol=2e-4
+    )
+    np.testing.assert_allclose(np.exp(shapes.drawn(logs, 1.0)), shapes.hulls(np.exp(logs)), rtol=1e-5)
+
+
+def test_that_a_copula_keeps_ranks_and_marginals() -> None:
+    rng = np.random.default_rng(3)
+    normal = rng.multivariate_normal([0, 0, 0], [[1, 0.6, -0.3], [0.6, 1, 0], [-0.3, 0, 1]], size=4000)
+    table = np.column_stack([normal[:, 0], np.exp(normal[:, 1]), normal[:, 2] ** 3])
+    copula = GaussianCopula.of(table)
+    drawn = copula.draw(rng.permutation(table[:, 0]), rng)
+    np.testing.assert_allclose(spearmanr(drawn).statistic, spearmanr(table).statistic, atol=0.05)
+    np.testing.assert_allclose(np.percentile(drawn, [10, 50, 90], axis=0)[:, 1],
+                               np.percentile(table, [10, 50, 90], axis=0)[:, 1], rtol=0.06)  # fmt: skip
+
+
+def test_that_a_first_number_beyond_the_tables_goes_with_the_outermost() -> None:
+    x = np.linspace(0.0, 1.0, 500)
+    copula = GaussianCopula.of(np.column_stack([x, 2 * x]))
+    drawn = copula.draw(np.full(200, 50.0), np.random.default_rng(0))
+    assert drawn[:, 0].min() == 50.0
+    assert 1.5 < drawn[:, 1].mean() <= 2.0
+
+
+def test_that_numbers_that_are_no_distribution_are_refused() -> None:
+    with pytest.raises(InputError, match="finite and ascend"):
+        GaussianCopula(np.array([[1.0], [0.0]]), np.eye(1))
+    with pytest.raises(InputError, match="positive definite"):
+        GaussianCopula(np.array([[0.0, 0.0], [1.0, 1.0]]), np.ones((2, 2)))
+
+
+def test_that_the_numbers_of_an_ellipsoid_are_its_own() -> None:
+    shapes = shape_grid(10)
+    logs = log_ellipsoids(shapes.grid.directions, np.array([[0.25, 0.15]]), np.eye(3)[None])
+    found = shape_numbers(shapes.grid.expanded(7 * np.exp(logs)))[0]
+    assert np.exp(found[0]) == pytest.approx(7.0, rel=1e-3)
+    np.testing.assert_allclose(found[FORM], [0.25, 0.15], atol=2e-3)
+    assert found[POWERS].max() < -10
+    assert found[CONVEXITY] > 4
+
+
+@pytest.mark.parametrize("l_max", [2, 21])
+def test_that_a_degree_that_has_no_facets_or_too_many_is_refused(
+    l_max: int, rough_sample: Callable[..., Sample]
+) -> None:
+    with pytest.raises(InputError, match=f"has l_max 3 to 20, got {l_max}"):
+        MODEL.fit(rough_sample(10, 21), HullFieldSettings(l_max=l_max))
+
+
+def test_that_an_unknown_law_of_sizes_is_refused(rough_sample: Callable[..., Sample]) -> None:
+    with pytest.raises(InputError, match="size law must be one of"):
+        MODEL.fit(rough_sample(10), HullFieldSettings(4, "even"))
+
+
+def test_that_a_body_gets_the_form_wanted() -> None:
+    grid = shape_grid(6).grid
+    rng = np.random.default_rng(4)
+    rough = rng.normal(size=(30, 49)) * 0.04
+    wanted = rng.uniform(0.0, 0.5, size=(30, 2))
+    once, twice = (forms(with_forms(rough @ grid.basis, wanted, grid, steps), grid)[0] for steps in (1, 2))
+    assert np.abs(once - wanted).max() < 0.1
+    assert np.abs(twice - wanted).max() < 0.3 * np.abs(once - wanted).max()
+
+
+def test_that_the_form_on_the_grid_is_that_of_the_solid() -> None:
+    coefficients = np.zeros((1, 121))
+    coefficients[0, [0, 4, 6, 8, 20]] = 10.0, 0.3, 0.8, -0.5, 0.4
+    grid = shape_grid(10).grid
+    on_grid, _ = forms(np.log(coefficients @ grid.basis), grid)
+    np.testing.assert_allclose(on_grid, shape_numbers(coefficients)[:, FORM], atol=1e-6)
+    mesh = virtual_mesh(Draws(coefficients, "radius", "measured", 0), 0, 5)
+    second = np.linalg.eigvalsh(np.trace(mesh.inertia) / 2 * np.eye(3) - mesh.inertia)
+    np.testing.assert_allclose(on_grid[0], np.diff(0.5 * np.log(second))[::-1], atol=2e-3)
+
+
+def test_that_outer_numbers_are_those_of_meshes(cement: Sample) -> None:
+    few = cement.truncated(10).chosen(range(12))
+    found = of_radii(few.coefficients, np.zeros(12))
+    draws = Draws(few.coefficients, "radius", "measured", 0)
+    sphericities = [describe(virtual_mesh(draws, i, 4), ["sphericity"])["sphericity"] for i in range(12)]
+    np.testing.assert_allclose(1 / (1 + np.exp(-found[:, SPHERICITY])), sphericities, atol=4e-3)
+
+
+def test_that_outer_numbers_of_ellipsoids_are_the_ratios_of_their_axes() -> None:
+    grid = shape_grid(16).grid
+    form = np.array([[0.2, 0.15], [0.4, 0.0]])
+    logs = log_ellipsoids(grid.directions, form, np.stack([np.eye(3)] * 2))
+    found = of_log_radii(grid.expanded(logs), np.zeros(2))
+    np.testing.assert_allclose(found[:, 0], form.sum(axis=1), atol=0.02)
+
+
+def test_that_drawn_particles_have_the_outer_numbers_of_real_ones(cement: Sample) -> None:
+    cut = cement.truncated(10).coefficients
+    measured, aim = numbers_and_aim(cut)
+    fitted: Any = MODEL.fit(cement)
+    drawn = fitted.draw(500, 2)
+    numbers, outer = come_to(drawn.coefficients, drawn.equivalent_radii())
+    gap = np.abs(numbers.mean(axis=0) - measured.mean(axis=0)) / measured.std(axis=0)
+    assert gap[:3].max() < 0.1
+    assert gap.max() < 0.6
+    assert fitted.faceting >= 0.9
+    np.testing.assert_allclose(numbers.std(axis=0) / measured.std(axis=0), 1.0, atol=0.2)
+    assert aim.distance(outer) < 0.35
+    plain = MODELS["log_field"].fit(cement).draw(500, 2)
+    assert aim.distance(come_to(plain.coefficients, plain.equivalent_radii())[1]) > 0.6
+    real = _mean_share_of_hull(Draws(cut, "radius", "measured", 0))
+    assert abs(_mean_share_of_hull(drawn) - real) < 0.012
+    assert abs(_mean_share_of_hull(plain) - real) > 0.02
+
+
+def test_that_the_faceting_follows_the_sample() -> None:
+    soft = materials()["ma165"].model(10).draw(200, 0)
+    rows = np.stack([soft.particle(i).values for i in range(200)])
+    fitted: Any = MODEL.fit(Sample(rows))
+    assert fitted.faceting <= 0.8
+    assert MODEL.restored(*fitted.stored()).faceting == fitted.faceting
+
+
+def _mean_share_of_hull(draws: Draws) -> float:
+    meshes = (virtual_mesh(draws, i, 3) for i in range(150))
+    return float(np.mean([mesh.volume / ConvexHull(mesh.vertices).volume for mesh in meshes]))

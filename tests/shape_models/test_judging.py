@@ -1,0 +1,97 @@
+import numpy as np
+import pytest
+from scipy.stats import ks_2samp, wasserstein_distance
+
+from regolith_studio.errors import InputError
+from regolith_studio.harmonics.coefficients import ShCoefficients
+from regolith_studio.harmonics.rotation import rotated
+from regolith_studio.shape_models.judging import (
+    classifier_accuracy,
+    energy_distance,
+    kolmogorov_smirnov,
+    novelty,
+    relative_wasserstein,
+    resampled_distances,
+)
+
+RNG = np.random.default_rng
+
+
+def test_that_a_shift_by_a_tenth_of_the_mean_is_a_distance_of_a_tenth() -> None:
+    values = RNG(0).uniform(9, 11, 500)
+    values *= 10 / values.mean()
+    ones = np.ones(500)
+    assert relative_wasserstein(values, values + 1, ones, ones) == pytest.approx(0.1)
+
+
+def test_that_the_unweighted_gap_is_that_of_scipy() -> None:
+    one, two = RNG(0).normal(size=80), RNG(1).normal(0.3, 1, size=131)
+    found = kolmogorov_smirnov(one, two, np.ones(80), np.ones(131))
+    assert found == pytest.approx(ks_2samp(one, two).statistic, abs=1e-12)
+
+
+def test_that_many_weightings_at_once_are_each_of_them_alone() -> None:
+    one, two = RNG(0).normal(2, 1, size=60), np.round(RNG(1).normal(2, 1, size=45), 1)
+    weights, others = RNG(2).integers(0, 4, (5, 60)) * 1.0, RNG(3).integers(0, 4, (5, 45)) * 1.0
+    near, gaps = resampled_distances(one, two, weights, others, np.ones(60))
+    for row in range(5):
+        assert near[row] * one.mean() == pytest.approx(
+            wasserstein_distance(one, two, weights[row], others[row])
+        )
+        assert gaps[row] == pytest.approx(kolmogorov_smirnov(one, two, weights[row], others[row]))
+
+
+def test_that_whole_weights_are_repetitions() -> None:
+    one, two = RNG(0).normal(size=20), RNG(1).normal(size=30)
+    counts = RNG(2).integers(1, 5, 20)
+    many = np.repeat(one, counts)
+    expected = ks_2samp(many, two).statistic
+    assert kolmogorov_smirnov(one, two, counts * 1.0, np.ones(30)) == pytest.approx(expected, abs=1e-12)
+    weighted = relative_wasserstein(one, two, counts * 1.0, np.ones(30))
+    assert weighted == pytest.approx(relative_wasserstein(many, two, np.ones(len(many)), np.ones(30)))
+
+
+def test_that_the_energy_distance_of_shifted_normals_is_the_known_one() -> None:
+    """Of N(0, 1) and N(d, 1): 2 E|Z sqrt2 + d| - 4 / sqrt pi, from the folded normal law."""
+    shift = 1.0
+    one, two = RNG(0).normal(size=(2000, 1)), RNG(1).normal(shift, 1, size=(2000, 1))
+    folded = 2 / np.sqrt(np.pi) * np.exp(-(shift**2) / 4) + shift * 0.5204998778
+    assert energy_distance(one, two) == pytest.approx(2 * folded - 4 / np.sqrt(np.pi), rel=0.1)
+
+
+def test_that_the_energy_distance_of_equal_laws_is_zero_on_average() -> None:
+    found = [
+        energy_distance(RNG(i).normal(size=(60, 2)), RNG(100 + i).normal(size=(60, 2))) for i in range(80)
+    ]
+    assert abs(np.mean(found)) < 3 * np.std(found) / np.sqrt(80)
+
+
+def test_that_a_classifier_is_at_chance_for_equal_laws_and_sure_for_distant_ones() -> None:
+    one, two = RNG(0).normal(size=(800, 3)), RNG(1).normal(size=(700, 3))
+    assert classifier_accuracy(one, two, RNG(2)) == pytest.approx(0.5, abs=0.05)
+    assert classifier_accuracy(one, two + 5, RNG(2)) > 0.99
+
+
+def test_that_a_classifier_sees_a_correlation_that_the_columns_hide() -> None:
+    one = RNG(0).normal(size=(800, 2))
+    two = RNG(1).multivariate_normal([0, 0], [[1, 0.9], [0.9, 1]], 800)
+    assert classifier_accuracy(one, two, RNG(2)) > 0.7
+
+
+def test_that_a_classifier_needs_ten_particles_of_either_kind() -> None:
+    with pytest.raises(InputError, match="at least 10 particles of either kind, got 4"):
+        classifier_accuracy(np.zeros((4, 2)), np.zeros((50, 2)), RNG(0))
+
+
+def test_that_turned_and_enlarged_copies_are_not_new() -> None:
+    rng = RNG(3)
+    degree = np.repeat(np.arange(5), 2 * np.arange(5) + 1)
+    rows = rng.normal(size=(30, 25)) * 0.4 * np.maximum(degree, 1.0) ** -2.0
+    rows[:, 0] = np.sqrt(4 * np.pi)
+    matrix = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    matrix *= np.linalg.det(matrix)
+    copies = np.stack([3 * rotated(ShCoefficients(row), matrix).values for row in rows])
+    assert novelty(rows, copies).max() < 1e-6
+    others = rng.normal(size=(30, 25)) * 0.4 * np.maximum(degree, 1.0) ** -2.0
+    others[:, 0] = np.sqrt(4 * np.pi)
+    assert np.median(novelty(rows, others)) == pytest.approx(1.0, abs=0.25)

@@ -1,0 +1,74 @@
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from regolith_studio.errors import FileError, InputError
+from regolith_studio.shape_models.draws import Draws
+from regolith_studio.shape_models.log_shapes import sized
+from regolith_studio.shape_models.materials import MaterialCard, materials, read_card, write_card
+from regolith_studio.shape_models.models.log_field import MODEL, LogFieldSettings
+from regolith_studio.shape_models.sample import Sample
+
+
+def test_that_at_least_five_materials_ship_and_say_that_they_are_synthesised() -> None:
+    assert len(materials()) >= 5
+    for name, card in materials().items():
+        assert card.name == name
+        assert card.origin.startswith("Synthesised by Regolith Studio")
+        assert "no measured particle is contained" in card.origin
+
+
+@pytest.mark.parametrize("name", sorted(materials()))
+def test_that_a_material_draws_particles_with_its_sizes_and_amplitudes(name: str) -> None:
+    card = materials()[name]
+    draws = card.model(10).draw(1500, 0)
+    logs = np.log(draws.equivalent_radii())
+    assert np.exp(logs.mean()) == pytest.approx(card.median_radius, rel=0.03)
+    assert logs.std() == pytest.approx(card.log_deviation, rel=0.06)
+    assert draws.rejected == 0
+    radii = np.stack([draws.particle(i).values for i in range(300)])
+    relative = radii / radii[:, :1]
+    amplitude = np.sqrt((relative[:, 4:9] ** 2).mean())
+    assert amplitude == pytest.approx(card.relative_amplitudes[1], rel=0.15)
+
+
+def test_that_the_card_of_drawn_particles_is_the_card_that_drew_them() -> None:
+    card = materials()["ma165"]
+    draws = card.model(6).draw(800, 0)
+    wide = sized(np.pad(draws.coefficients, ((0, 0), (0, 13**2 - 49))), draws.equivalent_radii())
+    fine = Draws(wide, "log_radius", "test", 0)
+    sample = Sample(np.stack([fine.particle(i).values for i in range(800)]))
+    again = MaterialCard.of(sample, "again", "Again", "A test.", l_max=6)
+    assert again.median_radius == pytest.approx(card.median_radius, rel=0.05)
+    assert again.log_deviation == pytest.approx(card.log_deviation, rel=0.08)
+    np.testing.assert_allclose(again.relative_amplitudes, card.relative_amplitudes[:6], rtol=0.08)
+
+
+def test_that_a_card_read_back_is_the_card_that_was_written(
+    rough_sample: Callable[..., Sample], tmp_path: Path
+) -> None:
+    card = MaterialCard.of(rough_sample(20, 4), "rough", "Rough", "Synthetic, for a test.")
+    assert read_card(write_card(card, tmp_path / "rough.json")) == card
+    field = MODEL.fit(rough_sample(20, 4), LogFieldSettings(4, "pooled", "log_normal", False))
+    np.testing.assert_allclose(card.model(4).spectrum, field.spectrum, rtol=0.02, atol=1e-12)
+
+
+@pytest.mark.parametrize("l_max", [0, 31])
+def test_that_a_degree_that_the_card_lacks_is_refused(l_max: int) -> None:
+    with pytest.raises(InputError, match="reaches from l = 1 to 30"):
+        materials()["ma165"].model(l_max)
+
+
+@pytest.mark.parametrize(
+    "content",
+    [b"", b"{}", b'{"name": "x"', b"\xff\xfe", b'{"median_radius": NaN}', b"[" * 50000],
+)
+def test_that_a_file_that_is_no_card_is_refused_in_one_sentence(content: bytes, tmp_path: Path) -> None:
+    path = tmp_path / "x.json"
+    path.write_bytes(content)
+    with pytest.raises(FileError, match=r"x\.json is no material card"):
+        read_card(path)
+    with pytest.raises(FileError, match="cannot be read"):
+        read_card(tmp_path / "missing.json")

@@ -1,0 +1,151 @@
+"""What holds for every model."""
+
+import pickle
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from regolith_studio.errors import InputError
+from regolith_studio.geometry.health import inspect
+from regolith_studio.readers.shape_files import read_shape_source
+from regolith_studio.shape_models.draws import virtual_mesh
+from regolith_studio.shape_models.files import write_model
+from regolith_studio.shape_models.models import DEFAULT_MODEL, MODELS
+from regolith_studio.shape_models.protocol import FittedModel
+from regolith_studio.shape_models.sample import Sample
+
+L_MAX = 4
+keys = pytest.mark.parametrize("key", sorted(MODELS))
+
+
+@pytest.fixture(scope="module")
+def fitted(rough_sample: Callable[..., Sample]) -> dict[str, FittedModel]:
+    sample = rough_sample(60, 6)
+    return {key: model.fit(sample, model.Settings(l_max=L_MAX)) for key, model in MODELS.items()}
+
+
+def test_that_the_models_are_found_by_themselves() -> None:
+    assert set(MODELS) == {
+        "gaussian_field",
+        "gaussian_mixture",
+        "hull_field",
+        "log_field",
+        "mixture_field",
+        "sample_matched",
+    }
+    assert DEFAULT_MODEL in MODELS
+    assert all(MODELS[key].key == key for key in MODELS)
+
+
+@keys
+def test_that_the_first_particles_do_not_depend_on_how_many_are_drawn(
+    key: str, fitted: dict[str, FittedModel]
+) -> None:
+    few, many = fitted[key].draw(7, seed=3), fitted[key].draw(1203, seed=3)
+    assert len(many) == 1203
+    assert few.coefficients.tobytes() == many.coefficients[:7].tobytes()
+    assert fitted[key].draw(7, seed=4).coefficients.tobytes() != few.coefficients.tobytes()
+    assert len(fitted[key].draw(0, seed=3)) == 0
+
+
+@keys
+def test_that_every_particle_is_a_closed_solid_with_the_volume_of_its_series(
+    key: str, fitted: dict[str, FittedModel]
+) -> None:
+    draws = fitted[key].draw(6, seed=1)
+    radii = draws.equivalent_radii()
+    for index in range(6):
+        mesh = virtual_mesh(draws, index, level=3)
+        assert inspect(mesh).sound
+        assert mesh.volume == pytest.approx(4 / 3 * np.pi * radii[index] ** 3, rel=1e-9)
+
+
+@keys
+def test_that_parts_are_the_same_particles_some_hundreds_at_a_time(
+    key: str, fitted: dict[str, FittedModel]
+) -> None:
+    parts, whole = list(fitted[key].parts(1203, 4)), fitted[key].draw(1203, 4)
+    assert [len(part) for part in parts] == [500, 500, 203]
+    for name in ("coefficients", "parents", "components"):
+        joined = np.concatenate([getattr(part, name) for part in parts])
+        assert joined.tobytes() == getattr(whole, name).tobytes()
+    assert sum(part.rejected for part in parts) == whole.rejected
+
+
+@keys
+def test_that_no_particles_are_none(key: str, fitted: dict[str, FittedModel]) -> None:
+    none = fitted[key].draw(0, 1)
+    assert (len(none), none.l_max, none.rejected) == (0, fitted[key].l_max, 0)
+
+
+@keys
+def test_that_sizes_stay_in_the_range_asked_for(key: str, fitted: dict[str, FittedModel]) -> None:
+    radii = fitted[key].draw(700, seed=1, size_range=(9.0, 11.0)).equivalent_radii()
+    assert radii.min() >= 9.0 * (1 - 1e-5)
+    assert radii.max() <= 11.0 * (1 + 1e-5)
+
+
+@pytest.mark.parametrize("size_range", [(3.0, 2.0), (0.0, 1.0), (1.0, np.inf), (-1.0, 1.0), (1.0, np.nan)])
+@keys
+def test_that_a_range_that_is_none_is_refused(
+    key: str, size_range: tuple[float, float], fitted: dict[str, FittedModel]
+) -> None:
+    with pytest.raises(InputError, match="range of sizes needs two positive radii"):
+        fitted[key].draw(5, 0, size_range)
+
+
+@keys
+def test_that_a_negative_number_of_particles_is_refused(key: str, fitted: dict[str, FittedModel]) -> None:
+    with pytest.raises(InputError, match="must not be negative, got -1"):
+        fitted[key].draw(-1, 0)
+
+
+@keys
+def test_that_a_model_read_back_draws_the_same_bytes(
+    key: str, fitted: dict[str, FittedModel], tmp_path: Path
+) -> None:
+    paths = write_model(tmp_path / "a" / key, fitted[key], {"sample": "synthetic"})
+    again = read_shape_source(str(paths[0])).content
+    assert isinstance(again, type(fitted[key]))
+    assert again.draw(20, 5).coefficients.tobytes() == fitted[key].draw(20, 5).coefficients.tobytes()
+    copies = write_model(tmp_path / "b" / key, again, {"sample": "synthetic"})
+    assert [path.read_bytes() for path in paths] == [path.read_bytes() for path in copies]
+
+
+@keys
+def test_that_a_model_survives_pickling(key: str, fitted: dict[str, FittedModel]) -> None:
+    again = pickle.loads(pickle.dumps(fitted[key]))
+    draws = pickle.loads(pickle.dumps(again.draw(3, 1)))
+    np.testing.assert_array_equal(draws.coefficients, fitted[key].draw(3, 1).coefficients)
+
+
+@keys
+def test_that_a_degree_beyond_the_sample_is_refused(key: str, rough_sample: Callable[..., Sample]) -> None:
+    with pytest.raises(InputError, match="no l_max = 30"):
+        MODELS[key].fit(rough_sample(8), MODELS[key].Settings(l_max=30))
+
+
+@keys
+def test_that_two_particles_are_enough(key: str, rough_sample: Callable[..., Sample]) -> None:
+    model = MODELS[key].fit(rough_sample(2), MODELS[key].Settings(l_max=3))
+    assert np.isfinite(model.draw(5, 0).coefficients).all()
+
+
+@keys
+def test_that_particles_of_one_size_are_drawn_at_that_size(
+    key: str, rough_sample: Callable[..., Sample]
+) -> None:
+    sample = rough_sample(20, 3, spread=0.0)
+    radii = MODELS[key].fit(sample, MODELS[key].Settings(l_max=3)).draw(300, 0).equivalent_radii()
+    assert radii.mean() == pytest.approx(sample.equivalent_radii.mean(), rel=0.03)
+
+
+@keys
+def test_that_only_gaussian_fields_of_the_radius_throw_draws_of_real_particles_away(
+    key: str, cement: Sample
+) -> None:
+    draws = MODELS[key].fit(cement).draw(3000, 0)
+    assert np.isfinite(draws.coefficients).all()
+    assert (draws.rejected > 0) == key.startswith("gaussian")
