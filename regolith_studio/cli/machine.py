@@ -52,13 +52,15 @@ def examine_machine() -> dict[str, Any]:
         missing.append(f"The window cannot open: {display['problem']}")
     packages = _packages()
     missing += [f"The package {name} is not installed." for name, found in packages.items() if not found]
+    engines = _engines()
+    missing += _plugin_problems()
     return {
         "program": {"regolith-studio": __version__, "python": platform.python_version()},
         "packages": {name: found or "missing" for name, found in packages.items()},
         "machine": {"system": platform.platform(), "cores": os.cpu_count(), "executable": sys.executable},
         "opengl": opengl,
         "display": display,
-        "engines": _engines(),
+        "engines": engines,
         "missing": missing,
     }
 
@@ -68,6 +70,22 @@ def _engines() -> dict[str, str]:
     from regolith_studio.dem.engine_table import engine_rows
 
     return {row["key"]: row["problem"] or row["version"] for row in engine_rows()}
+
+
+def _plugin_problems() -> tuple[str, ...]:
+    """What other packages offer and cannot be used, but for pages, which need Qt."""
+    from regolith_studio.coarsening.methods import METHODS
+    from regolith_studio.dataset.exporters import EXPORTERS
+    from regolith_studio.dem.engines import ENGINES
+    from regolith_studio.model.models import MODELS
+    from regolith_studio.readers.formats import mesh_formats
+    from regolith_studio.readers.position_formats import position_formats
+    from regolith_studio.readers.volume_formats import volume_formats
+    from regolith_studio.registry import plugin_problems
+
+    for kinds in (METHODS, EXPORTERS, ENGINES, MODELS, mesh_formats(), position_formats(), volume_formats()):
+        len(kinds)
+    return plugin_problems()
 
 
 def _packages() -> dict[str, str | None]:

@@ -36,15 +36,6 @@ _BY_FORMAT = {
 }
 
 
-def volume_suffixes() -> tuple[str, ...]:
-    """Endings of the files that hold a volume; those of tables of coefficients are not among them."""
-    from regolith_studio.readers import volume_formats  # loads every one of them
-    from regolith_studio.readers.announced import announced
-
-    rows = announced(volume_formats.__name__, volume_formats.__path__).values()
-    return tuple(ending for row in rows for ending in row.suffixes if ending not in TEXT_SUFFIXES)
-
-
 def kind_of(path: Path) -> FileKind:
     """What a path leads to; what is not there or cannot be read has the kind of its name."""
     name = path.name.lower()
@@ -56,7 +47,9 @@ def kind_of(path: Path) -> FileKind:
         return _kind_of_json(path)
     if name.endswith((*mesh_suffixes(), *TABLE_SUFFIXES, *TEXT_SUFFIXES)):
         return FileKind.PARTICLES
-    return FileKind.VOLUME if name.endswith(volume_suffixes()) else FileKind.UNKNOWN
+    from regolith_studio.readers.volume_formats import volume_suffixes  # loads every one of them
+
+    return FileKind.VOLUME if name.endswith(tuple(volume_suffixes())) else FileKind.UNKNOWN
 
 
 def kind_of_all(paths: Sequence[Path]) -> FileKind:

@@ -24,7 +24,7 @@ from regolith_studio.ui.looks import Looks
 from regolith_studio.ui.memory import LayoutMemory
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.page_stack import PageStack
-from regolith_studio.ui.pages import pages
+from regolith_studio.ui.pages import PAGES
 from regolith_studio.ui.panels.tasks import TasksPanel
 from regolith_studio.ui.projects import Projects
 from regolith_studio.ui.refusals import tell_refusals
@@ -61,7 +61,7 @@ class MainWindow(QMainWindow):
         self.commands = Commands(session, preferences, self.toast, self)
         self.batches = Batches(session, preferences, self.toast, self)
         self.wiring = Wiring(session, self.toast.problem, self)
-        self.pages = PageStack(pages(), self._context)
+        self.pages = PageStack(tuple(PAGES.values()), self._context)
         self.projects = Projects(session, self.pages, self.toast, self)
         self.memory = LayoutMemory(preferences)
         self.tasks = TasksPanel()

@@ -28,7 +28,7 @@ from regolith_studio.session.tasks import Task
 from regolith_studio.ui.app import open_window
 from regolith_studio.ui.dialogs.unit import UnitDialog
 from regolith_studio.ui.main_window import MainWindow
-from regolith_studio.ui.pages import pages
+from regolith_studio.ui.pages import PAGES
 from regolith_studio.ui.views.camera_mouse import WHEEL_ZOOM
 from regolith_studio.ui.views.view_frame import ViewFrame
 from regolith_studio.ui.widgets.study_frame import StudyFrame
@@ -77,7 +77,7 @@ def walked(window):
 
 
 def test_that_every_control_of_every_page_is_named_and_reached_by_tab(window, settled):
-    for page in pages():
+    for page in PAGES.values():
         widget = window.go(page.key)
         settled(window)
         for each in controls(widget):

@@ -20,7 +20,7 @@ from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.page import Page, PageContext, PageWidget
 from regolith_studio.ui.page_building import SLICE
 from regolith_studio.ui.page_stack import PageStack
-from regolith_studio.ui.pages import pages
+from regolith_studio.ui.pages import PAGES
 from regolith_studio.ui.theme import DARK, LIGHT, apply_theme
 from regolith_studio.ui.widgets.toast import Toast
 from regolith_studio.ui.wiring import Wiring
@@ -89,7 +89,7 @@ def stack(shown, preferences):
 
 
 def test_that_every_page_has_an_icon_a_tip_and_a_key_of_its_own():
-    found = pages()
+    found = tuple(PAGES.values())
     assert found[0].key == "explore"
     assert len({page.key for page in found}) == len(found) == len({page.title for page in found})
     for page in found:

@@ -14,7 +14,7 @@ from regolith_studio.jobs.runners.inline import InlineRunner
 from regolith_studio.jobs.runners.thread import ThreadRunner
 from regolith_studio.ui.page import Page, PageWidget
 from regolith_studio.ui.page_stack import PageStack
-from regolith_studio.ui.pages import pages
+from regolith_studio.ui.pages import PAGES
 from regolith_studio.ui.posting import Poster
 from regolith_studio.ui.preparing import PAUSE, Preparing
 
@@ -133,5 +133,5 @@ def test_that_nothing_is_wanted_any_more_when_the_window_closes(stack, prepared)
 
 @pytest.mark.usefixtures("app")
 def test_that_every_page_can_be_prepared():
-    for page in pages():
+    for page in PAGES.values():
         page.load()

@@ -9,7 +9,7 @@ from regolith_studio.session.choices import Choices
 from regolith_studio.session.session import Session
 from regolith_studio.ui.dialogs.preferences import LETTERS
 from regolith_studio.ui.main_window import MainWindow
-from regolith_studio.ui.pages import pages
+from regolith_studio.ui.pages import PAGES
 from regolith_studio.ui.pages.explore.plot_area import LETTERS as LETTERS_OF_TWO
 from regolith_studio.ui.room import Room
 from regolith_studio.ui.sidebar import Sidebar
@@ -54,7 +54,7 @@ def test_that_views_take_room_from_plots_in_low_windows_only(shown, preferences,
 
 def test_that_the_sidebar_gives_up_room_before_words(shown):
     place = shown(QWidget())
-    bar = Sidebar({page.key: page for page in pages()})
+    bar = Sidebar({page.key: page for page in PAGES.values()})
     bar.set_theme(LIGHT)
     bar.setParent(place)
     bar.show()

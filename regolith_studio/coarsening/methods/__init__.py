@@ -1,10 +1,9 @@
 """The coarsening methods; each module of this folder that defines ``METHOD`` is one."""
 
-import pkgutil
-from collections.abc import Generator, Iterator, Mapping
-from functools import cache
-from importlib import import_module
+from collections.abc import Generator
 from typing import TYPE_CHECKING, Any, Protocol
+
+from regolith_studio.registry import Registry
 
 if TYPE_CHECKING:
     import numpy as np
@@ -34,24 +33,6 @@ class CoarseningMethod(Protocol):
         ...
 
 
-@cache
-def _found() -> dict[str, CoarseningMethod]:
-    modules = [import_module(f"{__name__}.{each.name}") for each in pkgutil.iter_modules(__path__)]
-    methods = [module.METHOD for module in modules if hasattr(module, "METHOD")]
-    return {method.key: method for method in sorted(methods, key=lambda method: method.key)}
-
-
-class _Methods(Mapping[str, CoarseningMethod]):
-    """Looks into the folder when first asked, so that naming the package costs nothing."""
-
-    def __getitem__(self, key: str) -> CoarseningMethod:
-        return _found()[key]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(_found())
-
-    def __len__(self) -> int:
-        return len(_found())
-
-
-METHODS: Mapping[str, CoarseningMethod] = _Methods()
+METHODS: Registry[CoarseningMethod] = Registry(
+    __name__, "METHOD", "coarsening_methods", order=lambda method: method.key
+)

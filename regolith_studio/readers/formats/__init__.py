@@ -1,15 +1,14 @@
 """The mesh formats: every module of this folder announces one as ``FORMAT``."""
 
-from functools import cache
-
-from regolith_studio.readers.announced import announced
 from regolith_studio.readers.mesh_format import MeshFormat
+from regolith_studio.registry import Registry
+
+_FORMATS: Registry[MeshFormat] = Registry(__name__, "FORMAT", "readers")
 
 
-@cache
-def mesh_formats() -> dict[str, MeshFormat]:
-    """The formats by key, in the order of their modules' names."""
-    return announced(__name__, __path__)
+def mesh_formats() -> Registry[MeshFormat]:
+    """The formats by key, in the order of their modules' names; those of other packages last."""
+    return _FORMATS
 
 
 def mesh_suffixes() -> frozenset[str]:

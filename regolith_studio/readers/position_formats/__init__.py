@@ -1,15 +1,14 @@
 """The formats of particle positions: every module of this folder announces one as ``FORMAT``."""
 
-from functools import cache
-
-from regolith_studio.readers.announced import announced
 from regolith_studio.readers.position_format import PositionFormat
+from regolith_studio.registry import Registry
+
+_FORMATS: Registry[PositionFormat] = Registry(__name__, "FORMAT", "position_readers")
 
 
-@cache
-def position_formats() -> dict[str, PositionFormat]:
-    """The formats by key, in the order of their modules' names."""
-    return announced(__name__, __path__)
+def position_formats() -> Registry[PositionFormat]:
+    """The formats by key, in the order of their modules' names; those of other packages last."""
+    return _FORMATS
 
 
 def position_suffixes() -> frozenset[str]:

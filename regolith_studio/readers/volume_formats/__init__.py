@@ -1,15 +1,14 @@
 """The volume formats: every module of this folder announces one as ``FORMAT``."""
 
-from functools import cache
-
-from regolith_studio.readers.announced import announced
 from regolith_studio.readers.volume_format import VolumeFormat
+from regolith_studio.registry import Registry
+
+_FORMATS: Registry[VolumeFormat] = Registry(__name__, "FORMAT", "volume_readers")
 
 
-@cache
-def volume_formats() -> dict[str, VolumeFormat]:
-    """The formats by key, in the order of their modules' names."""
-    return announced(__name__, __path__)
+def volume_formats() -> Registry[VolumeFormat]:
+    """The formats by key, in the order of their modules' names; those of other packages last."""
+    return _FORMATS
 
 
 def volume_suffixes() -> frozenset[str]:

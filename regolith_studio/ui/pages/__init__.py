@@ -1,4 +1,5 @@
-'''The pages of the window; each package of this folder that defines ``PAGE`` is one.
+'''The pages of the window; each package of this folder that defines ``PAGE`` is one, and so is each
+entry point ``regolith_studio.pages`` of another installed package.
 
 How to add a page
 -----------------
@@ -83,16 +84,8 @@ What a page can rely on
 Pages do not import each other, nor does anything below import a page.
 '''
 
-import pkgutil
-from functools import cache
-from importlib import import_module
-
+from regolith_studio.registry import Registry
 from regolith_studio.ui.page import Page
 
-
-@cache
-def pages() -> tuple[Page, ...]:
-    """Every page, in the order of the sidebar."""
-    modules = [import_module(f"{__name__}.{each.name}") for each in pkgutil.iter_modules(__path__)]
-    found = [module.PAGE for module in modules if hasattr(module, "PAGE")]
-    return tuple(sorted(found, key=lambda page: (page.order, page.key)))
+PAGES: Registry[Page] = Registry(__name__, "PAGE", "pages", order=lambda page: (page.order, page.key))
+"""In the order of the sidebar."""
