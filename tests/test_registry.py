@@ -83,8 +83,8 @@ def test_that_engine_model_and_page_of_another_package_are_offered(installed: di
 import numpy as np
 from PySide6.QtWidgets import QApplication
 from regolith_studio.dem.engine_table import engine_rows
-from regolith_studio.model.models import MODELS
-from regolith_studio.model.sample import Sample
+from regolith_studio.shape_models.models import MODELS
+from regolith_studio.shape_models.sample import Sample
 from regolith_studio.ui.pages import PAGES
 from regolith_studio.ui.sidebar import Sidebar
 assert [row["version"] for row in engine_rows() if row["key"] == "lunar_engine"] == ["1.0"]
