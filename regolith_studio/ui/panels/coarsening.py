@@ -73,8 +73,8 @@ class CoarseningPanel(QWidget):
     valueChanged = Signal(dict)  # noqa: N815
     editingFinished = Signal()  # noqa: N815
 
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__()
         self.setObjectName("coarsening")
         self.stop_at = ChoiceBox("stop_at", tr("What says how fine the polyhedron is"), STOPS)
         self.stop_at.setToolTip(self.stop_at.accessibleName())

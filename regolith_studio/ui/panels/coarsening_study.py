@@ -23,8 +23,8 @@ KEYS = (*LOSS_KEYS, JACCARD)
 class CoarseningStudyPanel(QWidget):
     """A row a loss function, a column a descriptor, percentages in the cells."""
 
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__()
         self.setObjectName("coarsening_study")
         self._study: Any = None
         self.table = HeatTable(tr(WAITING))

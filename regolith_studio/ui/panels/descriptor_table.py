@@ -34,8 +34,8 @@ DIGITS, NARROW_DIGITS = 4, 3
 class DescriptorTablePanel(QWidget):
     """One row a descriptor of the catalogue."""
 
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__()
         self.setObjectName("descriptor_table")
         self._keys = [key for key, row in CATALOGUE.items() if not row.costly and row.dimension in _UNITS]
         self.table = QTableWidget(len(self._keys), len(COLUMNS))

@@ -19,8 +19,8 @@ KEYS = (*LOSS_KEYS, JACCARD)
 class ErrorBarsPanel(QWidget):
     """Grouped bars; faint while a coarsening is replaced, with a line at what no polyhedron can undercut."""
 
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__()
         self.setObjectName("error_bars")
         self.plot = BarPlot(
             tr("Descriptor"), tr("Relative error [%]"), tr("The errors appear when the fit is measured.")

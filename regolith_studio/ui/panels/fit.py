@@ -62,8 +62,8 @@ class FitPanel(QWidget):
     valueChanged = Signal(dict)  # noqa: N815
     editingFinished = Signal()  # noqa: N815
 
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__()
         self.setObjectName("fit")
         self.l_max = NumberSlider(L_MAX)
         self.l_max.slider.setObjectName("l_max_slider")

@@ -21,8 +21,8 @@ WAITING = mark(
 class LmaxStudyPanel(QWidget):
     """A curve a descriptor, a line at the l_max chosen now, and the smallest l_max that is enough."""
 
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__()
         self.setObjectName("lmax_study")
         self.plot = CurvePlot(tr("Maximum degree l<sub>max</sub>"), "RMSRE [%]", tr(WAITING))
         self.frame = StudyFrame("lmax_study", self.plot)

@@ -14,8 +14,8 @@ MOODS = {"note": mark("note"), "problem": mark("problem")}
 class LogPanel(QWidget):
     """One line a sentence, its details indented below."""
 
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__()
         self.setObjectName("log")
         self.text = QPlainTextEdit()
         self.text.setReadOnly(True)

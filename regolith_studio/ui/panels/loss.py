@@ -46,21 +46,16 @@ class LossPanel(QWidget):
 
     An own preset is a set of weights with the shipped preset that it began with: to the rest of the program
     it is that preset with other weights, so that recipes and projects need nobody's own presets.
-
-    Parameters
-    ----------
-    own
-        Where own presets are kept.
     """
 
     FIELDS = ("weights", "preset")
     valueChanged = Signal(dict)  # noqa: N815
     editingFinished = Signal()  # noqa: N815
 
-    def __init__(self, own: OwnPresets | None = None, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__()
         self.setObjectName("loss")
-        self._own = own or OwnPresets("weights")
+        self._own = OwnPresets("weights")
         self._preset = self._chosen = next(iter(presets()))
         self._known: dict[str, Preset] = {}
         self.bar = PresetBar("preset", tr("Preset of weights"))

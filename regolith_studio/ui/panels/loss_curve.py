@@ -13,8 +13,8 @@ from regolith_studio.ui.widgets.curve_plot import Curve, CurvePlot
 class LossCurvePanel(QWidget):
     """One curve."""
 
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__()
         self.setObjectName("loss_curve")
         self.plot = CurvePlot(
             tr("Step"), tr("Loss (Eq. 9)"), tr("The loss appears when the coarsening begins.")

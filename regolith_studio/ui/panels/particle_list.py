@@ -116,8 +116,8 @@ class ParticleListPanel(QWidget):
     valueChanged = Signal(dict)  # noqa: N815
     editingFinished = Signal()  # noqa: N815
 
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__()
         self.setObjectName("particle_list")
         self._model = _Model(self)
         self._model.set_theme(current_theme())

@@ -36,8 +36,8 @@ class SpectrumPlot(Plot):
 class SpectrumPanel(QWidget):
     """sqrt(A_l) as a share of the mean radius, on a logarithmic scale."""
 
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__()
         self.setObjectName("spectrum")
         self.plot = SpectrumPlot(
             tr("Degree l"),

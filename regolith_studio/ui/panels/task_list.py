@@ -82,8 +82,8 @@ class TaskListPanel(QWidget):
     cancelRequested = Signal(int)  # noqa: N815
     pauseRequested = Signal(int, bool)  # noqa: N815
 
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__()
         self.setObjectName("task_list")
         self._rows: dict[int, _Row] = {}
         self.idle = remark(tr("Nothing is running."))

@@ -23,8 +23,8 @@ class TasksPanel(QWidget):
 
     cancelRequested = Signal(int)  # noqa: N815
 
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__()
         self.setObjectName("tasks")
         self._tasks: tuple[Task, ...] = ()
         self._since: dict[int, float] = {}

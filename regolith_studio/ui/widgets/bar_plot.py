@@ -8,7 +8,6 @@ import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QPointF
 from PySide6.QtGui import QColor, QFont, QFontMetrics, QResizeEvent
-from PySide6.QtWidgets import QWidget
 
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.plot import Numbers, Plot
@@ -49,15 +48,13 @@ class BarSeries:
 class BarPlot(Plot):
     """Bars from zero, side by side within each category, with their values when pointed at."""
 
-    def __init__(
-        self, x: str, y: str, placeholder: str, unit: str = "%", parent: QWidget | None = None
-    ) -> None:
+    def __init__(self, x: str, y: str, placeholder: str, unit: str = "%") -> None:
         self._categories: tuple[str, ...] = ()
         self._short: tuple[str, ...] = ()
         self._series: tuple[BarSeries, ...] = ()
         self._items: list[object] = []
         self._unit = unit
-        super().__init__(x, y, placeholder, parent)
+        super().__init__(x, y, placeholder)
 
     @property
     def series(self) -> tuple[BarSeries, ...]:

@@ -7,8 +7,8 @@ from PySide6.QtWidgets import QToolButton, QVBoxLayout, QWidget
 class Collapsible(QWidget):
     """A button with an arrow, and what it unfolds."""
 
-    def __init__(self, title: str, content: QWidget, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self, title: str, content: QWidget) -> None:
+        super().__init__()
         self.content = content
         self.button = QToolButton()
         self.button.setText(title)

@@ -16,6 +16,8 @@ from regolith_studio.studies.one_at_a_time import DRAWING
 
 EM = 100.0
 """Size at which outlines are made; they are scaled when drawn."""
+MAGNIFICATION = 1.25
+"""Size of the letters of a formula in units of the widget's font."""
 LEADING = 0.62
 """Space between two lines in units of the letters."""
 SMALLEST = 0.55
@@ -40,13 +42,11 @@ class FormulaLabel(QWidget):
     ----------
     words
         What the formula says, for screen readers.
-    factor
-        Size of the letters in units of the font.
     """
 
-    def __init__(self, words: str, factor: float = 1.25, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
-        self._words, self._factor = words, factor
+    def __init__(self, words: str) -> None:
+        super().__init__()
+        self._words = words
         self._lines: tuple[str, ...] = ()
         self._asked: tuple[str, ...] = ()
         self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Maximum)
@@ -109,7 +109,7 @@ class FormulaLabel(QWidget):
 
     def _scale(self) -> float:
         """Pixels of the widget for one unit of an outline."""
-        return self._factor * self.fontMetrics().height() / 1.35 / EM
+        return MAGNIFICATION * self.fontMetrics().height() / 1.35 / EM
 
     def _height(self) -> float:
         """Of all lines, in units of the outlines."""

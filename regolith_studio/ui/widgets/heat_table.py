@@ -47,8 +47,8 @@ def _short(share: float) -> str:
 class HeatTable(QWidget):
     """Shows shares as percentages, or a sentence where there are none yet."""
 
-    def __init__(self, placeholder: str, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self, placeholder: str) -> None:
+        super().__init__()
         self._theme = current_theme()
         self._values: tuple[tuple[float, ...], ...] = ()
         self._bands: Bands | None = None

@@ -51,8 +51,8 @@ def remark(text: str = "", role: str = "remark") -> QLabel:
 class WholeLabel(QLabel):
     """Words that wrap, with all their lines however little room there is: what stands below gives way."""
 
-    def __init__(self, text: str = "", parent: QWidget | None = None) -> None:
-        super().__init__(text, parent)
+    def __init__(self, text: str = "") -> None:
+        super().__init__(text)
         self.setWordWrap(True)
         self.setAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop)
 
@@ -73,8 +73,8 @@ class ElidedLabel(QWidget):
         ``heading`` or ``remark``, for the style sheet.
     """
 
-    def __init__(self, text: str = "", role: str = "", parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self, text: str = "", role: str = "") -> None:
+        super().__init__()
         self._text = ""
         self.setProperty("role", role)
         self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)

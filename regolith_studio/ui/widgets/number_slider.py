@@ -69,8 +69,8 @@ class NumberSlider(QWidget):
     valueChanged = Signal(object)  # noqa: N815
     editingFinished = Signal()  # noqa: N815
 
-    def __init__(self, spec: NumberSpec, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self, spec: NumberSpec) -> None:
+        super().__init__()
         self.spec = spec
         self.label = QLabel(tr(spec.label))
         self.slider = QSlider(Qt.Orientation.Horizontal)

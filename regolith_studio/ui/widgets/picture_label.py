@@ -18,8 +18,8 @@ class PictureLabel(QWidget):
         Share of its own height below which a picture is not shrunk; for labels in a scroll area.
     """
 
-    def __init__(self, placeholder: str, least_scale: float = 0.0, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self, placeholder: str, least_scale: float = 0.0) -> None:
+        super().__init__()
         self._least_scale = least_scale
         self._placeholder = placeholder
         self._picture = QPixmap()

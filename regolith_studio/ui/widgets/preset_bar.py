@@ -47,8 +47,8 @@ class PresetBar(QWidget):
     saveRequested = Signal(str)  # noqa: N815
     deleteRequested = Signal(str)  # noqa: N815
 
-    def __init__(self, name: str, accessible: str, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self, name: str, accessible: str) -> None:
+        super().__init__()
         self._entries: tuple[PresetEntry, ...] = ()
         self.box = ElidedBox(Qt.TextElideMode.ElideMiddle)  # the mark at the end must be seen
         self.box.setObjectName(name)

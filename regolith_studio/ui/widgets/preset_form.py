@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from PySide6.QtWidgets import QFormLayout, QWidget
+from PySide6.QtWidgets import QFormLayout
 
 from regolith_studio.errors import InputError
 from regolith_studio.session.own_presets import OwnPresets
@@ -27,14 +27,14 @@ class PresetForm(ParameterForm):
         Of the shipped preset.
     """
 
-    def __init__(self, kind: type[Any], name: str, label: str, parent: QWidget | None = None) -> None:
+    def __init__(self, kind: type[Any], name: str, label: str) -> None:
         self._own = OwnPresets(kind.__name__.lower())
         self._chosen = SHIPPED
         self._known: dict[str, dict[str, Any]] = {SHIPPED: {}}
         self._label = label
         self.bar = PresetBar(f"{name}_preset", tr("Preset of {label}", label=label))
         self.bar.reset.setObjectName(f"{name}_preset_reset")
-        super().__init__(kind, name, parent)
+        super().__init__(kind, name)
         layout = self.layout()
         assert isinstance(layout, QFormLayout), "the form is one"
         layout.insertRow(0, self.bar)

@@ -21,8 +21,8 @@ class SettingsForm(QWidget):
 
     valueChanged = Signal(dict)  # noqa: N815
 
-    def __init__(self, kind: type[Any], parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self, kind: type[Any]) -> None:
+        super().__init__()
         self._defaults: dict[str, Scalar] = {}
         self._editors: dict[str, QWidget] = {}
         form = QFormLayout(self)

@@ -7,7 +7,6 @@ import pyqtgraph as pg
 from numpy.typing import NDArray
 from PySide6.QtCore import QEvent, QObject, QPointF, Qt, QTimer, Signal
 from PySide6.QtGui import QColor, QKeyEvent, QMouseEvent
-from PySide6.QtWidgets import QWidget
 
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.plot import Numbers, Plot
@@ -28,13 +27,13 @@ class SpectrumEditor(Plot):
     valueChanged = Signal(object)  # noqa: N815
     editingFinished = Signal()  # noqa: N815
 
-    def __init__(self, placeholder: str, parent: QWidget | None = None) -> None:
+    def __init__(self, placeholder: str) -> None:
         self._values: NDArray[np.float64] = np.empty(0)
         self._fitted: NDArray[np.float64] = np.empty(0)
         self._editable = False
         self._chosen = 0
         self._items: list[pg.BarGraphItem] = []
-        super().__init__(tr("Degree l"), tr("Amplitude √A<sub>l</sub> / μ [%]"), placeholder, parent)
+        super().__init__(tr("Degree l"), tr("Amplitude √A<sub>l</sub> / μ [%]"), placeholder)
         self._timer = QTimer(self, interval=THROTTLE, singleShot=True)
         self._timer.timeout.connect(self._announce)
         self._due = False

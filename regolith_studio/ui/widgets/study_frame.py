@@ -22,8 +22,8 @@ class StudyFrame(QWidget):
     startRequested = Signal()  # noqa: N815
     cancelRequested = Signal(int)  # noqa: N815
 
-    def __init__(self, name: str, plot: QWidget, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self, name: str, plot: QWidget) -> None:
+        super().__init__()
         self._task = 0
         self.start = QPushButton(tr("Compute"))
         self.start.setObjectName(f"{name}_start")

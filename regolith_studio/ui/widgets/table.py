@@ -18,13 +18,11 @@ class LetterRows(QObject):
     ----------
     spare
         Pixels between two lines.
-    lines
-        Of letters in a row.
     """
 
-    def __init__(self, table: QTableView, spare: int, lines: int = 1) -> None:
+    def __init__(self, table: QTableView, spare: int) -> None:
         super().__init__(table)
-        self._table, self._spare, self._lines = table, spare, lines
+        self._table, self._spare, self._lines = table, spare, 1
         table.installEventFilter(self)
         self._fit()
 

@@ -50,8 +50,8 @@ class RepresentativesPanel(QWidget):
     orderChanged = Signal()  # noqa: N815
     findRequested = Signal()  # noqa: N815
 
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__()
         self.setObjectName("dataset_representatives")
         self.population = remark()
         self.start = QPushButton(tr("Find representatives"))
@@ -125,8 +125,8 @@ class SizesPanel(QWidget):
 
     sizesChanged = Signal()  # noqa: N815
 
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__()
         self.setObjectName("dataset_size_kinds")
         self.kind, self.numbers = QComboBox(), QLineEdit()
         self.hint, self.problem = remark(), remark(role="warning")
@@ -198,8 +198,8 @@ class FolderPanel(QWidget):
     buildRequested = Signal()  # noqa: N815
     openRequested = Signal()  # noqa: N815
 
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__()
         self.setObjectName("dataset_folder")
         self.name = QLineEdit("regolith")
         self.name.setObjectName("dataset_name")

@@ -29,8 +29,8 @@ class Shown:
 class RepresentativesGallery(QWidget):
     """Shows as many as there are."""
 
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__()
         self._theme = current_theme()
         self._shown: tuple[Shown, ...] = ()
         self._next = 0

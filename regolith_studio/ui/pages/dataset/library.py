@@ -41,8 +41,8 @@ class LibraryPanel(QWidget):
 
     openRequested = Signal(object)  # noqa: N815
 
-    def __init__(self, context: PageContext, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self, context: PageContext) -> None:
+        super().__init__()
         self.setObjectName("dataset_library")
         self._context, self._theme = context, current_theme()
         self._entries: tuple[LibraryEntry, ...] = ()

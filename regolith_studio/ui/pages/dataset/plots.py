@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 
 import numpy as np
-from PySide6.QtWidgets import QWidget
 
 from regolith_studio.dataset.build import ShapeClass
 from regolith_studio.dataset.quality import QualityCurve, QualityPoint
@@ -28,7 +27,7 @@ MOST_CLASSES = 12
 class QualityPlot(CurvePlot):
     """Wasserstein distance per descriptor, their mean, and the noise of the population."""
 
-    def __init__(self, parent: QWidget | None = None) -> None:
+    def __init__(self) -> None:
         self._points: tuple[QualityPoint, ...] = ()
         self._noise: float | None = None
         super().__init__(
@@ -36,7 +35,6 @@ class QualityPlot(CurvePlot):
             tr("Distance to the population [deviations]"),
             tr("How many are enough? Press Find: the curve falls to the sampling noise of the population."),
             log_y=True,
-            parent=parent,
         )
         self.setObjectName("dataset_quality")
 
@@ -97,13 +95,12 @@ def _drawn(error: float) -> float:
 class SizesPlot(CurvePlot):
     """Cumulative distribution of the mixture, and of each class where they are few."""
 
-    def __init__(self, parent: QWidget | None = None) -> None:
+    def __init__(self) -> None:
         self._classes: tuple[ShapeClass, ...] = ()
         super().__init__(
             tr("Equivalent diameter [µm]"),
             tr("Share at or below [%]"),
             tr("The sizes of the classes appear here."),
-            parent=parent,
         )
         self.setObjectName("dataset_sizes")
 

@@ -48,8 +48,8 @@ class TargetsPanel(QWidget):
     chosenChanged = Signal()  # noqa: N815
     optionsChanged = Signal()  # noqa: N815
 
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__()
         self.setObjectName("dataset_targets")
         self.boxes = {key: self._box(key) for key in EXPORTERS}
         self.coarse_graining, self.particles = NumberSlider(COARSE_GRAINING), NumberSlider(PARTICLES)
@@ -204,8 +204,8 @@ def _column(parts: Sequence[QWidget]) -> QWidget:
 class LossesLabel(QScrollArea):
     """What the ticked formats do not carry."""
 
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__()
         self.setObjectName("dataset_losses")
         self.setWidgetResizable(True)
         self.setProperty("role", "texts")
@@ -240,8 +240,8 @@ class LossesLabel(QScrollArea):
 class ExportsList(QWidget):
     """One row for each export that was written: where it is and how to load it."""
 
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__()
         self.setObjectName("dataset_exports")
         self._rows = QVBoxLayout()
         layout = QVBoxLayout(self)

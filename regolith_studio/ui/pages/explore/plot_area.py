@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from PySide6.QtCore import QEvent, Qt
 from PySide6.QtGui import QResizeEvent
-from PySide6.QtWidgets import QSplitter, QWidget
+from PySide6.QtWidgets import QSplitter
 
 from regolith_studio.session.session import Session
 from regolith_studio.ui.layout import tabs
@@ -25,8 +25,8 @@ LETTERS = 48
 class PlotArea(QSplitter):
     """Two groups of pages side by side, or one where there is no room for two."""
 
-    def __init__(self, triptych: Triptych, parent: QWidget | None = None) -> None:
-        super().__init__(Qt.Orientation.Horizontal, parent)
+    def __init__(self, triptych: Triptych) -> None:
+        super().__init__(Qt.Orientation.Horizontal)
         self.setChildrenCollapsible(False)
         self.setHandleWidth(7)
         self.error_bars, self.table = ErrorBarsPanel(), DescriptorTablePanel()

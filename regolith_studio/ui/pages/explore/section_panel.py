@@ -31,8 +31,8 @@ PLACE = NumberSpec(
 class SectionPanel(QWidget):
     """Direction and place of the plane above, the outlines below."""
 
-    def __init__(self, triptych: Triptych, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self, triptych: Triptych) -> None:
+        super().__init__()
         self.setObjectName("section")
         self._triptych, self._sections = triptych, triptych.sections
         self._theme = current_theme()

@@ -44,8 +44,8 @@ class AnnealingView(QWidget):
         ``live`` or ``image``, of the views.
     """
 
-    def __init__(self, kind: str, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self, kind: str) -> None:
+        super().__init__()
         self.setObjectName("lesson_annealing")
         self._theme = current_theme()
         self._lesson: AnnealingLesson | None = None

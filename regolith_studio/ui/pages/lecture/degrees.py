@@ -33,8 +33,8 @@ class DegreesView(QWidget):
         ``live`` or ``image``, of the views.
     """
 
-    def __init__(self, kind: str, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self, kind: str) -> None:
+        super().__init__()
         self.setObjectName("lesson_degrees")
         self._theme = current_theme()
         self._particle: Mesh | None = None

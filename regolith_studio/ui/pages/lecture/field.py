@@ -40,8 +40,8 @@ class FieldView(QWidget):
 
     seedChanged = Signal(int)  # noqa: N815
 
-    def __init__(self, kind: str, following: Following, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self, kind: str, following: Following) -> None:
+        super().__init__()
         self.setObjectName("lesson_field")
         self._theme = current_theme()
         self.seed = 0

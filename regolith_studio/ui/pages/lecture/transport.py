@@ -31,8 +31,8 @@ class Transport(QWidget):
 
     stepChanged = Signal(int)  # noqa: N815
 
-    def __init__(self, name: str, noun: str, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self, name: str, noun: str) -> None:
+        super().__init__()
         self._noun = noun
         self.back, self.play, self.forward = QPushButton("◀"), QPushButton(tr("Play")), QPushButton("▶")
         self.first = QPushButton("|◀")

@@ -46,8 +46,8 @@ class SourceControls(QWidget):
     openRequested = Signal()  # noqa: N815
     fitRequested = Signal()  # noqa: N815
 
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__()
         self.setObjectName("model_source")
         self.source, self.model = QComboBox(), QComboBox()
         self.l_max = NumberSlider(L_MAX)
@@ -175,8 +175,8 @@ class DrawControls(QWidget):
     adoptRequested = Signal()  # noqa: N815
     namesChanged = Signal(tuple)  # noqa: N815
 
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__()
         self.setObjectName("model_draw")
         self.number, self.seed = QSpinBox(), QSpinBox()
         self.limited = QCheckBox(tr("Only equivalent radii from … to …"))

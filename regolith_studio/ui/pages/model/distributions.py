@@ -26,8 +26,8 @@ _UNITS = {0: "", 1: "µm", 2: "µm²", 3: "µm³"}
 class DistributionsPanel(QWidget):
     """The share of particles at or below each value, as two stairs."""
 
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__()
         self.setObjectName("model_distributions")
         self.key = ChoiceBox("model_distribution_of", tr("Descriptor"), {k: CATALOGUE[k].label for k in KEYS})
         self.weighting = ChoiceBox("model_distribution_weighting", tr("What particles count"), WEIGHTINGS)

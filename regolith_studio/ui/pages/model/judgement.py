@@ -79,8 +79,8 @@ class JudgementPanel(QWidget):
     startRequested = Signal()  # noqa: N815
     cancelRequested = Signal(int)  # noqa: N815
 
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__()
         self.setObjectName("model_judgement")
         self.all_models = QCheckBox(tr("all models"))
         self.splits, self.repeats = QSpinBox(), QSpinBox()

@@ -1,7 +1,7 @@
 """A table of a study, to be read."""
 
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QTableWidget, QTableWidgetItem, QWidget
+from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QTableWidget, QTableWidgetItem
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.shape_models.models import MODELS
@@ -45,8 +45,8 @@ TIPS = (
 class TableView(QTableWidget):
     """Shows a :class:`~regolith_studio.studies.tables.Table`; keys of models and descriptors become words."""
 
-    def __init__(self, name: str, spoken: str, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self, name: str, spoken: str) -> None:
+        super().__init__()
         self.setObjectName(name)
         self.setAccessibleName(spoken)
         self.setShowGrid(False)

@@ -19,8 +19,8 @@ NO_MODEL = mark("The spectrum appears when a model is fitted.")
 class LiveShape(QWidget):
     """Spectrum on the left, one drawn particle in a view on the right."""
 
-    def __init__(self, view: SceneView, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self, view: SceneView) -> None:
+        super().__init__()
         self.spectrum = SpectrumEditor(tr(NO_MODEL))
         self.spectrum.setObjectName("model_spectrum")
         self.frame = ViewFrame(view, "drawn")
@@ -76,8 +76,8 @@ class LiveShape(QWidget):
 class Gallery(QWidget):
     """Measured particles above, drawn ones below."""
 
-    def __init__(self, view: SceneView, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self, view: SceneView) -> None:
+        super().__init__()
         self.frame = ViewFrame(view, "gallery")
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)

@@ -1,7 +1,7 @@
 """The table of engines: what each represents, and what not."""
 
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QTableWidget, QTableWidgetItem, QWidget
+from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QTableWidget, QTableWidgetItem
 
 from regolith_studio.dem.engine_table import HEADINGS, engine_rows
 from regolith_studio.ui.translation import tr
@@ -10,9 +10,9 @@ from regolith_studio.ui.translation import tr
 class EnginePanel(QTableWidget):
     """One column an engine, one row a property."""
 
-    def __init__(self, parent: QWidget | None = None) -> None:
+    def __init__(self) -> None:
         rows = engine_rows()
-        super().__init__(len(HEADINGS) + 1, len(rows), parent)
+        super().__init__(len(HEADINGS) + 1, len(rows))
         self.setObjectName("repose_engines")
         self.setAccessibleName(tr("Engines"))
         self.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)

@@ -40,7 +40,7 @@ from regolith_studio.ui.widgets.labels import remark
 PREVIEW_DELAY = 250
 """Milliseconds after the last change until the preview is drawn anew."""
 MOST_PREVIEWED = 20_000
-RUN, PREVIEW, MEASURE, BUILD, STUDY = "run", "preview", "measure", "build", "study"
+RUN, PREVIEW, MEASURE, BUILD = "run", "preview", "measure", "build"
 
 
 class ReposePage(PageWidget):

@@ -26,8 +26,8 @@ FRAME = 50
 class Player(QWidget):
     """Shows piles; never asks where they come from."""
 
-    def __init__(self, views: str, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self, views: str) -> None:
+        super().__init__()
         self.frame = ViewFrame(make_view(views, current_theme().surroundings), "repose_view")
         self._camera = CameraLink([self.frame.view])
         self._theme = current_theme()

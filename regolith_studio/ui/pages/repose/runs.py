@@ -52,8 +52,8 @@ class RunsPanel(QWidget):
 
     chosen = Signal(object)
 
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__()
         self._runs: list[RunSummary] = []
         self.table = QTableWidget(0, len(HEADINGS))
         self.table.setObjectName("repose_runs")

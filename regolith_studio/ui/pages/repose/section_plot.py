@@ -3,7 +3,6 @@
 import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QPointF, Signal
-from PySide6.QtWidgets import QWidget
 
 from regolith_studio.dem.evaluation.profile import Discs, project
 from regolith_studio.dem.evaluation.section import Section
@@ -29,15 +28,13 @@ class SectionPlot(Plot):
 
     cutDragged = Signal(str, float)  # noqa: N815
 
-    def __init__(self, axis: str, parent: QWidget | None = None) -> None:
+    def __init__(self, axis: str) -> None:
         self._pile: Pile | None = None
         self._section: Section | None = None
         self._items: list[pg.GraphicsObject] = []
         self._cuts: dict[str, pg.InfiniteLine] = {}
         self._discs: Discs | None = None
-        super().__init__(
-            f"{axis} [mm]", "z [mm]", tr("Run a test or open positions to see its section."), parent
-        )
+        super().__init__(f"{axis} [mm]", "z [mm]", tr("Run a test or open positions to see its section."))
         self.canvas.setAspectLocked(True)
 
     @property

@@ -50,8 +50,8 @@ class SetupPanel(QWidget):
     sampleWanted = Signal()  # noqa: N815
     runWanted = Signal()  # noqa: N815
 
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__()
         self.setObjectName("repose_setup")
         self._dataset: Path | None = None
         self.dataset_label = ElidedLabel(tr("No dataset yet"))

@@ -52,8 +52,8 @@ class StudyPanel(QWidget):
     stopWanted = Signal()  # noqa: N815
     chosen = Signal(object)
 
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__()
         self.setObjectName("repose_study")
         self._study: ReposeStudy | None = None
         self.key = QComboBox()

@@ -69,8 +69,8 @@ class HealthPanel(QWidget):
 
     showChanged = Signal(bool)  # noqa: N815
 
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__()
         self.setObjectName("health_report")
         self.table = self._make_table()
         self.words = WholeLabel()

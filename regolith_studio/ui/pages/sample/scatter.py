@@ -32,8 +32,8 @@ class ScatterPanel(QWidget):
 
     pointChosen = Signal(str, bool)  # noqa: N815
 
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__()
         self.setObjectName("scatter")
         self._entries: tuple[ParticleEntry, ...] = ()
         self._chosen: frozenset[str] = frozenset()

@@ -40,8 +40,8 @@ GROUPS = (mark("all"), mark("(no group)"))
 class StatisticsPanel(QWidget):
     """One row a group."""
 
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__()
         self.setObjectName("statistics")
         self._entries: tuple[ParticleEntry, ...] = ()
         self.key = QComboBox()

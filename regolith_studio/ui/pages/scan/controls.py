@@ -55,8 +55,8 @@ class SegmentationControls(QWidget):
 
     valueChanged = Signal(object)  # noqa: N815
 
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__()
         self.setObjectName("segmentation")
         self._recipe = GrainRecipe()
         self.denoise = choice("denoise", tr("Denoise"), DENOISE)

@@ -5,7 +5,6 @@ from collections.abc import Sequence
 import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QPointF, Signal
-from PySide6.QtWidgets import QWidget
 
 from regolith_studio.imaging.segmentation.thresholding import Histogram
 from regolith_studio.ui.theme import Theme
@@ -20,7 +19,7 @@ class HistogramPlot(Plot):
     levelDragged = Signal(float)  # noqa: N815
     """The line is being dragged, or was let go, at this grey value."""
 
-    def __init__(self, parent: QWidget | None = None) -> None:
+    def __init__(self) -> None:
         self._scanned: Histogram | None = None
         self._denoised: Histogram | None = None
         self._curves: list[pg.PlotDataItem] = []
@@ -31,7 +30,6 @@ class HistogramPlot(Plot):
             tr("Grey value"),
             tr("Voxels [%]"),
             tr("Open a volume of grey values to see its histogram."),
-            parent,
         )
         set_log_mode(self.canvas, x=False, y=True)
         self.canvas.getAxis("left").logTickStrings = _plain_powers

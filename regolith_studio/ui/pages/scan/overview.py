@@ -25,8 +25,8 @@ class Overview(QWidget):
     boxMoved = Signal()  # noqa: N815
     """The box of the preview is elsewhere."""
 
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__()
         self.slices = [SliceView(axis) for axis in (2, 1, 0)]
         self.histogram = HistogramPlot()
         self.place = (0, 0, 0)

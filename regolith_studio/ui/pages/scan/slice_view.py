@@ -42,8 +42,8 @@ class SliceView(QWidget):
     sliceChosen = Signal(int, int)  # noqa: N815
     """Axis and number of another slice."""
 
-    def __init__(self, axis: int, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self, axis: int) -> None:
+        super().__init__()
         self.axis = axis
         self.across, self.down = (each for each in range(3) if each != axis)
         self._volume: Volume | None = None

@@ -23,8 +23,8 @@ class StepsPanel(QWidget):
     particlesRequested = Signal()  # noqa: N815
     showRequested = Signal()  # noqa: N815
 
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__()
         self.setObjectName("scan_steps")
         self.browse = _button(
             "scan_open", tr("Open volume …"), tr("Open a CT volume of grey values or labels")

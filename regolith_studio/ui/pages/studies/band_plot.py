@@ -6,7 +6,6 @@ from dataclasses import dataclass
 import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QPointF
-from PySide6.QtWidgets import QWidget
 
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.curve_plot import REACH, Curve, CurvePlot
@@ -48,12 +47,10 @@ class Series:
 class BandPlot(CurvePlot):
     """A bar through each point; pointing at one tells values and intervals."""
 
-    def __init__(
-        self, x: str, y: str, placeholder: str, log_y: bool = False, parent: QWidget | None = None
-    ) -> None:
+    def __init__(self, x: str, y: str, placeholder: str, log_y: bool = False) -> None:
         self._series: tuple[Series, ...] = ()
         self._bars: list[pg.PlotDataItem] = []
-        super().__init__(x, y, placeholder, log_y, parent)
+        super().__init__(x, y, placeholder, log_y)
 
     @property
     def series(self) -> tuple[Series, ...]:

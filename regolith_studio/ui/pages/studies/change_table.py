@@ -17,8 +17,8 @@ from regolith_studio.ui.widgets.table import LetterRows
 class ChangeTable(QWidget):
     """A row a change, a column a descriptor; a sentence where there is nothing yet."""
 
-    def __init__(self, placeholder: str, headers: tuple[str, ...], parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self, placeholder: str, headers: tuple[str, ...]) -> None:
+        super().__init__()
         self._theme, self._headers = current_theme(), headers
         self._study: CoarseningStudy | None = None
         self.table = numbers_table(tr("Changes of errors in percentage points"))

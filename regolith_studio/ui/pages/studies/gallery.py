@@ -36,8 +36,8 @@ COLUMNS = 6
 class SolidGallery(QWidget):
     """Cells fill while the polyhedra are found."""
 
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__()
         self.setObjectName("solid_gallery")
         self._solids: tuple[Solid, ...] = ()
         self._colour = self._shown_colour = current_theme().polyhedron

@@ -29,8 +29,8 @@ class RowsBar(QWidget):
 
     valueChanged = Signal()  # noqa: N815
 
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__()
         self.setObjectName("study_rows_bar")
         self._actions: dict[str, QAction] = {}
         self.rows = QToolButton()

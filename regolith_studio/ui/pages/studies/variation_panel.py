@@ -126,8 +126,8 @@ class VariationPanel(QWidget):
 
     startRequested = Signal()  # noqa: N815
 
-    def __init__(self, key: str, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self, key: str) -> None:
+        super().__init__()
         self.setObjectName(f"{key}_study")
         self._variation = VARIATIONS[key]
         self.values = QLineEdit(", ".join(f"{value:g}" for value in self._variation.values))
