@@ -137,7 +137,7 @@ def test_that_another_method_drops_the_settings_of_the_first(shown):
 @pytest.mark.parametrize(
     ("stop", "field", "typed", "told"),
     [
-        ("faces", "n_facets", 12, 12),
+        ("facets", "n_facets", 12, 12),
         ("triangles", "n_triangles", 44, 44),
         ("error", "largest_error", 2.5, 0.025),
     ],
