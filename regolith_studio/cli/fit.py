@@ -51,7 +51,7 @@ def fit(
 
     with as_bad_use():
         Choices(l_max=l_max, seed=seed, level=level)
-        order = FitOrder(l_max, radii.expansion)
+        order = FitOrder(l_max, radii.fit_options)
     stem = output.with_suffix("") if output.suffix in (".json", ".npz") else output
     loaded = reading.read(meshes)
     sample = FittedSample.of(loaded.particles, follow(fit_sample(loaded.particles, order, jobs)))

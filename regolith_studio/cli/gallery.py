@@ -39,7 +39,7 @@ def gallery(
 
     wanted = whole_numbers(degrees, 0, FIT_DEGREE)
     with as_bad_use():
-        order = FitOrder(max(wanted), radii.expansion)
+        order = FitOrder(max(wanted), radii.fit_options)
     loaded = reading.read(meshes)
     fits = follow(fit_sample(loaded.particles, order))
     drawn: list[str] = []

@@ -28,7 +28,7 @@ from regolith_studio.cli.options import (
 
 if TYPE_CHECKING:
     from regolith_studio.coarsening.weights import LossWeights
-    from regolith_studio.harmonics.expansion import Expansion
+    from regolith_studio.harmonics.fit import FitOptions
     from regolith_studio.jobs.loading import Loaded
     from regolith_studio.session.choices import Choices
 
@@ -59,12 +59,12 @@ class ExpansionOptions:
     reference: Reference = "sphere"
 
     @property
-    def expansion(self) -> "Expansion":
+    def fit_options(self) -> "FitOptions":
         """The same, checked; a bad value is bad use."""
-        from regolith_studio.harmonics.expansion import Expansion
+        from regolith_studio.harmonics.fit import FitOptions
 
         with as_bad_use():
-            return Expansion(self.star_point, self.rule, self.reference)
+            return FitOptions(self.star_point, self.rule, self.reference)
 
 
 @dataclass(frozen=True)

@@ -32,7 +32,7 @@ def draw_three_views(
     coarse = outcome.coarsened
     if coarse is None:
         raise ValueError("there is no polyhedron to draw")
-    fit = reconstruct(choices.expansion.fit(particle.mesh, choices.l_max), choices.l_max, choices.level)
+    fit = reconstruct(choices.fit_options.fit(particle.mesh, choices.l_max), choices.l_max, choices.level)
     draw_apart(_draw, (particle.mesh, fit, coarse, choices.l_max), path)
 
 

@@ -106,7 +106,7 @@ def lmax(
         Choices(level=level, seed=seed)
     loaded = reading.read(meshes)
     study = partial(study_lmax, loaded.particles, jobs, seed, degrees=wanted, level=level)
-    steps = partial(study, expansion=radii.expansion)
+    steps = partial(study, fit_options=radii.fit_options)
     found = conclude("lmax_study", steps, output, json, resume)
     if not json:
         typer.echo(enough_degrees(found, below / 100))

@@ -13,7 +13,7 @@ from regolith_studio.dataset.streaming import check_count
 from regolith_studio.errors import DatasetError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.coefficients import ShCoefficients
-from regolith_studio.harmonics.expansion import USUAL, Expansion
+from regolith_studio.harmonics.fit import DEFAULT_FIT_OPTIONS, FitOptions
 from regolith_studio.harmonics.sample_spectrum import sample_spectrum
 from regolith_studio.jobs.coarsening import CoarsenedParticle, CoarseningOrder, coarsen_sample
 from regolith_studio.jobs.crew import Crew
@@ -204,8 +204,8 @@ def provenance(
 
 def story(fitted: Sequence[ShCoefficients], order: CoarseningOrder, preset: str | None) -> Provenance:
     """As :func:`provenance`, from the coefficients of the particles that were fitted and coarsened."""
-    fit = (f"Spherical-harmonics surface up to l = {order.l_max}{_unusual(order.expansion)}.",)
-    lengths = order.expansion.reference == USUAL.reference
+    fit = (f"Spherical-harmonics surface up to l = {order.l_max}{_unusual(order.fit_options)}.",)
+    lengths = order.fit_options.reference == DEFAULT_FIT_OPTIONS.reference
     record = CoarseningRecord(
         method=order.method,
         n_facets=order.max_facets,
@@ -232,11 +232,11 @@ def story(fitted: Sequence[ShCoefficients], order: CoarseningOrder, preset: str 
     )
 
 
-def _unusual(expansion: Expansion) -> str:
+def _unusual(fit_options: FitOptions) -> str:
     """What was not done as usual, to be put into a sentence."""
     told = [
         f"{name.replace('_', ' ')} {value}"
-        for name, value in asdict(expansion).items()
-        if value != getattr(USUAL, name)
+        for name, value in asdict(fit_options).items()
+        if value != getattr(DEFAULT_FIT_OPTIONS, name)
     ]
     return f" ({', '.join(told)})" if told else ""

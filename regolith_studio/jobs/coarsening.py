@@ -16,8 +16,7 @@ from regolith_studio.errors import Cancelled
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.coefficients import ShCoefficients
-from regolith_studio.harmonics.expansion import USUAL, Expansion
-from regolith_studio.harmonics.fit import HarmonicFit
+from regolith_studio.harmonics.fit import DEFAULT_FIT_OPTIONS, FitOptions, HarmonicFit
 from regolith_studio.harmonics.surface import reconstruct
 from regolith_studio.jobs.crew import Crew, hired
 from regolith_studio.jobs.events import Ending, Failed, Finished, Job, Partial, Progress, Started, Step, Steps
@@ -37,7 +36,7 @@ class CoarseningOrder:
     target
         ``fit``: the surface at degree `l_max`, drawn at `level`, is imitated (section 3.2);
         ``particle``: the mesh itself.
-    expansion
+    fit_options
         How the fit is made, to degree 30 or `l_max`.
     largest_error
         Where given, the fewest facets whose weighted errors are all below it, instead of `n_facets`.
@@ -51,7 +50,7 @@ class CoarseningOrder:
     target: str = "fit"
     l_max: int = 10
     level: int = 4
-    expansion: Expansion = USUAL
+    fit_options: FitOptions = DEFAULT_FIT_OPTIONS
     largest_error: float | None = None
 
     @property
@@ -108,13 +107,13 @@ def coarsen_particle(
     Parameters
     ----------
     fit
-        Of the particle by the order's expansion, to at least its degree, if there is one already.
+        Of the particle by the order's options, to at least its degree, if there is one already.
     """
     yield Started(f"Coarsening {particle.name}")
     begun = time.perf_counter()
     mesh, notes, coefficients = particle.mesh, particle.notes, None
     if order.target == "fit":
-        fit = (fit or order.expansion.fit(mesh, max(order.l_max, FIT_DEGREE))).truncated(order.l_max)
+        fit = (fit or order.fit_options.fit(mesh, max(order.l_max, FIT_DEGREE))).truncated(order.l_max)
         mesh, notes = reconstruct(fit, order.l_max, level=order.level), notes + fit.warnings
         coefficients = fit.coefficients
     coarsened = yield from _told(mesh, order, index)

@@ -7,8 +7,7 @@ from regolith_studio.descriptors.describe import Descriptors, describe
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.coefficients import checked_degree
-from regolith_studio.harmonics.expansion import USUAL, Expansion
-from regolith_studio.harmonics.fit import HarmonicFit
+from regolith_studio.harmonics.fit import DEFAULT_FIT_OPTIONS, FitOptions, HarmonicFit
 from regolith_studio.harmonics.surface import reconstruct
 from regolith_studio.jobs.batch import value_of
 from regolith_studio.jobs.crew import Crew, hired
@@ -26,7 +25,7 @@ class FitOrder:
     ----------
     l_max
         Highest degree.
-    expansion
+    fit_options
         Star point, radius rule and reference.
 
     Raises
@@ -36,7 +35,7 @@ class FitOrder:
     """
 
     l_max: int = FIT_DEGREE
-    expansion: Expansion = USUAL
+    fit_options: FitOptions = DEFAULT_FIT_OPTIONS
 
     def __post_init__(self) -> None:
         checked_degree(self.l_max, FIT_DEGREE)
@@ -45,7 +44,7 @@ class FitOrder:
 def fit_one(mesh: Mesh, order: FitOrder = FitOrder()) -> Steps:
     """Fit `mesh`; returns a ``HarmonicFit``."""
     yield Started("Fitting spherical harmonics")
-    return order.expansion.fit(mesh, order.l_max)
+    return order.fit_options.fit(mesh, order.l_max)
 
 
 def draw_surface(fit: HarmonicFit, l_max: int, level: int) -> Steps:

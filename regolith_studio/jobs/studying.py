@@ -111,7 +111,7 @@ def study_coarsening(
             method=order.method,
             seed=order.seed,
             settings=dict(order.settings),
-            target=TargetChoice(order.target, order.l_max, order.level, order.expansion),
+            target=TargetChoice(order.target, order.l_max, order.level, order.fit_options),
             mapper=_kept(crew.map, answers),
             **options,
         )

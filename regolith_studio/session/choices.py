@@ -9,7 +9,7 @@ from regolith_studio.coarsening.coarsen import DEFAULT_METHOD, DEFAULT_PRESET, F
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.descriptors.facts import BOX_METRICS
 from regolith_studio.errors import InputError
-from regolith_studio.harmonics.expansion import USUAL, Expansion
+from regolith_studio.harmonics.fit import DEFAULT_FIT_OPTIONS, FitOptions
 from regolith_studio.jobs.coarsening import CoarseningOrder
 from regolith_studio.readers.units import unit_factor
 
@@ -38,7 +38,7 @@ class Choices:
     selected
         Id of the particle on screen; empty for none.
     star_point, rule, reference
-        Of the :class:`~regolith_studio.harmonics.expansion.Expansion`: where radii begin, which crossing
+        Of the :class:`~regolith_studio.harmonics.fit.FitOptions`: where radii begin, which crossing
         of a ray counts, what they are divided by.
     l_max
         Degree at which the spherical-harmonics series is cut, 0 to 30.
@@ -76,9 +76,9 @@ class Choices:
     """
 
     selected: str = ""
-    star_point: str = USUAL.star_point
-    rule: str = USUAL.rule
-    reference: str = USUAL.reference
+    star_point: str = DEFAULT_FIT_OPTIONS.star_point
+    rule: str = DEFAULT_FIT_OPTIONS.rule
+    reference: str = DEFAULT_FIT_OPTIONS.reference
     l_max: int = 10
     level: int = 4
     stop_at: str = "facets"
@@ -107,7 +107,7 @@ class Choices:
         _one_of("box metric", self.box_metric, tuple(BOX_METRICS))
         unit_factor(self.unit)
         settings_of(self.method, dict(self.settings))
-        Expansion(self.star_point, self.rule, self.reference)
+        FitOptions(self.star_point, self.rule, self.reference)
         object.__setattr__(self, "settings", tuple(sorted(dict(self.settings).items())))
 
     def replaced(self, **changes: Any) -> Self:
@@ -128,9 +128,9 @@ class Choices:
         return dataclasses.replace(self, **changes)
 
     @property
-    def expansion(self) -> Expansion:
+    def fit_options(self) -> FitOptions:
         """How a radius function is taken and expanded."""
-        return Expansion(self.star_point, self.rule, self.reference)
+        return FitOptions(self.star_point, self.rule, self.reference)
 
     @property
     def facet_count(self) -> int:
@@ -154,7 +154,7 @@ class Choices:
             target=self.target,
             l_max=self.l_max,
             level=self.level,
-            expansion=self.expansion,
+            fit_options=self.fit_options,
             largest_error=self.fineness[1],
         )
 

@@ -18,8 +18,7 @@ if TYPE_CHECKING:
     from regolith_studio.coarsening.result import Coarsened
     from regolith_studio.descriptors.describe import Descriptors
     from regolith_studio.geometry.mesh import Mesh
-    from regolith_studio.harmonics.expansion import Expansion
-    from regolith_studio.harmonics.fit import HarmonicFit
+    from regolith_studio.harmonics.fit import FitOptions, HarmonicFit
 
 TITLES = {
     Kind.FIT: "Fitting spherical harmonics",
@@ -58,7 +57,7 @@ class LiveResults:
     def __init__(self, owner: Owner, board: TaskBoard) -> None:
         self._owner, self._board = owner, board
         self._due: set[Kind] = set()
-        self._fits: dict[tuple[str, Expansion], HarmonicFit] = {}
+        self._fits: dict[tuple[str, FitOptions], HarmonicFit] = {}
         self._measured: dict[tuple[str, str], Descriptors] = {}
         self._losses: list[tuple[int, float]] = []
         self._has_shown = False
@@ -70,7 +69,7 @@ class LiveResults:
 
     def follow(self, before: Choices | None, after: Choices) -> None:
         """Start, or start anew, what the change makes necessary."""
-        requests = plan(before, after, {id for id, way in self._fits if way == after.expansion})
+        requests = plan(before, after, {id for id, way in self._fits if way == after.fit_options})
         if before is None or before.selected != after.selected:
             self._show_nothing(*LIVE)
         self._take_fit_at_hand(after)
@@ -86,7 +85,7 @@ class LiveResults:
         self._advance()
 
     def _take_fit_at_hand(self, choices: Choices) -> None:
-        fit = self._fits.get((choices.selected, choices.expansion))
+        fit = self._fits.get((choices.selected, choices.fit_options))
         if fit is None:
             return
         self._board.stop_lane(Kind.FIT)
@@ -147,15 +146,15 @@ class LiveResults:
         return entry
 
     def _fit(self) -> "_Work":
-        entry, expansion = self._entry(), self._owner.choices.expansion
+        entry, fit_options = self._entry(), self._owner.choices.fit_options
 
         def keep(fit: "HarmonicFit") -> None:
-            self._fits[entry.id, expansion] = fit
+            self._fits[entry.id, fit_options] = fit
             if len(self._fits) > FITS_KEPT:
                 del self._fits[next(iter(self._fits))]
             self._owner.update("fit", fit=fit)
 
-        return Job(fit_one, (entry.particle.mesh, FitOrder(expansion=expansion))), keep, _ignore
+        return Job(fit_one, (entry.particle.mesh, FitOrder(fit_options=fit_options))), keep, _ignore
 
     def _surface(self) -> "_Work":
         choices = self._owner.choices

@@ -208,7 +208,7 @@ def _worked(done: Performed, batch: Batch, crew: Crew) -> Part:
         order=done.choices.order if coarse else None,
         shapes=shapes,
         box_metric=done.choices.box_metric,
-        expansion=done.choices.expansion,
+        fit_options=done.choices.fit_options,
     )
     members = done.items.members
     yield Started("Working on particles", len(members))
@@ -325,7 +325,7 @@ def _represented(
 def _studied(done: Performed, particles: list[Particle], crew: Crew) -> Part:
     wish, choices = done.recipe.outputs, done.choices
     if wish.lmax_study:
-        lmax = partial(study_lmax, particles, crew, choices.seed, expansion=choices.expansion)
+        lmax = partial(study_lmax, particles, crew, choices.seed, fit_options=choices.fit_options)
         yield from _study(done, "lmax_study", lmax)
     if wish.coarsening_study:
         yield from _study(done, "coarsening_study", partial(study_coarsening, particles, choices.order, crew))

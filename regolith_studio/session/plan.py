@@ -58,7 +58,7 @@ def plan(before: Choices | None, after: Choices, fitted: Collection[str] = ()) -
     before
         ``None`` when nothing has been computed yet.
     fitted
-        Ids of particles whose coefficients by the expansion of `after`, up to degree 30, are at hand;
+        Ids of particles whose coefficients by the fit options of `after`, up to degree 30, are at hand;
         they are not fitted again.
     """
     if not after.selected:

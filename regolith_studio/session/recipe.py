@@ -9,7 +9,7 @@ from pydantic import Field, ValidationError, model_validator
 from regolith_studio.coarsening.coarsen import DEFAULT_METHOD, DEFAULT_PRESET
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.errors import FileError, InputError, of_the_entry
-from regolith_studio.harmonics.expansion import USUAL
+from regolith_studio.harmonics.fit import DEFAULT_FIT_OPTIONS
 from regolith_studio.readers.npz import read_bytes
 from regolith_studio.session.choices import Choices, Scalar
 from regolith_studio.session.recipe_dataset import Exports, Representatives
@@ -77,9 +77,9 @@ class Recipe(Strict):
     particles: list[str | Chosen] | None = Field(default=None, min_length=1)
     unit: str = "um"
     repair: bool = True
-    star_point: str = USUAL.star_point
-    rule: str = USUAL.rule
-    reference: str = USUAL.reference
+    star_point: str = DEFAULT_FIT_OPTIONS.star_point
+    rule: str = DEFAULT_FIT_OPTIONS.rule
+    reference: str = DEFAULT_FIT_OPTIONS.reference
     l_max: int = 10
     level: int = 4
     target: str = "fit"

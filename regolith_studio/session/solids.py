@@ -125,7 +125,7 @@ def _fit_of(particle: Particle, order: CoarseningOrder) -> HarmonicFit | str | N
     if order.target != "fit":
         return None
     try:
-        return order.expansion.fit(particle.mesh, L_MAX_LIMIT)
+        return order.fit_options.fit(particle.mesh, L_MAX_LIMIT)
     except RegolithError as error:
         return str(error)
 

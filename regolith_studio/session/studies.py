@@ -40,7 +40,7 @@ def study_job(
                     {
                         "seed": choices.seed,
                         "level": choices.level,
-                        "expansion": choices.expansion,
+                        "fit_options": choices.fit_options,
                         **options,
                     },
                 ),

@@ -21,7 +21,7 @@ from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.harmonics.expansion import USUAL, Expansion
+from regolith_studio.harmonics.fit import DEFAULT_FIT_OPTIONS, FitOptions
 from regolith_studio.harmonics.surface import reconstruct
 from regolith_studio.studies.loss_rows import StudyRow, paper_rows
 from regolith_studio.studies.progress import StudyProgress
@@ -44,13 +44,13 @@ class TargetChoice:
     kind: str = "particle"
     l_max: int = 10
     level: int = 4
-    expansion: Expansion = USUAL
+    fit_options: FitOptions = DEFAULT_FIT_OPTIONS
 
     def mesh_of(self, mesh: Mesh) -> Mesh:
         """The mesh to be coarsened."""
         if self.kind == "particle":
             return mesh
-        return reconstruct(self.expansion.fit(mesh, self.l_max), self.l_max, self.level)
+        return reconstruct(self.fit_options.fit(mesh, self.l_max), self.l_max, self.level)
 
 
 @dataclass(frozen=True, eq=False)

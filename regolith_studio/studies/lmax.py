@@ -16,8 +16,7 @@ from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.harmonics.expansion import USUAL, Expansion
-from regolith_studio.harmonics.fit import HarmonicFit
+from regolith_studio.harmonics.fit import DEFAULT_FIT_OPTIONS, FitOptions, HarmonicFit
 from regolith_studio.harmonics.surface import DEFAULT_LEVEL, gallery
 from regolith_studio.studies.progress import StudyProgress
 from regolith_studio.studies.tables import Column, Table
@@ -137,7 +136,7 @@ def lmax_errors(
     degrees: Sequence[int] = DEFAULT_DEGREES,
     level: int = DEFAULT_LEVEL,
     keys: Sequence[str] = LOSS_KEYS,
-    expansion: Expansion = USUAL,
+    fit_options: FitOptions = DEFAULT_FIT_OPTIONS,
 ) -> FloatArray:
     """Relative errors of the descriptors of one particle's fit, shape (degrees, keys).
 
@@ -151,7 +150,7 @@ def lmax_errors(
         If the particle cannot be measured or fitted.
     """
     wanted = describe(mesh, keys)
-    fit = expansion.fit(mesh, max(degrees))
+    fit = fit_options.fit(mesh, max(degrees))
     errors = np.full((len(degrees), len(keys)), np.nan)
     for row, surface in enumerate(_surfaces(fit, degrees, level)):
         if surface is not None:
@@ -175,7 +174,7 @@ def lmax_study(
     keys: Sequence[str] = LOSS_KEYS,
     mapper: Mapper = map,
     seed: int = 0,
-    expansion: Expansion = USUAL,
+    fit_options: FitOptions = DEFAULT_FIT_OPTIONS,
 ) -> Generator[StudyProgress, None, LmaxStudy]:
     """Fit every particle and compare its descriptors with those of the fits cut at `degrees`.
 
@@ -186,7 +185,7 @@ def lmax_study(
     ----------
     mapper
         ``map``, or the ordered lazy map of a process pool.
-    expansion
+    fit_options
         How the fits are made.
 
     Raises
@@ -197,7 +196,7 @@ def lmax_study(
     if not particles or not degrees:
         raise InputError("A study of l_max needs at least one particle and one degree.")
     chosen = tuple(sorted(set(degrees)))
-    options = {"degrees": chosen, "level": level, "keys": tuple(keys), "expansion": expansion}
+    options = {"degrees": chosen, "level": level, "keys": tuple(keys), "fit_options": fit_options}
     work: Callable[[Mesh], FloatArray | str] = partial(errors_or_reason, options=options)
     study = LmaxStudy(chosen, tuple(keys), (), (), np.empty((0, len(chosen), len(keys))), seed=seed)
     outcomes = mapper(work, (particle.mesh for particle in particles))

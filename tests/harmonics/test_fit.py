@@ -9,7 +9,7 @@ from scipy.integrate import quad
 from regolith_studio.errors import GeometryError, InputError
 from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.harmonics.fit import fit_harmonics
+from regolith_studio.harmonics.fit import DEFAULT_FIT_OPTIONS, FitOptions, HarmonicFit, fit_harmonics
 from regolith_studio.harmonics.surface import reconstruct
 from regolith_studio.harmonics.visibility import hidden_surface_share
 
@@ -149,3 +149,37 @@ def test_that_fits_of_voxel_grains_keep_their_volume(real_data, name):
     assert fit.unrepresentable_volume_share < 0.001
     assert reconstruct(fit, 30).volume == pytest.approx(grain.volume, rel=1e-3)
     assert reconstruct(fit, 10).volume == pytest.approx(grain.volume, rel=6e-3)
+
+
+@pytest.fixture(scope="module")
+def spheroid() -> Mesh:
+    ball = icosphere(3)
+    return Mesh(ball.vertices * (1.0, 1.0, 0.25), ball.faces)
+
+
+def test_that_the_usual_expansion_is_that_of_a_bare_fit(spheroid: Mesh) -> None:
+    bare, usual = fit_harmonics(spheroid, 12), DEFAULT_FIT_OPTIONS.fit(spheroid, 12)
+    assert np.array_equal(bare.coefficients.values, usual.coefficients.values)
+
+
+def test_that_an_ellipsoid_divided_by_itself_has_one_coefficient(spheroid: Mesh) -> None:
+    assert _largest_share(FitOptions(reference="ellipsoid").fit(spheroid, 12)) < 1e-3
+    assert _largest_share(DEFAULT_FIT_OPTIONS.fit(spheroid, 12)) > 0.3
+
+
+def _largest_share(fit: HarmonicFit) -> float:
+    values = np.abs(fit.coefficients.values)
+    return float(values[1:].max() / values[0])
+
+
+@pytest.mark.parametrize(
+    ("changes", "sentence"),
+    [
+        ({"star_point": "middle"}, "The star point must be one of centre_of_mass"),
+        ({"rule": "second"}, "The rule must be one of volume"),
+        ({"reference": "cube"}, "The reference must be one of sphere"),
+    ],
+)
+def test_that_an_unknown_choice_is_refused_with_what_there_is(changes: dict[str, str], sentence: str) -> None:
+    with pytest.raises(InputError, match=sentence):
+        FitOptions(**changes)

@@ -306,7 +306,7 @@ def test_that_a_fit_that_cannot_be_made_shows_nothing_and_is_told_once(
 
     failures: list[str] = []
     opened.topics.failed.connect(lambda failure: failures.append(failure.sentence))
-    monkeypatch.setattr("regolith_studio.harmonics.expansion.fit_harmonics", refuse)
+    monkeypatch.setattr("regolith_studio.harmonics.fit.fit_harmonics", refuse)
     opened.select("grain-1")
     results = opened.results
     assert failures == ["The grain is too shy."]

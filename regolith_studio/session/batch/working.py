@@ -11,9 +11,8 @@ import numpy as np
 from regolith_studio.dataset.streaming import stored_shape
 from regolith_studio.errors import Cancelled
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.harmonics.expansion import USUAL, Expansion
 from regolith_studio.harmonics.files import fits_document
-from regolith_studio.harmonics.fit import HarmonicFit
+from regolith_studio.harmonics.fit import DEFAULT_FIT_OPTIONS, FitOptions, HarmonicFit
 from regolith_studio.imaging.stl import stl_bytes
 from regolith_studio.jobs.batch import call
 from regolith_studio.jobs.coarsening import CoarsenedParticle, CoarseningOrder, coarsen_particle
@@ -44,7 +43,7 @@ class Wish:
         Of the coarsening; ``None`` for none.
     shapes
         Whether the polyhedra become a dataset.
-    expansion
+    fit_options
         How fits are made.
     """
 
@@ -53,7 +52,7 @@ class Wish:
     order: CoarseningOrder | None
     shapes: bool
     box_metric: str
-    expansion: Expansion = USUAL
+    fit_options: FitOptions = DEFAULT_FIT_OPTIONS
 
 
 @dataclass
@@ -111,7 +110,7 @@ def _results(entry: _Entry, particle: Particle, wish: Wish) -> Generator[Step, N
     fit = None
     if wish.fit or (wish.order and wish.order.target == "fit"):
         fit = yield from entry.attempt(
-            "fitting", Job(fit_one, (particle.mesh, FitOrder(expansion=wish.expansion)))
+            "fitting", Job(fit_one, (particle.mesh, FitOrder(fit_options=wish.fit_options)))
         )
         if fit is not None and wish.fit:
             _keep_fit(entry, particle, fit)

@@ -7,7 +7,7 @@ from typing import Any
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QFormLayout, QVBoxLayout, QWidget
 
-from regolith_studio.harmonics.expansion import AUTOMATIC
+from regolith_studio.harmonics.fit import AUTOMATIC
 from regolith_studio.session.choices import L_MAX_LIMIT
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.translation.sentences import retold
