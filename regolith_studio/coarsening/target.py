@@ -12,8 +12,8 @@ from regolith_studio.descriptors.describe import Descriptors
 from regolith_studio.descriptors.facts import ShapeFacts
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.compiled import kernel
 from regolith_studio.geometry.half_spaces import HalfSpaces
+from regolith_studio.geometry.kernels import kernel
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.oriented_box import OrientedBox
 from regolith_studio.geometry.vectors import along, cross, length, mixed, row

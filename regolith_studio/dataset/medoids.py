@@ -11,7 +11,7 @@ from scipy.spatial.distance import cdist
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.compiled import kernel
+from regolith_studio.geometry.kernels import kernel
 
 LARGEST_TABLE = 5000
 """Larger populations are searched on a random subset of this size, so that the table fits the memory."""

@@ -19,7 +19,7 @@ from regolith_studio.geometry.box_curve import (
 )
 from regolith_studio.geometry.box_record import Found, keep
 from regolith_studio.geometry.box_widths import SpanTable, between, ends_along_axes, span_near
-from regolith_studio.geometry.compiled import leaf
+from regolith_studio.geometry.kernels import kernel_noalloc
 from regolith_studio.geometry.vectors import dot
 
 EQUAL = 1e-11
@@ -34,7 +34,7 @@ MANY_PIECES = 3000
 Touched = tuple[int, int, int, int]
 
 
-@leaf
+@kernel_noalloc
 def least_on_curve(
     points: FloatArray, table: SpanTable, curve: Curve, foot_a: int, foot_b: int, margin: float, found: Found
 ) -> tuple[float, float]:
@@ -100,13 +100,13 @@ def least_on_curve(
     return least if least <= found.record[0] * (1.0 + margin) else np.inf, at
 
 
-@leaf
+@kernel_noalloc
 def _limit(found: Found, margin: float, least: float) -> float:
     """Boxes on this curve that are not smaller are of no interest."""
     return float(min(found.record[0] * (1.0 + margin), least * (1.0 - EQUAL)))
 
 
-@leaf
+@kernel_noalloc
 def _look(points: FloatArray, curve: Curve, x: float, found: Found) -> tuple[float, Touched]:
     """Volume of the box at x, and the vertices across from the edges and at both ends of the third axis."""
     a, b, c = frame_on(curve, x)
@@ -116,7 +116,7 @@ def _look(points: FloatArray, curve: Curve, x: float, found: Found) -> tuple[flo
     return volume, (across_a, across_b, max(top, bottom), min(top, bottom))
 
 
-@leaf
+@kernel_noalloc
 def _held(
     points: FloatArray,
     foot_a: int,

@@ -7,9 +7,8 @@ import numpy as np
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
 from regolith_studio.geometry.box_curve import unit
 from regolith_studio.geometry.box_widths import SpanTable, between, ends_along_each, span_near
-from regolith_studio.geometry.compiled import kernel, leaf
 from regolith_studio.geometry.hull_graph import HullGraph, after
-from regolith_studio.geometry.inlined import inlined
+from regolith_studio.geometry.kernels import inline_kernel, kernel, kernel_noalloc
 from regolith_studio.geometry.vectors import Vector, cross, dot, length, mixed, row
 
 QUARTER_TURNS = 24
@@ -80,7 +79,7 @@ def arcs_of(facets: Facets) -> FloatArray:
     return arcs
 
 
-@leaf
+@kernel_noalloc
 def least_third(arcs: FloatArray, table: SpanTable, i: int, k: int) -> float:
     """A bound on the width across two sides that are flush with edges i and k; 0 where there is no use in it.
 
@@ -132,7 +131,7 @@ def worth_asking(facets: Facets, arcs: FloatArray, table: SpanTable, limit: floa
     return worth
 
 
-@leaf
+@kernel_noalloc
 def nothing_on_facet(table: SpanTable, axis: Vector, height: float, limit: float) -> bool:
     """Whether no box below the limit has a side normal to an axis, along which the solid is `height` wide.
 
@@ -164,7 +163,7 @@ def with_all_edges(facets: Facets, worth: BoolArray) -> BoolArray:
     return asked
 
 
-@inlined
+@inline_kernel
 def _after_turn(span: Vector, direction: Vector, cosine: float, sine: float) -> float:
     """Least length of a span along a direction that turns by at most an angle of this cosine and sine."""
     here = abs(dot(span, direction))

@@ -21,9 +21,8 @@ from regolith_studio.geometry.box_curve import (
     value,
 )
 from regolith_studio.geometry.box_widths import SpanTable
-from regolith_studio.geometry.compiled import leaf
 from regolith_studio.geometry.eights import WIDTH, least, load, most, pick, splat, store
-from regolith_studio.geometry.inlined import inlined
+from regolith_studio.geometry.kernels import inline_kernel, kernel_noalloc
 from regolith_studio.geometry.vectors import Vector, cross, dot, mixed, row
 
 LANES = 64
@@ -52,7 +51,7 @@ direction has across the axis, a bound on the area, and both directions."""
 ROWS = 62
 
 
-@inlined
+@inline_kernel
 def three(lanes: FloatArray, first: int, k: int) -> Vector:
     """A vector of lane k."""
     return (
@@ -62,7 +61,7 @@ def three(lanes: FloatArray, first: int, k: int) -> Vector:
     )
 
 
-@inlined
+@inline_kernel
 def put(lanes: FloatArray, first: int, k: int, vector: Vector) -> None:
     """Write a vector of lane k."""
     lanes[first * LANES + k] = vector[0]
@@ -70,7 +69,7 @@ def put(lanes: FloatArray, first: int, k: int, vector: Vector) -> None:
     lanes[(first + 2) * LANES + k] = vector[2]
 
 
-@inlined
+@inline_kernel
 def curve_in(lanes: FloatArray, k: int) -> Curve:
     """The curve of lane k."""
     p, q, r = three(lanes, PQR, k)
@@ -87,13 +86,13 @@ def curve_in(lanes: FloatArray, k: int) -> Curve:
     )
 
 
-@inlined
+@inline_kernel
 def chosen(first: bool, one: Vector, two: Vector) -> Vector:
     """One of two vectors."""
     return (one[0] if first else two[0], one[1] if first else two[1], one[2] if first else two[2])
 
 
-@leaf
+@kernel_noalloc
 def curves_between(lanes: FloatArray, count: int) -> None:
     """Curves of pairs of edges, from end to end; empty (low = high) where there is none.
 
@@ -165,13 +164,13 @@ def curves_between(lanes: FloatArray, count: int) -> None:
         lanes[HIGH * LANES + k] = max(one_end, two_end) if fine else 0.0
 
 
-@inlined
+@inline_kernel
 def whole_eights(count: int) -> int:
     """So many lanes that no loop has a rest; what is worked out in lanes that hold nothing, nobody reads."""
     return (count + WIDTH - 1) // WIDTH * WIDTH
 
 
-@inlined
+@inline_kernel
 def main_of(vector: Vector) -> float:
     """The component of largest size."""
     x, y, z = vector
@@ -179,7 +178,7 @@ def main_of(vector: Vector) -> float:
     return x if first else (y if second else z)
 
 
-@inlined
+@inline_kernel
 def cell_of(vector: Vector, shrink: float, cells: int) -> float:
     """Its cell in a table of directions, with 1 over its component of largest size."""
     x, y, z = vector
@@ -192,7 +191,7 @@ def cell_of(vector: Vector, shrink: float, cells: int) -> float:
     return float((face * cells + i) * cells + j)
 
 
-@leaf
+@kernel_noalloc
 def cells_of(lanes: FloatArray, count: int, cells: int) -> None:
     """Cells of the three axes at X; see :func:`regolith_studio.geometry.box_widths.span_near`."""
     for k in range(count):
@@ -208,7 +207,7 @@ def cells_of(lanes: FloatArray, count: int, cells: int) -> None:
             lanes[(CELLS + axis) * LANES + k] = cell_of(way, shrink * one * two, cells)
 
 
-@leaf
+@kernel_noalloc
 def look_up(lanes: FloatArray, count: int, table: SpanTable) -> None:
     """Spans of the cells."""
     spans = table.spans
@@ -219,7 +218,7 @@ def look_up(lanes: FloatArray, count: int, table: SpanTable) -> None:
                 lanes[(SPANS + 3 * axis + c) * LANES + k] = spans[at, c]
 
 
-@leaf
+@kernel_noalloc
 def bounds_on_facet(lanes: FloatArray, count: int, axis: Vector, table: SpanTable) -> None:
     """Bounds on the areas of rectangles normal to an axis, each with a side along an edge.
 
@@ -244,7 +243,7 @@ def bounds_on_facet(lanes: FloatArray, count: int, axis: Vector, table: SpanTabl
             lanes[AREA * LANES + k] = abs(wide * high)
 
 
-@leaf
+@kernel_noalloc
 def rule_out(lanes: FloatArray, count: int, limit: float) -> None:
     """Whether no box is below the limit, by the bound of the spans."""
     for k in range(count):
@@ -263,7 +262,7 @@ def rule_out(lanes: FloatArray, count: int, limit: float) -> None:
         lanes[RULED_OUT * LANES + k] = 1.0 if proven else 0.0
 
 
-@leaf
+@kernel_noalloc
 def look_along(lanes: FloatArray, count: int, points: FloatArray) -> None:
     """Spans between the vertices that are farthest along the three axes at X; along two, an edge's is."""
     for k in range(whole_eights(count)):
@@ -297,7 +296,7 @@ def look_along(lanes: FloatArray, count: int, points: FloatArray) -> None:
                 lanes[(SPANS + 3 * axis + c) * LANES + k] = points[c, top] - points[c, bottom]
 
 
-@leaf
+@kernel_noalloc
 def set_aside(lanes: FloatArray, count: int) -> None:
     """Copy the spans."""
     for line in range(9):
@@ -305,7 +304,7 @@ def set_aside(lanes: FloatArray, count: int) -> None:
             lanes[(OTHER + line) * LANES + k] = lanes[(SPANS + line) * LANES + k]
 
 
-@leaf
+@kernel_noalloc
 def take_back(lanes: FloatArray, count: int) -> None:
     """Copy the spans back."""
     for line in range(9):
@@ -313,7 +312,7 @@ def take_back(lanes: FloatArray, count: int) -> None:
             lanes[(SPANS + line) * LANES + k] = lanes[(OTHER + line) * LANES + k]
 
 
-@leaf
+@kernel_noalloc
 def where_bounds_meet(lanes: FloatArray, count: int) -> None:
     """About where the bound of the beginning's spans meets that of the end's."""
     for k in range(count):

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.geometry.compiled import kernel, leaf
+from regolith_studio.geometry.kernels import kernel, kernel_noalloc
 from regolith_studio.geometry.vectors import Vector
 
 TIE = 1e-8
@@ -39,7 +39,7 @@ def nothing_below(known: float) -> Found:
     return Found(np.array([known, np.inf]), np.zeros((3, 3)), np.empty((DEPTH, 2)))
 
 
-@leaf
+@kernel_noalloc
 def keep(long: float, wide: float, high: float, a: Vector, b: Vector, c: Vector, found: Found) -> float:
     """Volume of the box with these edges along these axes; it is kept if it is the best so far."""
     volume, total = long * wide * high, long + wide + high

@@ -52,7 +52,6 @@ from regolith_studio.geometry.box_widths import (
     ends_along,
     span_table,
 )
-from regolith_studio.geometry.compiled import kernel, leaf
 from regolith_studio.geometry.eights import (
     WIDTH,
     count_bits,
@@ -64,7 +63,7 @@ from regolith_studio.geometry.eights import (
     store_some,
 )
 from regolith_studio.geometry.hull_graph import hull_graph
-from regolith_studio.geometry.inlined import inlined
+from regolith_studio.geometry.kernels import inline_kernel, kernel, kernel_noalloc
 from regolith_studio.geometry.vectors import Vector, cross, dot, length, row
 
 SIDEWAYS = 1e-9
@@ -135,7 +134,7 @@ def least_box(facets: Facets, known: float) -> Found:
     return found
 
 
-@leaf
+@kernel_noalloc
 def _on_curves(
     facets: Facets,
     arcs: FloatArray,
@@ -163,7 +162,7 @@ def _on_curves(
     work_off(points, table, margin, found, sieve)
 
 
-@leaf
+@kernel_noalloc
 def _put_down(
     records: FloatArray,
     arcs: FloatArray,
@@ -195,7 +194,7 @@ def _put_down(
     return len(arcs)
 
 
-@leaf
+@kernel_noalloc
 def _sift(
     records: FloatArray, points: FloatArray, table: SpanTable, margin: float, found: Found, sieve: Sieve
 ) -> None:
@@ -207,7 +206,7 @@ def _sift(
         add_pair(records, sieve.broken[0, at], sieve.broken[1, at], True, sieve)
 
 
-@leaf
+@kernel_noalloc
 def _on_facets(
     facets: Facets,
     arcs: FloatArray,
@@ -240,7 +239,7 @@ def _on_facets(
                     _on_edge(points, row(arcs, int(lanes[WHICH * LANES + k])), a, height, found)
 
 
-@inlined
+@inline_kernel
 def _on_shadow(
     records: FloatArray, axis: Vector, first: int, last: int, lanes: FloatArray
 ) -> tuple[int, int]:
@@ -265,7 +264,7 @@ def _on_shadow(
     return first, count
 
 
-@leaf
+@kernel_noalloc
 def _on_edge(points: FloatArray, edge: Vector, a: Vector, height: float, found: Found) -> None:
     """The box with one side normal to a, and one along an edge."""
     b = cross(edge, a)

@@ -46,7 +46,6 @@ from regolith_studio.geometry.box_lanes import (
 )
 from regolith_studio.geometry.box_record import Found
 from regolith_studio.geometry.box_widths import SpanTable
-from regolith_studio.geometry.compiled import kernel, leaf
 from regolith_studio.geometry.eights import (
     WIDTH,
     count_bits,
@@ -59,7 +58,7 @@ from regolith_studio.geometry.eights import (
     store,
     store_some,
 )
-from regolith_studio.geometry.inlined import inlined
+from regolith_studio.geometry.kernels import inline_kernel, kernel, kernel_noalloc
 from regolith_studio.geometry.vectors import length, row
 
 MOST_WAITING = 512
@@ -127,7 +126,7 @@ def records_of(facets: Facets, arcs: FloatArray) -> FloatArray:
     return records
 
 
-@inlined
+@inline_kernel
 def orthogonal(records: FloatArray, i: int, k: int) -> int:
     """Which of the eight edges from k on have normals that are orthogonal to some of edge i, as bits."""
     n = records.shape[1]
@@ -142,7 +141,7 @@ def orthogonal(records: FloatArray, i: int, k: int) -> int:
     return positive(nought - lowest) & ~positive(nought - highest)
 
 
-@inlined
+@inline_kernel
 def add_pairs(records: FloatArray, i: int, k: int, bits: int, sieve: Sieve) -> None:
     """Put edge i into the next lanes, with each of the eight edges from k on whose bit is set."""
     lanes, at, n = sieve.lanes, sieve.filled[PAIRS], records.shape[1]
@@ -153,7 +152,7 @@ def add_pairs(records: FloatArray, i: int, k: int, bits: int, sieve: Sieve) -> N
     sieve.filled[PAIRS] += count_bits(bits)
 
 
-@leaf
+@kernel_noalloc
 def add_pair(records: FloatArray, i: int, k: int, second: bool, sieve: Sieve) -> None:
     """Put a pair of edges into the next lane, for its first or second curve."""
     lanes, at = sieve.lanes, sieve.filled[PAIRS]
@@ -164,7 +163,7 @@ def add_pair(records: FloatArray, i: int, k: int, second: bool, sieve: Sieve) ->
     sieve.filled[PAIRS] += 1
 
 
-@leaf
+@kernel_noalloc
 def whole_curves(table: SpanTable, limit: float, sieve: Sieve) -> int:
     """Let the curves of the pairs wait that are not ruled out whole; how many pairs have a second curve."""
     lanes, count = sieve.lanes, sieve.filled[PAIRS]
@@ -188,7 +187,7 @@ def whole_curves(table: SpanTable, limit: float, sieve: Sieve) -> int:
     return broken
 
 
-@leaf
+@kernel_noalloc
 def work_off(points: FloatArray, table: SpanTable, margin: float, found: Found, sieve: Sieve) -> None:
     """Cut waiting pieces until none is left."""
     while sieve.filled[0] + sieve.filled[1] > 0:
@@ -198,14 +197,14 @@ def work_off(points: FloatArray, table: SpanTable, margin: float, found: Found, 
             halved(points, table, margin, found, take_top(0, sieve), sieve)
 
 
-@inlined
+@inline_kernel
 def not_ruled_out(lanes: FloatArray, at: int, count: int) -> int:
     """Which of the eight lanes from `at` on hold a piece that is not ruled out, as bits."""
     bits = positive(splat(0.5) - load(lanes, RULED_OUT * LANES + at))
     return bits & ((1 << min(WIDTH, count - at)) - 1)
 
 
-@inlined
+@inline_kernel
 def push(stack: int, at: int, bits: int, sieve: Sieve) -> None:
     """Put those of the pieces in the eight lanes from `at` on whose bit is set on a stack."""
     if bits != 0:
@@ -215,7 +214,7 @@ def push(stack: int, at: int, bits: int, sieve: Sieve) -> None:
         sieve.filled[stack] += count_bits(bits)
 
 
-@leaf
+@kernel_noalloc
 def take_top(stack: int, sieve: Sieve) -> int:
     """Put the top of a stack into the lanes, each cut once more than before."""
     lanes, waiting = sieve.lanes, sieve.waiting
@@ -231,7 +230,7 @@ def take_top(stack: int, sieve: Sieve) -> int:
     return taken
 
 
-@leaf
+@kernel_noalloc
 def halved(
     points: FloatArray, table: SpanTable, margin: float, found: Found, taken: int, sieve: Sieve
 ) -> None:
@@ -250,7 +249,7 @@ def halved(
         let_wait(points, table, margin, found, taken, sieve)
 
 
-@leaf
+@kernel_noalloc
 def cut_where_bounds_meet(
     points: FloatArray, table: SpanTable, margin: float, found: Found, taken: int, sieve: Sieve
 ) -> None:
@@ -276,7 +275,7 @@ def cut_where_bounds_meet(
     let_wait(points, table, margin, found, taken, sieve)
 
 
-@leaf
+@kernel_noalloc
 def let_wait(
     points: FloatArray, table: SpanTable, margin: float, found: Found, taken: int, sieve: Sieve
 ) -> None:

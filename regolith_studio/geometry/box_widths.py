@@ -5,7 +5,6 @@ from typing import NamedTuple
 import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.compiled import kernel, leaf
 from regolith_studio.geometry.eights import (
     WIDTH,
     Eight,
@@ -20,7 +19,7 @@ from regolith_studio.geometry.eights import (
     tagged,
     tags,
 )
-from regolith_studio.geometry.inlined import inlined
+from regolith_studio.geometry.kernels import inline_kernel, kernel, kernel_noalloc
 from regolith_studio.geometry.vectors import Vector
 
 FEWEST_CELLS, MOST_CELLS = 20, 64
@@ -43,7 +42,7 @@ class SpanTable(NamedTuple):
     cells: int
 
 
-@inlined
+@inline_kernel
 def _ends(points: FloatArray, direction: Vector) -> tuple[int, int]:
     """See :func:`ends_along`."""
     x, y, z = direction
@@ -72,7 +71,7 @@ def _ends(points: FloatArray, direction: Vector) -> tuple[int, int]:
     return top, bottom
 
 
-@leaf
+@kernel_noalloc
 def ends_along(points: FloatArray, direction: Vector) -> tuple[int, int]:
     """The vertices farthest along and against `direction`, of equal ones the first; points of shape (3, n).
 
@@ -81,7 +80,7 @@ def ends_along(points: FloatArray, direction: Vector) -> tuple[int, int]:
     return _ends(points, direction)
 
 
-@leaf
+@kernel_noalloc
 def ends_along_axes(
     points: FloatArray, a: Vector, b: Vector, c: Vector
 ) -> tuple[tuple[int, int], tuple[int, int], tuple[int, int]]:
@@ -89,7 +88,7 @@ def ends_along_axes(
     return _ends(points, a), _ends(points, b), _ends(points, c)
 
 
-@inlined
+@inline_kernel
 def between(points: FloatArray, one: int, two: int) -> Vector:
     """Vector from vertex `two` to vertex `one`."""
     return points[0, one] - points[0, two], points[1, one] - points[1, two], points[2, one] - points[2, two]
@@ -115,7 +114,7 @@ def ends_along_each(points: FloatArray, directions: FloatArray) -> IntArray:
     return ends
 
 
-@leaf
+@kernel_noalloc
 def farthest(points: FloatArray, x: Eight, y: Eight, z: Eight, found: FloatArray) -> None:
     """:func:`ends_along` for eight directions: numbers of the vertices, tops and bottoms, shape (2, 8)."""
     lows, highs = splat(np.inf), splat(-np.inf)
@@ -150,7 +149,7 @@ def span_table(points: FloatArray) -> SpanTable:
     return SpanTable(spans[: 9 * cells * cells].reshape(-1, 3), cells)
 
 
-@leaf
+@kernel_noalloc
 def look_along_rows(
     points: FloatArray,
     corners: FloatArray,
@@ -180,7 +179,7 @@ def look_along_rows(
                     store(spans, 3 * cell, load(corners, top) - load(corners, bottom))
 
 
-@inlined
+@inline_kernel
 def span_near(table: SpanTable, direction: Vector) -> Vector:
     """A vector between two vertices that is nearly as long along `direction` as the solid is wide."""
     x, y, z = direction

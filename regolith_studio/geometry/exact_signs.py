@@ -8,7 +8,7 @@ underflow: either zero or not far below 1e-60.
 import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.geometry.compiled import kernel
+from regolith_studio.geometry.kernels import kernel
 
 SPLITTER = 134217729.0
 """2**27 + 1: cuts a float in two halves of 26 bits."""

@@ -3,8 +3,8 @@
 import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.compiled import kernel, leaf
 from regolith_studio.geometry.eights import WIDTH, load, most, pick, splat, store
+from regolith_studio.geometry.kernels import kernel, kernel_noalloc
 from regolith_studio.geometry.vectors import row
 
 BLOCK = 512
@@ -41,7 +41,7 @@ def exits(
             plane[start + j] = int(rows[PLACE, j])
 
 
-@leaf
+@kernel_noalloc
 def farthest_planes(dual: FloatArray, rows: FloatArray, rays: int) -> None:
     """Fill the rows MOST and PLACE: the largest product of each ray with a plane, from 0, and with which."""
     x_row, y_row, z_row, nothing = 0, BLOCK, 2 * BLOCK, splat(0.0)

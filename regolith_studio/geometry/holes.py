@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
-from regolith_studio.geometry.compiled import kernel
 from regolith_studio.geometry.edges import edge_table, neighbours
+from regolith_studio.geometry.kernels import kernel
 
 LARGEST_EXACT_RIM = 300
 """Rims with more corners are closed by a fan about their middle: the best cover takes cubic time."""

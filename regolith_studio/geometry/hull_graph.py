@@ -5,8 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.compiled import kernel
-from regolith_studio.geometry.inlined import inlined
+from regolith_studio.geometry.kernels import inline_kernel, kernel
 from regolith_studio.geometry.vectors import cross, length, mixed, row
 
 SLIVER = 1e-9
@@ -152,7 +151,7 @@ def _facets(normals: FloatArray, blur: FloatArray, twin: IntArray) -> IntArray:
     return facet
 
 
-@inlined
+@inline_kernel
 def after(h: int) -> int:
     """The next half-edge around the face of half-edge `h`."""
     return h - 2 if h % 3 == 2 else h + 1

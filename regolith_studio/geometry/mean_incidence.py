@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
-from regolith_studio.geometry.compiled import kernel
+from regolith_studio.geometry.kernels import kernel
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.vectors import cross, dot, length, mixed, row
 

@@ -11,8 +11,8 @@ from scipy.spatial import ConvexHull, QhullError
 
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats, locked_integers
-from regolith_studio.geometry.compiled import kernel
 from regolith_studio.geometry.derived import Derived
+from regolith_studio.geometry.kernels import kernel
 from regolith_studio.geometry.moments import volume_moments
 from regolith_studio.geometry.vectors import cross, dot, mixed, row
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.compiled import kernel
+from regolith_studio.geometry.kernels import kernel
 from regolith_studio.geometry.vectors import cross, dot, mixed, row
 
 

@@ -16,10 +16,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats, locked_integers
-from regolith_studio.geometry.compiled import kernel
 from regolith_studio.geometry.direction_bins import DirectionBins, bins_around, direction_bins
 from regolith_studio.geometry.exact_signs import sign_of_cross_product, sign_of_triple_product
-from regolith_studio.geometry.inlined import inlined
+from regolith_studio.geometry.kernels import inline_kernel, kernel
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.vectors import Vector, along, cross, dot, length, mixed, row
 
@@ -150,7 +149,7 @@ def _cast(
     return whole[:n, 0].copy(), distance[:n].copy(), whole[:n, 1].copy(), whole[:n, 2].copy()
 
 
-@inlined
+@inline_kernel
 def _least(
     directions: FloatArray,
     ray: int,

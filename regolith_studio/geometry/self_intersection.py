@@ -4,7 +4,7 @@ import numpy as np
 from numba import int64
 
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
-from regolith_studio.geometry.compiled import kernel
+from regolith_studio.geometry.kernels import kernel
 
 MOST_CELLS = 1 << 21
 SLACK = 1e-12

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.compiled import kernel
+from regolith_studio.geometry.kernels import kernel
 
 CLEARANCE = 1e-12
 """Least share of the product of three corners' distances by which a triangle must look outwards."""

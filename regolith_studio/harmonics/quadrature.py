@@ -13,7 +13,7 @@ from functools import cache
 import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.geometry.compiled import kernel
+from regolith_studio.geometry.kernels import kernel
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.legendre import fill_legendre, legendre_factors, legendre_slopes
 from regolith_studio.harmonics.reference import Ellipsoid

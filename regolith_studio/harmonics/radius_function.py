@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from regolith_studio.errors import GeometryError, InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats, locked_integers
-from regolith_studio.geometry.compiled import kernel
+from regolith_studio.geometry.kernels import kernel
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.ray_casting import radial_hits
 

@@ -7,7 +7,7 @@ then rounds otherwise. Here the same samples give the same bits.
 import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.geometry.compiled import kernel
+from regolith_studio.geometry.kernels import kernel
 from regolith_studio.harmonics.legendre import fill_legendre, legendre_factors
 
 

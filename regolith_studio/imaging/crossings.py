@@ -8,7 +8,7 @@ about such corners, and about those that are turned over, are looked at, which a
 import numpy as np
 
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
-from regolith_studio.geometry.compiled import kernel
+from regolith_studio.geometry.kernels import kernel
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.self_intersection import crossing_pairs
 from regolith_studio.imaging.coverage import coverage

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.geometry.arrays import BoolArray
-from regolith_studio.geometry.compiled import kernel
+from regolith_studio.geometry.kernels import kernel
 
 DEEPEST = 4
 """Voxels beyond which depths are not told apart."""

@@ -4,7 +4,7 @@ import numpy as np
 
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.compiled import kernel
+from regolith_studio.geometry.kernels import kernel
 from regolith_studio.geometry.mesh import Mesh
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.compiled import kernel
+from regolith_studio.geometry.kernels import kernel
 from regolith_studio.shape_models.sphere_grid import SphereGrid, sphere_grid
 
 Floats = NDArray[np.float32]

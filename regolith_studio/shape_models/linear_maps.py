@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.compiled import kernel
+from regolith_studio.geometry.kernels import kernel
 from regolith_studio.harmonics.legendre import harmonics
 
 Tables = NDArray[np.float32]

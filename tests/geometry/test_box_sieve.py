@@ -58,9 +58,9 @@ from regolith_studio.geometry.box_sieve import (
     work_off,
 )
 from regolith_studio.geometry.box_widths import span_near, span_table
-from regolith_studio.geometry.compiled import kernel
 from regolith_studio.geometry.eights import WIDTH
 from regolith_studio.geometry.hull_graph import hull_graph
+from regolith_studio.geometry.kernels import kernel
 from tests.geometry.solids import random_polyhedron
 
 

@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.geometry.compiled import kernel
 from regolith_studio.geometry.eights import (
     LAST_BITS,
     WIDTH,
@@ -30,6 +29,7 @@ from regolith_studio.geometry.eights import (
     tags,
     total,
 )
+from regolith_studio.geometry.kernels import kernel
 
 
 @kernel

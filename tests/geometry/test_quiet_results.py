@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.geometry.compiled import kernel
+from regolith_studio.geometry.kernels import kernel
 
 
 class Sums(NamedTuple):

@@ -13,8 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.compiled import kernel, leaf
-from regolith_studio.geometry.inlined import inlined
+from regolith_studio.geometry.kernels import inline_kernel, kernel, kernel_noalloc
 from regolith_studio.geometry.vectors import Vector, cross, dot, length, mixed, row
 
 
@@ -81,7 +80,7 @@ def empty_touch() -> Touch:
     return Touch(np.empty((3, 3)), np.empty(3), np.empty(7, np.int64))
 
 
-@leaf
+@kernel_noalloc
 def box_at(axis: Vector, solid: Solid, limit: float, scratch: Scratch, touch: Touch) -> float:
     """Volume of the least box with a side normal to `axis`, or infinity if it must exceed `limit`."""
     height, shadow, top, bottom = height_and_shadow(axis, solid, scratch.side)
@@ -120,7 +119,7 @@ def box_at(axis: Vector, solid: Solid, limit: float, scratch: Scratch, touch: To
     return float(least * height)
 
 
-@leaf
+@kernel_noalloc
 def height_and_shadow(axis: Vector, solid: Solid, side: FloatArray) -> tuple[float, float, int, int]:
     """Extent along `axis`, area of the shadow, top and bottom vertex; `side` takes <axis, n_f>."""
     a0, a1, a2 = axis[0], axis[1], axis[2]
@@ -138,7 +137,7 @@ def height_and_shadow(axis: Vector, solid: Solid, side: FloatArray) -> tuple[flo
     return high - low, 0.5 * shadow, top, bottom
 
 
-@leaf
+@kernel_noalloc
 def least_rectangle(count: int, rim: IntArray, flat: FloatArray, touch: Touch) -> tuple[float, float, float]:
     """Area and direction of the least rectangle around the silhouette, flush with one of its edges.
 
@@ -172,7 +171,7 @@ def least_rectangle(count: int, rim: IntArray, flat: FloatArray, touch: Touch) -
     return least, at_dx, at_dy
 
 
-@leaf
+@kernel_noalloc
 def farthest(flat: FloatArray, count: int, start: int, dx: float, dy: float) -> int:
     """Corner of a convex polygon that is farthest along (dx, dy), going counter-clockwise from `start`."""
     at, here = start, flat[start, 0] * dx + flat[start, 1] * dy
@@ -185,7 +184,7 @@ def farthest(flat: FloatArray, count: int, start: int, dx: float, dy: float) -> 
     return at
 
 
-@leaf
+@kernel_noalloc
 def turned_frame(axis: Vector, edge: Vector) -> tuple[float, Vector, Vector]:
     """Axes of the box with a side normal to `axis` and one flush with `edge`, after the lever.
 
@@ -198,7 +197,7 @@ def turned_frame(axis: Vector, edge: Vector) -> tuple[float, Vector, Vector]:
     return lever, second, cross(axis, second)
 
 
-@leaf
+@kernel_noalloc
 def log_slope(
     turn: Vector,
     edge: Vector,
@@ -231,7 +230,7 @@ def log_slope(
     )
 
 
-@leaf
+@kernel_noalloc
 def slope_at(turn: Vector, solid: Solid, touch: Touch) -> float:
     """Derivative of log(volume) along the arc for the box of :func:`box_at`."""
     vertices, piece = solid.vertices, touch.piece
@@ -245,7 +244,7 @@ def slope_at(turn: Vector, solid: Solid, touch: Touch) -> float:
     return log_slope(turn, edge, length(cross(edge, axis)), axis, row(touch.frame, 1), spans, extents)
 
 
-@inlined
+@inline_kernel
 def from_to(vertices: FloatArray, one: int, two: int) -> Vector:
     """Vector from vertex `one` to vertex `two`, rows of shape (v, 3)."""
     return mixed(row(vertices, two), 1.0, row(vertices, one), -1.0)

@@ -10,7 +10,7 @@ import numpy as np
 
 from regolith_studio.coarsening.core.box import Scratch, Solid, Touch, box_at, from_to, slope_at, turned_frame
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.compiled import kernel, leaf
+from regolith_studio.geometry.kernels import kernel, kernel_noalloc
 from regolith_studio.geometry.vectors import Vector, dot, length, mixed, row
 
 BESIDE = 1e-7
@@ -57,7 +57,7 @@ def spare_samples() -> Spare:
     return Spare(empty_sample(), empty_sample(), empty_sample())
 
 
-@leaf
+@kernel_noalloc
 def copied(source: Sample, target: Sample) -> None:
     """Copy a sample."""
     for c in range(3):
@@ -66,7 +66,7 @@ def copied(source: Sample, target: Sample) -> None:
         target.piece[c] = source.piece[c]
 
 
-@leaf
+@kernel_noalloc
 def arc_between(solid: Solid, e: int) -> Arc:
     """Gauss arc of edge e."""
     one, two = row(solid.normals, solid.edges[e, 2]), row(solid.normals, solid.edges[e, 3])
@@ -78,7 +78,7 @@ def arc_between(solid: Solid, e: int) -> Arc:
     return Arc(one, across, np.arctan2(sine, cosine), solid.edges[e, 0], solid.edges[e, 1])
 
 
-@leaf
+@kernel_noalloc
 def box_on_arc(
     arc: Arc, angle: float, solid: Solid, limit: float, scratch: Scratch, touch: Touch, sample: Sample
 ) -> float:
@@ -97,7 +97,7 @@ def box_on_arc(
     return volume
 
 
-@leaf
+@kernel_noalloc
 def worth_a_look(one: Sample, two: Sample, limit: float) -> bool:
     """Whether the volume turns from falling to rising, and the tangents meet below `limit`."""
     if not (one.number[2] < 0.0 and two.number[2] > 0.0):
@@ -106,7 +106,7 @@ def worth_a_look(one: Sample, two: Sample, limit: float) -> bool:
     return bool(lowest <= np.log(limit))
 
 
-@leaf
+@kernel_noalloc
 def meeting(one: Sample, two: Sample) -> float:
     """Angle at which the tangents of the log volume meet."""
     gap = two.number[0] - one.number[0]
@@ -114,7 +114,7 @@ def meeting(one: Sample, two: Sample) -> float:
     return float(one.number[0] + (rise - two.number[2] * gap) / (one.number[2] - two.number[2]))
 
 
-@leaf
+@kernel_noalloc
 def arc_minimum(
     arc: Arc, one: Sample, two: Sample, solid: Solid, scratch: Scratch, touch: Touch, spare: Spare
 ) -> tuple[int, int, float]:
@@ -170,7 +170,7 @@ def arc_minimum(
     return slot, low.piece[slot] if here.piece[slot] == high.piece[slot] else high.piece[slot], volume
 
 
-@leaf
+@kernel_noalloc
 def differing_slot(one: IntArray, two: IntArray) -> int:
     """The slot in which two pieces differ, or STATIONARY (none), ON_FACET (flush edge), SEVERAL."""
     if one[2] != two[2] or one[3] != two[3]:
@@ -184,7 +184,7 @@ def differing_slot(one: IntArray, two: IntArray) -> int:
     return found
 
 
-@leaf
+@kernel_noalloc
 def same_side(one: IntArray, two: IntArray, axis: FloatArray, vertices: FloatArray) -> bool:
     """Whether the flush edges of two pieces lie in the same side of the box, as on a facet along `axis`."""
     dot, first, second = 0.0, 0.0, 0.0
@@ -198,7 +198,7 @@ def same_side(one: IntArray, two: IntArray, axis: FloatArray, vertices: FloatArr
     return bool(dot > SAME_SIDE * np.sqrt(first * second))
 
 
-@leaf
+@kernel_noalloc
 def tie_angle(arc: Arc, slot: int, i: int, j: int, sample: Sample, vertices: FloatArray) -> float:
     """Angle near a sample at which vertices i and j lie in one side of the box, by the secant method."""
     edge, apart = from_to(vertices, sample.piece[2], sample.piece[3]), from_to(vertices, j, i)

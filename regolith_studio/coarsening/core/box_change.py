@@ -2,14 +2,14 @@
 
 from regolith_studio.coarsening.core.box_contacts import pose_of, solved, tied_axis
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.compiled import leaf
+from regolith_studio.geometry.kernels import kernel_noalloc
 from regolith_studio.geometry.vectors import Vector, cross, dot, mixed
 
 FORCES = (3, 9, 3)
 """Shape of the forces: edge, vertex of the row of contacts, coordinate."""
 
 
-@leaf
+@kernel_noalloc
 def extent_forces(points: FloatArray, contact: IntArray, frame: FloatArray, forces: FloatArray) -> Vector:
     """Extents of a box at rest; `forces` takes d log(extent k) / d(vertex i), shape (3, 9, 3).
 
@@ -50,7 +50,7 @@ def extent_forces(points: FloatArray, contact: IntArray, frame: FloatArray, forc
     return pose.extents
 
 
-@leaf
+@kernel_noalloc
 def pull(forces: FloatArray, k: int, far: int, near: int, direction: Vector, size: float) -> None:
     """Pull vertex `far` along a direction and `near` against it."""
     for c in range(3):

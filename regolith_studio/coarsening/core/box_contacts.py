@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.compiled import leaf
+from regolith_studio.geometry.kernels import kernel_noalloc
 from regolith_studio.geometry.vectors import Vector, along, cross, dot, length, mixed, row
 
 ROW = 13
@@ -57,7 +57,7 @@ class Pose(NamedTuple):
     free: Vector
 
 
-@leaf
+@kernel_noalloc
 def touched(vertices: FloatArray, frame: FloatArray, contact: IntArray, ties: FloatArray) -> None:
     """Fill a row of contacts for a box by its axes, one a row of `frame`.
 
@@ -96,7 +96,7 @@ def touched(vertices: FloatArray, frame: FloatArray, contact: IntArray, ties: Fl
         contact[0], contact[7 + 2 * n], contact[8 + 2 * n] = n + 1, most_side, most_vertex
 
 
-@leaf
+@kernel_noalloc
 def settled(points: FloatArray, contact: IntArray, frame: FloatArray, farthest: float) -> bool:
     """Turn the axes in `frame` until all conditions hold, by Newton's method; False where they cannot.
 
@@ -123,7 +123,7 @@ def settled(points: FloatArray, contact: IntArray, frame: FloatArray, farthest: 
     return False
 
 
-@leaf
+@kernel_noalloc
 def fill_points(vertices: FloatArray, contact: IntArray, points: FloatArray) -> None:
     """Coordinates of the vertices of a row of contacts, shape (9, 3): six ends of axes, three tied."""
     for i in range(9):
@@ -132,7 +132,7 @@ def fill_points(vertices: FloatArray, contact: IntArray, points: FloatArray) -> 
             points[i, c] = vertices[v, c] if i < 6 + contact[0] else 0.0
 
 
-@leaf
+@kernel_noalloc
 def pose_of(points: FloatArray, contact: IntArray, frame: FloatArray) -> Pose:
     """Everything about a box that follows from its axes and the vertices that it touches."""
     axes = (row(frame, 0), row(frame, 1), row(frame, 2))
@@ -173,13 +173,13 @@ def pose_of(points: FloatArray, contact: IntArray, frame: FloatArray) -> Pose:
     return Pose(axes, spans, extents, slopes, (one, two, bend), residuals, free)
 
 
-@leaf
+@kernel_noalloc
 def tied_axis(contact: IntArray, tie: int, frame: FloatArray) -> Vector:
     """Axis of the side in which a tie lies."""
     return row(frame, contact[7 + 2 * tie] // 2 if tie < contact[0] else 0)
 
 
-@leaf
+@kernel_noalloc
 def tied_pair(points: FloatArray, contact: IntArray, tie: int) -> Vector:
     """From the vertex at the end of the axis to the one that ties with it; zero for a tie that is none."""
     if tie >= contact[0]:
@@ -187,7 +187,7 @@ def tied_pair(points: FloatArray, contact: IntArray, tie: int) -> Vector:
     return mixed(row(points, 6 + tie), 1.0, row(points, contact[7 + 2 * tie]), -1.0)
 
 
-@leaf
+@kernel_noalloc
 def solved(rows: tuple[Vector, Vector, Vector], right: Vector) -> tuple[bool, Vector]:
     """Solution w of <row, w> = right for three rows; False where they are nearly dependent."""
     first, second, third = cross(rows[1], rows[2]), cross(rows[2], rows[0]), cross(rows[0], rows[1])
@@ -198,7 +198,7 @@ def solved(rows: tuple[Vector, Vector, Vector], right: Vector) -> tuple[bool, Ve
     return True, w
 
 
-@leaf
+@kernel_noalloc
 def turned(frame: FloatArray, turn: Vector) -> None:
     """Rotate the axes in `frame` by the angle and about the direction of `turn`."""
     angle = length(turn)
@@ -214,7 +214,7 @@ def turned(frame: FloatArray, turn: Vector) -> None:
             frame[k, c] = y[c]
 
 
-@leaf
+@kernel_noalloc
 def rested(
     vertices: FloatArray, contact: IntArray, frame: FloatArray, points: FloatArray, farthest: float
 ) -> bool:
@@ -244,7 +244,7 @@ def rested(
     return False
 
 
-@leaf
+@kernel_noalloc
 def farthest_outside(vertices: FloatArray, contact: IntArray, frame: FloatArray) -> tuple[int, int]:
     """Side beyond which a vertex lies farthest outside, and that vertex; -1 where none does."""
     most, most_side, most_vertex = OUTSIDE, -1, -1
@@ -260,7 +260,7 @@ def farthest_outside(vertices: FloatArray, contact: IntArray, frame: FloatArray)
     return most_side, most_vertex
 
 
-@leaf
+@kernel_noalloc
 def at_minimum(pose: Pose, contact: IntArray) -> bool:
     """Whether no small turn makes the box smaller, as far as the contacts tell.
 

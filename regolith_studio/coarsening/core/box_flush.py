@@ -8,7 +8,6 @@ import numpy as np
 
 from regolith_studio.coarsening.core.box import Solid
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.compiled import kernel, leaf
 from regolith_studio.geometry.eights import (
     WIDTH,
     WORD,
@@ -22,6 +21,7 @@ from regolith_studio.geometry.eights import (
     splat,
     store,
 )
+from regolith_studio.geometry.kernels import kernel, kernel_noalloc
 from regolith_studio.geometry.vectors import Vector, cross, dot
 
 NORMALS, AREAS, HEIGHT, BOUND = 0, 3, 4, 5
@@ -61,19 +61,19 @@ def box_on_facets(solid: Solid) -> FloatArray:
     return extents
 
 
-@leaf
+@kernel_noalloc
 def room_for(facets: int, vertices: int) -> int:
     """Length of the rows of a desk."""
     return in_eights(max(facets, vertices)) + WIDTH
 
 
-@leaf
+@kernel_noalloc
 def in_eights(count: int) -> int:
     """The next multiple of eight."""
     return (count + WIDTH - 1) // WIDTH * WIDTH
 
 
-@leaf
+@kernel_noalloc
 def least_on_facets(
     desk: FloatArray, sides: IntArray, facets: int, vertices: int, edges: int, extents: FloatArray
 ) -> None:
@@ -106,7 +106,7 @@ def least_on_facets(
     extents[0], extents[1], extents[2] = desk[HIGH, k], share * desk[DEEP, k], share * desk[WIDE, k]
 
 
-@leaf
+@kernel_noalloc
 def bounded(desk: FloatArray, facets: int, vertices: int) -> int:
     """Fill the heights and the bounds; the facet with the least bound.
 
@@ -136,7 +136,7 @@ def bounded(desk: FloatArray, facets: int, vertices: int) -> int:
     return promising
 
 
-@leaf
+@kernel_noalloc
 def looked_up(axis: Vector, desk: FloatArray, sides: IntArray, facets: int) -> None:
     """Bits of the facets that look up along an axis."""
     size, x, y, z = desk.shape[1], splat(axis[0]), splat(axis[1]), splat(axis[2])
@@ -148,7 +148,7 @@ def looked_up(axis: Vector, desk: FloatArray, sides: IntArray, facets: int) -> N
         sides[UP, word] = bits
 
 
-@leaf
+@kernel_noalloc
 def project(axis: Vector, desk: FloatArray, vertices: int) -> float:
     """Where vertices lie across an axis, along two directions at right angles; their length squared."""
     one = (0.0, -axis[2], axis[1]) if abs(axis[0]) < 0.7 else (axis[2], 0.0, -axis[0])
@@ -170,7 +170,7 @@ def project(axis: Vector, desk: FloatArray, vertices: int) -> float:
     return dot(one, one)
 
 
-@leaf
+@kernel_noalloc
 def rim_of(desk: FloatArray, sides: IntArray, facets: int, edges: int) -> int:
     """Edges between a facet that looks up and one that does not, counter-clockwise: how many.
 
@@ -194,7 +194,7 @@ def rim_of(desk: FloatArray, sides: IntArray, facets: int, edges: int) -> int:
     return int(count)
 
 
-@leaf
+@kernel_noalloc
 def outlined(sides: IntArray, facets: int, first: int, last: int) -> int:
     """Bits of the edges from `first` on that have one facet that looks up and one that does not."""
     bits = 0
@@ -210,7 +210,7 @@ def outlined(sides: IntArray, facets: int, first: int, last: int) -> int:
     return bits
 
 
-@leaf
+@kernel_noalloc
 def least_on_rim(count: int, desk: FloatArray, height: float, scale: float) -> float:
     """The least volume so far, after the boxes that are flush with an edge of the rim."""
     size, factor = desk.shape[1], splat(height / scale)

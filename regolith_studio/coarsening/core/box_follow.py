@@ -8,7 +8,7 @@ from regolith_studio.coarsening.core.box import Solid
 from regolith_studio.coarsening.core.box_contacts import at_minimum, pose_of, rested
 from regolith_studio.coarsening.core.box_search import Boxes, likeness
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
-from regolith_studio.geometry.compiled import kernel, leaf
+from regolith_studio.geometry.kernels import kernel, kernel_noalloc
 
 FARTHEST = 0.12
 """Boxes that turn by more, in radians, are looked for anew."""
@@ -97,7 +97,7 @@ def lost_axes(watched: Watched, lost: BoolArray) -> FloatArray:
     return axes
 
 
-@leaf
+@kernel_noalloc
 def renamed(contact: IntArray, planes: IntArray, owner: IntArray, triples: IntArray) -> bool:
     """Put the corners of the changed polyhedron into a row of contacts; False where one is gone."""
     for i in range(6 + contact[0]):

@@ -30,7 +30,7 @@ from regolith_studio.coarsening.core.box_arcs import (
 )
 from regolith_studio.coarsening.core.box_contacts import ROW, at_minimum, pose_of, rested, touched
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.compiled import kernel, leaf
+from regolith_studio.geometry.kernels import kernel, kernel_noalloc
 from regolith_studio.geometry.vectors import along, mixed, row
 
 SAMPLE_ANGLE = float(np.radians(13.0))
@@ -163,7 +163,7 @@ def at_rest(solid: Solid, boxes: Boxes) -> Boxes:
     return Boxes(boxes.volumes[kept], frames[kept], extents[kept], contacts[kept])
 
 
-@leaf
+@kernel_noalloc
 def search(
     solid: Solid,
     margin: float,
@@ -214,7 +214,7 @@ def search(
     return count, best
 
 
-@leaf
+@kernel_noalloc
 def kept_aside(touch: Touch, aside: Touch) -> None:
     """Copy a box."""
     for a in range(3):
@@ -225,7 +225,7 @@ def kept_aside(touch: Touch, aside: Touch) -> None:
         aside.piece[c] = touch.piece[c]
 
 
-@leaf
+@kernel_noalloc
 def remembered(facets: OnFacets, f: int, touch: Touch) -> None:
     """Copy a box into the memory of facet f."""
     for a in range(3):
@@ -236,7 +236,7 @@ def remembered(facets: OnFacets, f: int, touch: Touch) -> None:
         facets.piece[f, c] = touch.piece[c]
 
 
-@leaf
+@kernel_noalloc
 def recalled(facets: OnFacets, f: int, touch: Touch) -> None:
     """Copy the box of facet f into `touch`."""
     for a in range(3):
@@ -247,7 +247,7 @@ def recalled(facets: OnFacets, f: int, touch: Touch) -> None:
         touch.piece[c] = facets.piece[f, c]
 
 
-@leaf
+@kernel_noalloc
 def box_on_facet(
     f: int, facets: OnFacets, solid: Solid, best: float, scratch: Scratch, touch: Touch
 ) -> float:
@@ -258,7 +258,7 @@ def box_on_facet(
     return facets.volume[f]  # type: ignore[no-any-return]
 
 
-@leaf
+@kernel_noalloc
 def window_on(arc: Arc, near: FloatArray) -> tuple[float, float]:
     """Part of an arc near one of the directions (k, 3) or against it; empty if the second is less."""
     if len(near) == 0:
@@ -275,7 +275,7 @@ def window_on(arc: Arc, near: FloatArray) -> tuple[float, float]:
     return low, high
 
 
-@leaf
+@kernel_noalloc
 def is_near(normal: FloatArray, near: FloatArray) -> bool:
     """Whether all arcs around a facet have been searched."""
     for k in range(len(near)):
@@ -284,7 +284,7 @@ def is_near(normal: FloatArray, near: FloatArray) -> bool:
     return len(near) == 0
 
 
-@leaf
+@kernel_noalloc
 def sampled(  # type: ignore[no-untyped-def]
     arc, angle, solid, best, e, facets, scratch, touch, sample
 ) -> float:
@@ -309,7 +309,7 @@ def sampled(  # type: ignore[no-untyped-def]
     return min(best, volume)  # type: ignore[no-any-return]
 
 
-@leaf
+@kernel_noalloc
 def kept(count: int, boxes: Boxes, volume: float, touch: Touch) -> int:
     """Add a box unless the same one is there; the new number of boxes."""
     for i in range(count):
@@ -332,7 +332,7 @@ def kept(count: int, boxes: Boxes, volume: float, touch: Touch) -> int:
     return count + 1
 
 
-@leaf
+@kernel_noalloc
 def likeness(one: FloatArray, two: FloatArray) -> float:
     """Cosine of the largest angle between the axes of two frames (3, 3), in any order and direction."""
     least = 1.0

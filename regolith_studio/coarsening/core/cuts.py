@@ -5,7 +5,7 @@ import numpy as np
 from regolith_studio.coarsening.core.intersection import FINE, edges_of, intersect
 from regolith_studio.coarsening.core.measures import facets_of
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.compiled import kernel
+from regolith_studio.geometry.kernels import kernel
 
 LEAST_CUT = 3e-3
 """Least depth of a cut that is worth it, at unit volume."""

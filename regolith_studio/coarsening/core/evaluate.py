@@ -30,7 +30,7 @@ from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.box_facets import Facets
 from regolith_studio.geometry.box_search import least_box
 from regolith_studio.geometry.box_widths import between, ends_along
-from regolith_studio.geometry.compiled import kernel, leaf
+from regolith_studio.geometry.kernels import kernel, kernel_noalloc
 from regolith_studio.geometry.vectors import along, cross, dot, length, row
 
 VOLUME, AREA, SHORTEST, LONGEST, SHARED, FACETS = 0, 1, 2, 3, 4, 5
@@ -91,7 +91,7 @@ def evaluate(
     return status, values
 
 
-@leaf
+@kernel_noalloc
 def laid_out(
     normals: FloatArray,
     offsets: FloatArray,

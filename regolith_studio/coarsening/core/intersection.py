@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.compiled import kernel, leaf
 from regolith_studio.geometry.eights import WIDTH, WORD, first_bit, load, positive, splat, store
+from regolith_studio.geometry.kernels import kernel, kernel_noalloc
 from regolith_studio.geometry.vectors import Vector, cross, dot, row
 
 REACH = 40.0
@@ -86,7 +86,7 @@ def work_for(n: int) -> Work:
     )
 
 
-@leaf
+@kernel_noalloc
 def cut_out(
     normals: FloatArray,
     offsets: FloatArray,
@@ -127,7 +127,7 @@ def cut_out(
     return collected(normals, offsets, work, used, vertices, triples)
 
 
-@leaf
+@kernel_noalloc
 def above_plane(place: FloatArray, used: int, normal: Vector, offset: float, lists: PlaceArray) -> int:
     """Heights of all vertices above a plane; those above 0 are listed as dead, and counted."""
     size, count = place.shape[1], np.uintp(0)
@@ -145,7 +145,7 @@ def above_plane(place: FloatArray, used: int, normal: Vector, offset: float, lis
     return count  # type: ignore[return-value]
 
 
-@leaf
+@kernel_noalloc
 def begun(work: Work, n: int, reach: float) -> int:
     """The first tetrahedron, with planes n .. n + 3 at distance `reach`; its four vertices.
 
@@ -172,7 +172,7 @@ def begun(work: Work, n: int, reach: float) -> int:
     return 4
 
 
-@leaf
+@kernel_noalloc
 def collected(
     normals: FloatArray, offsets: FloatArray, work: Work, used: int, vertices: FloatArray, triples: IntArray
 ) -> tuple[int, int]:
@@ -203,7 +203,7 @@ def collected(
     return (FINE, count) if count == 2 * facets - 4 else (DEGENERATE, 0)
 
 
-@leaf
+@kernel_noalloc
 def refine(
     normals: FloatArray,
     offsets: FloatArray,

@@ -3,7 +3,7 @@
 import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.compiled import kernel, leaf
+from regolith_studio.geometry.kernels import kernel, kernel_noalloc
 from regolith_studio.geometry.vectors import cross, dot, row
 
 
@@ -83,7 +83,7 @@ def volume_charge(area: FloatArray, centroid: FloatArray, pivots: FloatArray) ->
     return charge
 
 
-@leaf
+@kernel_noalloc
 def vertex_charge(
     normals: FloatArray,
     triple: IntArray,

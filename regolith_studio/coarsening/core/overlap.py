@@ -3,9 +3,9 @@
 import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.compiled import kernel, leaf
 from regolith_studio.geometry.eights import least, load, most, splat, total
 from regolith_studio.geometry.exits import exits
+from regolith_studio.geometry.kernels import kernel, kernel_noalloc
 
 __all__ = ["crossings_of", "exits", "jaccard", "shared_by_planes", "shared_charge", "shared_volume"]
 
@@ -55,7 +55,7 @@ def crossings_of(
     return crossings
 
 
-@leaf
+@kernel_noalloc
 def shared_by_planes(dual: FloatArray, crossings: FloatArray, weight: float) -> float:
     """:func:`shared_volume` of half-spaces, where nobody asks which plane a ray meets; other last bits.
 

@@ -8,7 +8,7 @@ w(x) = ds - <dt1 e1 + dt2 e2, x - pivot> / rho.
 import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.geometry.compiled import kernel
+from regolith_studio.geometry.kernels import kernel
 from regolith_studio.geometry.vectors import cross, dot, length, mixed, row
 
 

@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.compiled import kernel, leaf
 from regolith_studio.geometry.directions import fibonacci_directions
+from regolith_studio.geometry.kernels import kernel, kernel_noalloc
 from regolith_studio.geometry.vectors import cross, dot, row
 
 RAYS_IN_CELL = 1.5
@@ -69,7 +69,7 @@ def bundle_of(directions: FloatArray) -> RayBundle:
     return RayBundle(directions, directions[order], order, first, cells)
 
 
-@leaf
+@kernel_noalloc
 def on_cube(points: FloatArray, i: int) -> tuple[int, float, float]:
     """Side of the cube on which point i is seen from the middle, and where; side -1 for the middle itself."""
     axis = 0
@@ -83,7 +83,7 @@ def on_cube(points: FloatArray, i: int) -> tuple[int, float, float]:
     return side, points[i, (axis + 1) % 3] / high, points[i, (axis + 2) % 3] / high
 
 
-@leaf
+@kernel_noalloc
 def step_of(u: float, cells: int) -> int:
     """Cell along one edge of a side for a coordinate from -1 to 1; others are brought there."""
     return min(cells - 1, max(0, int((u + 1.0) * 0.5 * cells)))
@@ -129,7 +129,7 @@ def cast(points: FloatArray, faces: IntArray, rays: RayBundle) -> tuple[IntArray
     return sorted_rows(first, ray[:found], distance[:found], sign[:found])
 
 
-@leaf
+@kernel_noalloc
 def crossed_by(
     points: FloatArray,
     face: IntArray,
@@ -180,7 +180,7 @@ def crossed_by(
     return found
 
 
-@leaf
+@kernel_noalloc
 def bounds_of(place: FloatArray, face: IntArray) -> tuple[float, float, float, float]:
     """Bounds of a triangle whose corners are seen on one side of the cube."""
     i, j, k = face[0], face[1], face[2]
@@ -192,7 +192,7 @@ def bounds_of(place: FloatArray, face: IntArray) -> tuple[float, float, float, f
     )
 
 
-@leaf
+@kernel_noalloc
 def bounds_on(points: FloatArray, face: IntArray, side: int) -> tuple[float, float, float, float]:
     """Bounds of any triangle on one side of the cube; the first above the second if it is not seen there."""
     axis, way = side // 2, 1.0 - 2.0 * (side % 2)

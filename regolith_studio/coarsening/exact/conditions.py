@@ -20,7 +20,7 @@ from regolith_studio.coarsening.exact.problem import (
     log_sphericity,
 )
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.geometry.compiled import kernel
+from regolith_studio.geometry.kernels import kernel
 
 CLEARANCE = 1e-4
 """Other boxes must be larger than the wanted one by this share."""

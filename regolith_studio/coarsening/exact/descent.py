@@ -18,7 +18,7 @@ from regolith_studio.coarsening.exact.polish import (
 )
 from regolith_studio.coarsening.exact.problem import Problem, Shape, shared_with
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.geometry.compiled import kernel
+from regolith_studio.geometry.kernels import kernel
 
 OVERLAP, SMOOTHER, ROUGHER = 0, 1, 2
 """Objectives: the Jaccard distance, less surface, more surface."""

@@ -20,8 +20,8 @@ from regolith_studio.coarsening.exact.polish import LEAST_LEVER, Polished, measu
 from regolith_studio.coarsening.exact.problem import Problem
 from regolith_studio.coarsening.polyhedra import facet_areas
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.compiled import kernel
 from regolith_studio.geometry.half_spaces import HalfSpaces
+from regolith_studio.geometry.kernels import kernel
 
 SMALL = 0.01
 """Facets below this share of the mean area are worth the work."""

@@ -11,7 +11,7 @@ from regolith_studio.coarsening.core.planes import carried, levers_of, moved
 from regolith_studio.coarsening.exact.conditions import AIM, ALIKE, CLEARANCE, Conditions, conditions_of
 from regolith_studio.coarsening.exact.problem import Problem, Shape, needs_box, shape_of
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.geometry.compiled import kernel
+from regolith_studio.geometry.kernels import kernel
 
 LEAST_LEVER = 0.08
 """Smallest lever of a tilt, in units of the particle's size (the cube root of its volume)."""

@@ -11,7 +11,7 @@ from regolith_studio.coarsening.core.intersection import FINE, edges_of, interse
 from regolith_studio.coarsening.core.measures import facets_of, volume_of
 from regolith_studio.coarsening.core.overlap import exits, shared_volume
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
-from regolith_studio.geometry.compiled import kernel
+from regolith_studio.geometry.kernels import kernel
 
 VOLUME, SPHERICITY, SHORTEST, LONGEST, RATIO = 0, 1, 2, 3, 4
 """Conditions, in this order everywhere."""

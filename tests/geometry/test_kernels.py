@@ -1,0 +1,110 @@
+"""What is kept of compiled kernels on disk."""
+
+import importlib
+import os
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import numba
+import pytest
+
+from regolith_studio.geometry import kernels
+
+CALLEE = """
+from regolith_studio.geometry.kernels import kernel
+
+@kernel
+def constant():
+    return {}
+"""
+CALLER = """
+from {package}.callee import constant
+from regolith_studio.geometry.kernels import kernel
+
+@kernel
+def doubled():
+    return 2 * constant()
+"""
+
+
+@pytest.fixture(autouse=True)
+def cache_below(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """The folder that NUMBA_CACHE_DIR names."""
+    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path / "cache"))
+    kernels._cache_folder.cache_clear()
+    yield tmp_path / "cache"
+    kernels._cache_folder.cache_clear()
+
+
+def doubled(name: str) -> int:
+    """Import the package afresh, as a new process does, and call the kernel."""
+    for module in [key for key in sys.modules if key.startswith(name)]:
+        del sys.modules[module]
+    importlib.invalidate_caches()
+    kernels.kernel_sources.cache_clear()
+    kernels._cache_folder.cache_clear()
+    return int(importlib.import_module(f"{name}.caller").doubled())
+
+
+def test_that_compiled_code_does_not_survive_an_edit_of_a_kernel_that_it_calls(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    package = tmp_path / "studio" / "part"
+    package.mkdir(parents=True)
+    (package / "__init__.py").touch()
+    (package / "caller.py").write_text(CALLER.format(package="part"))
+    (package / "callee.py").write_text(CALLEE.format(21))
+    monkeypatch.syspath_prepend(str(tmp_path / "studio"))
+    monkeypatch.setattr(kernels, "_PACKAGE", tmp_path / "studio")
+    assert doubled("part") == 42
+    (package / "callee.py").write_text(CALLEE.format(1000))
+    assert doubled("part") == 2000
+
+
+def test_that_only_files_with_kernels_count(tmp_path: Path) -> None:
+    (tmp_path / "plain.py").write_text("x = 1")
+    before = kernels.kernel_sources(tmp_path)
+    kernels.kernel_sources.cache_clear()
+    (tmp_path / "plain.py").write_text("x = 2")
+    assert kernels.kernel_sources(tmp_path) == before
+    kernels.kernel_sources.cache_clear()
+    (tmp_path / "fast.py").write_text("@kernel")
+    assert kernels.kernel_sources(tmp_path) != before
+
+
+def test_that_machine_code_is_kept_below_the_folder_that_the_user_has_set(cache_below: Path) -> None:
+    assert kernels._cache_folder(None).parent == cache_below  # type: ignore[union-attr]
+
+    @kernels.kernel
+    def one() -> int:
+        return 1
+
+    assert one() == 1
+    assert list(cache_below.rglob("*.nbc"))
+    assert str(cache_below) == numba.config.CACHE_DIR
+
+
+def test_that_folders_of_other_versions_go_when_nobody_has_used_them_for_long(cache_below: Path) -> None:
+    old, other, strange = (cache_below / name for name in ("core-" + "a" * 16, "core-" + "b" * 16, "mine"))
+    for folder in (old, other, strange):
+        folder.mkdir(parents=True)
+    long_ago = time.time() - (kernels.UNUSED_DAYS + 1) * 86_400
+    for folder in (old, strange):
+        os.utime(folder, (long_ago, long_ago))
+    kernels._cache_folder(None)
+    assert not old.exists()
+    assert other.exists()
+    assert strange.exists()
+
+
+def test_that_kernels_compile_where_nothing_can_be_written(cache_below: Path) -> None:
+    cache_below.touch()
+    assert kernels._cache_folder(None) is None
+
+    @kernels.kernel
+    def two() -> int:
+        return 2
+
+    assert two() == 2
