@@ -36,8 +36,8 @@ from regolith_studio.harmonics.fit import fit_harmonics
 from regolith_studio.harmonics.surface import reconstruct
 from regolith_studio.harmonics.synthesis import radii_on_icosphere
 from regolith_studio.imaging.extraction import extract_particles
-from regolith_studio.imaging.stl import stl_bytes
 from regolith_studio.imaging.synthetic_ct import ScanRecipe, synthetic_scan
+from regolith_studio.io.stl import stl_bytes
 from regolith_studio.readers.registry import read_mesh
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.shape_models.models import MODELS
@@ -76,7 +76,7 @@ def _reading(place: Path) -> Iterator[Contest]:
     for level in (4, 6):
         mesh = stone(level)
         path = place / f"stone-{level}.stl"
-        path.write_bytes(stl_bytes(mesh, "benchmark"))
+        path.write_bytes(stl_bytes(mesh.triangles, "benchmark"))
         yield Contest(
             "reading",
             f"STL of {len(mesh.faces):,} faces, guarded and repaired",

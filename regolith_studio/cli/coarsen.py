@@ -23,9 +23,9 @@ def coarsen(
     """Coarsen meshes to convex polyhedra that keep the chosen descriptors (section 2.4)."""
     from regolith_studio.cli.inputs import exit_code
     from regolith_studio.cli.terminal import complain, follow, print_json, print_table
+    from regolith_studio.io.atomic import staged_folder
     from regolith_studio.jobs.coarsening import coarsen_sample
     from regolith_studio.session.outputs.coarsening import coarsening_document, error_table, write_coarsening
-    from regolith_studio.session.outputs.staging import staged_folder
 
     wish = how.choices(preset, seed=seed, **fineness.changes)
     order = wish.order

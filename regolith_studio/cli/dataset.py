@@ -74,12 +74,12 @@ def build(
     from regolith_studio.cli.inputs import exit_code
     from regolith_studio.cli.terminal import complain, follow, print_json
     from regolith_studio.dataset.size_spec import parse_sizes
+    from regolith_studio.io.atomic import write_bytes
+    from regolith_studio.io.tables import csv_text
     from regolith_studio.jobs.building import DatasetOptions, build_dataset_folder, check_place
     from regolith_studio.jobs.representing import RepresentativesOrder, measure_population, measure_quality
     from regolith_studio.session.outputs.coarsening import coarsening_document
-    from regolith_studio.session.outputs.staging import write_bytes
     from regolith_studio.studies.representatives import quality_table
-    from regolith_studio.studies.tables import csv_text
 
     wish = how.choices(preset, seed=seed, **fineness.changes)
     with as_bad_use():
@@ -170,7 +170,7 @@ def sample(
     from regolith_studio.cli.terminal import print_json
     from regolith_studio.dataset.folder import read_dataset
     from regolith_studio.dataset.sample import drawn_csv, drawn_rows, sample_dataset
-    from regolith_studio.session.outputs.staging import write_bytes
+    from regolith_studio.io.atomic import write_bytes
 
     del jobs  # taken by every command
     dataset = read_dataset(folder)

@@ -10,8 +10,8 @@ from regolith_studio.cli.option_groups import ReadingOptions
 from regolith_studio.cli.options import Jobs, Json, Meshes, Seed
 
 if TYPE_CHECKING:
+    from regolith_studio.io.tables import Table
     from regolith_studio.session.results import ParticleEntry
-    from regolith_studio.studies.tables import Table
 
 Statistics = Annotated[
     bool,
@@ -93,8 +93,8 @@ def _as_rows(table: "Table") -> list[dict[str, Any]]:
 
 
 def _write_csv(path: Path, entries: "list[ParticleEntry]") -> None:
-    from regolith_studio.session.outputs.staging import write_bytes
+    from regolith_studio.io.atomic import write_bytes
+    from regolith_studio.io.tables import csv_text
     from regolith_studio.session.sample_table import sample_table
-    from regolith_studio.studies.tables import csv_text
 
     write_bytes(path, csv_text(sample_table(entries)).encode("utf-8"))

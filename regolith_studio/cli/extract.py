@@ -35,10 +35,10 @@ def extract(
     Writes one STL a particle, particles.csv and extraction.json with all settings.
     """
     from regolith_studio.cli.terminal import follow, print_json
+    from regolith_studio.io.atomic import staged_folder
     from regolith_studio.jobs.extracting import extract_measured
     from regolith_studio.jobs.grain_recipe import read_grain_recipe
     from regolith_studio.session.outputs.extraction import ExtractionFolder
-    from regolith_studio.session.outputs.staging import staged_folder
 
     del seed  # taken by every command; nothing here is random
     with as_bad_use():

@@ -34,8 +34,8 @@ def gallery(
     from regolith_studio.cli.picture import draw_apart
     from regolith_studio.cli.terminal import complain, follow, print_json
     from regolith_studio.harmonics.fit import HarmonicFit
+    from regolith_studio.io.atomic import staged_folder
     from regolith_studio.jobs.fitting import FIT_DEGREE, FitOrder, fit_sample
-    from regolith_studio.session.outputs.staging import staged_folder
 
     wanted = whole_numbers(degrees, 0, FIT_DEGREE)
     with as_bad_use():

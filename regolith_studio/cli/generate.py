@@ -85,9 +85,9 @@ def generate(
 ) -> None:
     """Draw virtual particles with the shapes and sizes of a sample (section 2.3)."""
     from regolith_studio.cli.terminal import complain, follow, print_json
+    from regolith_studio.io.atomic import staged_folder
     from regolith_studio.jobs.generating import GenerateOrder, draw, fit_model, groups_of
     from regolith_studio.session.choices import Choices
-    from regolith_studio.session.outputs.staging import staged_folder
     from regolith_studio.session.outputs.virtual import Generated, write_document
 
     with as_bad_use():

@@ -71,7 +71,8 @@ def measure(
     measurement = measure_repose(points, diameters, settings)
     document = {"file": str(file), "length_unit": "m"} | measurement_document(measurement)
     if output is not None:
-        from regolith_studio.session.outputs.staging import json_bytes, staged_folder
+        from regolith_studio.io.atomic import staged_folder
+        from regolith_studio.io.json_text import json_bytes
         from regolith_studio.studies.repose_figures import write_section_figure
 
         with staged_folder(output) as stage:

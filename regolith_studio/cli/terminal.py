@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 if TYPE_CHECKING:
+    from regolith_studio.io.tables import Table
     from regolith_studio.jobs.events import Steps
-    from regolith_studio.studies.tables import Table
 
 
 _SILENCE = 30.0
@@ -80,7 +80,7 @@ def print_json(document: Any) -> None:
 
 def print_table(table: "Table") -> None:
     """A table on stdout: words to the left, numbers to the right, two spaces between."""
-    from regolith_studio.studies.tables import rows_as_text
+    from regolith_studio.io.tables import rows_as_text
 
     lines = rows_as_text(table, digits=4)
     widths = [max(map(len, column)) for column in zip(*lines, strict=True)]

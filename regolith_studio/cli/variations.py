@@ -132,8 +132,8 @@ def conclude(kind: str, study: Callable[..., "Steps"], folder: Path, json: bool,
         Whether to go on with those that are there.
     """
     from regolith_studio.cli.terminal import follow, print_json, print_table
+    from regolith_studio.io.atomic import staged_folder
     from regolith_studio.jobs.answers import Answers
-    from regolith_studio.session.outputs.staging import staged_folder
     from regolith_studio.session.outputs.studies import STUDIES
 
     with Answers(folder / "journal" / f"{kind}.jsonl", resume) as answers:

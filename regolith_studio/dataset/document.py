@@ -18,18 +18,20 @@ from regolith_studio.dataset.dataset import (
 from regolith_studio.dataset.migrations import migrated
 from regolith_studio.dataset.schema import FORMAT, SCHEMA_VERSION, DatasetDocument, RepresentativeRecord
 from regolith_studio.dataset.size_distribution import Weighting
-from regolith_studio.dataset.strict_json import strict_json, tidy_json
-from regolith_studio.errors import DatasetError, RegolithError, of_the_entry
+from regolith_studio.errors import DatasetError, FileError, RegolithError, of_the_entry
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.particle import Source
-from regolith_studio.imaging.stl import stl_bytes
+from regolith_studio.io.json_text import canonical_json, parse_strict_json
+from regolith_studio.io.stl import stl_bytes
 
 
 def mesh_files(dataset: Dataset) -> dict[str, bytes]:
     """Relative path and content of the STL file of each representative, in order."""
     return {
-        mesh_path(index, len(dataset)): stl_bytes(representative.shape.mesh, mesh_header(index, len(dataset)))
+        mesh_path(index, len(dataset)): stl_bytes(
+            representative.shape.mesh.triangles, mesh_header(index, len(dataset))
+        )
         for index, representative in enumerate(dataset.representatives)
     }
 
@@ -62,7 +64,7 @@ def document_text(dataset: Dataset, files: dict[str, bytes]) -> str:
     ]
     content = frame_of(dataset.name, dataset.weighting, dataset.provenance) | {"representatives": records}
     try:
-        text = tidy_json(content)
+        text = canonical_json(content)
     except ValueError as error:
         raise DatasetError(f"The dataset cannot be written: {error}.") from error
     parsed_document(text, "The new dataset.json")
@@ -92,7 +94,10 @@ def parsed_document(text: str, where: str) -> DatasetDocument:
     DatasetError
         Naming the first place where it breaks the schema.
     """
-    content = strict_json(text, where)
+    try:
+        content = parse_strict_json(text, where)
+    except FileError as error:
+        raise DatasetError(str(error)) from error
     if not isinstance(content, dict) or content.get("format") != FORMAT:
         raise DatasetError(f"{where} is not a dataset of Regolith Studio: its format is not {FORMAT!r}.")
     text = migrated(content, text, where)

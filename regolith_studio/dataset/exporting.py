@@ -11,12 +11,12 @@ from typing import Any
 
 import regolith_studio
 from regolith_studio.dataset.dataset import Dataset
-from regolith_studio.dataset.disk import recovered, replace_folder
 from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest, ScriptTimes
 from regolith_studio.dataset.reading import UNASKED
 from regolith_studio.dataset.simulation_case import today_named
-from regolith_studio.dataset.strict_json import strict_json, tidy_json
-from regolith_studio.errors import DatasetError, InputError
+from regolith_studio.errors import DatasetError, FileError, InputError
+from regolith_studio.io.atomic import recover_folder, replace_folder
+from regolith_studio.io.json_text import canonical_json, parse_strict_json
 
 FORMAT = "regolith-studio-export"
 RECORD, README = "export.json", "README.txt"
@@ -169,7 +169,7 @@ def write_export(
     chosen, target = options or ExportOptions(), Path(folder).resolve()
     check_consent(exporter, accept_loss)
     try:
-        recovered(target)
+        recover_folder(target)
         _check_replaceable(target)
         content = _with_words(dataset, exporter, chosen, dataset_hash)
         replace_folder(target, content)
@@ -222,7 +222,7 @@ def _with_words(
         "files": {name: hashlib.sha256(data).hexdigest() for name, data in content.items()}
         | {README: hashlib.sha256(readme).hexdigest()},
     }
-    return content | {README: readme, RECORD: tidy_json(record).encode("utf-8")}
+    return content | {README: readme, RECORD: canonical_json(record).encode("utf-8")}
 
 
 def _readme(
@@ -275,8 +275,8 @@ def _names(settings: Any) -> set[str]:
 
 def _own_files(record: Path) -> set[str]:
     try:
-        content = strict_json(record.read_text(encoding="utf-8"), str(record))
-    except (OSError, UnicodeDecodeError, DatasetError):
+        content = parse_strict_json(record.read_text(encoding="utf-8"), str(record))
+    except (OSError, UnicodeDecodeError, FileError):
         return set()
     files = content.get("files") if isinstance(content, dict) else None
     if not isinstance(files, Mapping) or content.get("format") != FORMAT:

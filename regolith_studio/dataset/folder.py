@@ -4,7 +4,6 @@ import hashlib
 from pathlib import Path
 
 from regolith_studio.dataset.dataset import Dataset
-from regolith_studio.dataset.disk import recovered, replace_folder
 from regolith_studio.dataset.document import dataset_of, document_text, mesh_files
 from regolith_studio.dataset.reading import (
     DOCUMENT,
@@ -17,6 +16,7 @@ from regolith_studio.dataset.reading import (
 from regolith_studio.dataset.readme_text import readme_text
 from regolith_studio.dataset.validation import validate_dataset
 from regolith_studio.errors import DatasetError
+from regolith_studio.io.atomic import recover_folder, replace_folder
 
 __all__ = ["dataset_files", "read_dataset", "validate_dataset", "write_dataset"]
 
@@ -44,7 +44,7 @@ def write_dataset(folder: Path | str, dataset: Dataset, *, overwrite: bool = Tru
     target = Path(folder).resolve()
     files = dataset_files(dataset)
     try:
-        recovered(target)
+        recover_folder(target)
         check_replaceable(target, overwrite)
         replace_folder(target, files)
     except OSError as error:
@@ -68,7 +68,7 @@ def read_dataset(folder: Path | str) -> Dataset:
     DatasetError
         If the folder holds no dataset, or one that is broken, with the place named.
     """
-    target = recovered(real_path(folder))
+    target = recover_folder(real_path(folder))
     document = read_document(target)
     for record in document.representatives:
         if hashlib.sha256(read_mesh_bytes(target, record.mesh.file)).hexdigest() != record.mesh.sha256:

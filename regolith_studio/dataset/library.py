@@ -11,9 +11,9 @@ from regolith_studio.dataset.exporting import FORMAT as EXPORT_FORMAT
 from regolith_studio.dataset.exporting import RECORD
 from regolith_studio.dataset.reading import DOCUMENT, dataset_hash, read_document
 from regolith_studio.dataset.schema import CoarseningRecordModel, DatasetDocument
-from regolith_studio.dataset.strict_json import strict_json
 from regolith_studio.errors import DatasetError, RegolithError, reason_of
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.io.json_text import parse_strict_json
 
 RESULT = "repose.json"
 """What a simulated angle of repose is kept in."""
@@ -179,7 +179,7 @@ def _record(path: Path, format: str) -> dict[str, Any]:
             raise DatasetError(f"{path} is no regular file.")
         if path.stat().st_size > LARGEST_RECORD:
             raise DatasetError(f"{path} is larger than {LARGEST_RECORD // 1_000_000} MB.")
-        content = strict_json(path.read_text(encoding="utf-8"), str(path))
+        content = parse_strict_json(path.read_text(encoding="utf-8"), str(path))
     except OSError as error:
         raise DatasetError(f"{path} cannot be read: {reason_of(error)}.") from error
     if not isinstance(content, dict) or content.get("format") != format:

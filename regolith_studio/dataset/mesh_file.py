@@ -4,7 +4,7 @@ import numpy as np
 
 from regolith_studio.errors import DatasetError
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.imaging.stl import RECORD
+from regolith_studio.io.stl import stl_triangles
 
 
 def mesh_of_stl(content: bytes, where: str) -> Mesh:
@@ -15,11 +15,9 @@ def mesh_of_stl(content: bytes, where: str) -> Mesh:
     DatasetError
         If the bytes are no binary STL, or a coordinate is not finite.
     """
-    count = int.from_bytes(content[80:84], "little")
-    if len(content) < 84 or len(content) != 84 + RECORD.itemsize * count:
-        raise DatasetError(f"{where} is no complete binary STL.")
-    corners = np.frombuffer(content, dtype=RECORD, offset=84)["corners"].reshape(-1, 3).astype(np.float64)
-    if not np.isfinite(corners).all():
-        raise DatasetError(f"{where} holds a coordinate that is not finite.")
+    try:
+        corners = stl_triangles(content).reshape(-1, 3)
+    except ValueError as error:
+        raise DatasetError(f"{where} {error}.") from error
     vertices, index = np.unique(corners, axis=0, return_inverse=True)
     return Mesh(vertices, index.reshape(-1, 3))

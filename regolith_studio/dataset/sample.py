@@ -6,9 +6,9 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from regolith_studio.dataset.dataset import Dataset
-from regolith_studio.dataset.export_tables import csv_bytes
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
+from regolith_studio.io.tables import csv_bytes
 
 COLUMNS = ("class", "name", "diameter_um", "scale_um", "qw", "qx", "qy", "qz")
 """Of the table of drawn particles; `scale_um` is the factor from the unit-volume shape."""
@@ -83,4 +83,4 @@ def drawn_rows(dataset: Dataset, drawn: DrawnParticles) -> list[dict[str, object
 
 def drawn_csv(dataset: Dataset, drawn: DrawnParticles) -> bytes:
     """The same as comma-separated values."""
-    return csv_bytes(COLUMNS, (tuple(row.values()) for row in drawn_rows(dataset, drawn)))
+    return csv_bytes([COLUMNS, *(tuple(row.values()) for row in drawn_rows(dataset, drawn))])

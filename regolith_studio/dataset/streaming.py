@@ -20,17 +20,17 @@ from regolith_studio.dataset.build import (
     software_versions,
 )
 from regolith_studio.dataset.dataset import Provenance, Representative
-from regolith_studio.dataset.disk import recovered, replace_folder
 from regolith_studio.dataset.document import frame_of, mesh_header, mesh_path, parsed_document, record_of
 from regolith_studio.dataset.folder import check_replaceable
 from regolith_studio.dataset.reading import DOCUMENT, LARGEST_DOCUMENT, README
 from regolith_studio.dataset.readme_text import README as README_TEXT
 from regolith_studio.dataset.schema import RepresentativeRecord
 from regolith_studio.dataset.size_distribution import normalised_shares
-from regolith_studio.dataset.strict_json import tidy_json
 from regolith_studio.errors import DatasetError, InputError
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.imaging.stl import stl_bytes
+from regolith_studio.io.atomic import recover_folder, replace_folder
+from regolith_studio.io.json_text import canonical_json
+from regolith_studio.io.stl import stl_bytes
 
 _HEADER = 80
 _PLACE = "representatives"
@@ -59,7 +59,7 @@ def stored_shape(particle: Particle, coarsened: CoarsenedShape) -> StoredShape:
     representative: Representative = representative_of(
         particle.name, particle, coarsened, own_class(particle)
     )
-    mesh = stl_bytes(representative.shape.mesh, mesh_header(0, 1))
+    mesh = stl_bytes(representative.shape.mesh.triangles, mesh_header(0, 1))
     return StoredShape(record_of(representative, mesh_path(0, 1), mesh), mesh)
 
 
@@ -106,7 +106,7 @@ def write_stored(
     target = Path(folder).resolve()
     story = provenance if provenance.software else _with_software(provenance)
     try:
-        recovered(target)
+        recover_folder(target)
         check_replaceable(target, overwrite)
         replace_folder(target, _files(shapes, count, name, story))
     except OSError as error:
@@ -150,7 +150,7 @@ def _document(records: Iterable[dict[str, Any]], name: str, provenance: Provenan
     """``dataset.json`` piece by piece; the frame is checked with the first record in it."""
     frame = frame_of(name, "number", provenance)
     try:
-        before, after = tidy_json(frame | {_PLACE: ""}).split(f'\n  "{_PLACE}": ""')
+        before, after = canonical_json(frame | {_PLACE: ""}).split(f'\n  "{_PLACE}": ""')
     except ValueError as error:
         raise DatasetError(f"The dataset cannot be written: {error}.") from error
     yield f'{before}\n  "{_PLACE}": ['.encode()
@@ -158,8 +158,8 @@ def _document(records: Iterable[dict[str, Any]], name: str, provenance: Provenan
     for index, record in enumerate(records):
         if index == 0:
             alone = frame | {_PLACE: [{**record, "weight": 1.0}]}
-            parsed_document(tidy_json(alone), "The new dataset.json")
-        text = tidy_json(record).rstrip("\n").replace("\n", "\n    ")
+            parsed_document(canonical_json(alone), "The new dataset.json")
+        text = canonical_json(record).rstrip("\n").replace("\n", "\n    ")
         piece = f"{',' if index else ''}\n    {text}".encode()
         size += len(piece)
         if size > LARGEST_DOCUMENT:

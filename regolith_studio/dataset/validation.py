@@ -6,7 +6,6 @@ from pathlib import Path
 import numpy as np
 
 from regolith_studio.dataset.dataset import SHAPE_TOLERANCE
-from regolith_studio.dataset.disk import recovered
 from regolith_studio.dataset.document import dataset_of, shape_of
 from regolith_studio.dataset.mesh_file import mesh_of_stl
 from regolith_studio.dataset.reading import (
@@ -22,6 +21,7 @@ from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.edges import edge_table
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.io.atomic import recover_folder
 
 FLOAT32_TOLERANCE = 1e-6
 """How far an STL's coordinates may be from the exact shape: float32 at a size of about 1."""
@@ -34,7 +34,7 @@ def validate_dataset(folder: Path | str) -> list[str]:
     every hash, and every shape: closed, convex, as many facets as stated, unit volume, centroid at
     the origin, and the same solid in the STL as in the half-spaces.
     """
-    target = recovered(real_path(folder))
+    target = recover_folder(real_path(folder))
     try:
         document = read_document(target)
         problems = [f"{name} does not belong to the dataset." for name in foreign_files(target, document)]

@@ -1,7 +1,6 @@
 """The folder of a run: snapshots while it goes, ``repose.json`` and ``final.npz`` at its end."""
 
 import io
-import json
 import os
 import shutil
 from dataclasses import dataclass
@@ -10,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from regolith_studio.dataset.strict_json import strict_json, tidy_json
 from regolith_studio.dem.case import Prepared
 from regolith_studio.dem.pile import Pile, pile_bytes
-from regolith_studio.errors import DatasetError, FileError
+from regolith_studio.errors import FileError
 from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.io.json_text import canonical_json, parse_strict_json
 
 FORMAT = "regolith-studio-repose"
 SCHEMA_VERSION = 1
@@ -85,7 +84,7 @@ def save_ending(folder: Path, document: dict[str, Any], final: Pile | None) -> N
     try:
         if final is not None:
             _write(folder / FINAL, pile_bytes(final))
-        _write(folder / DOCUMENT, tidy_json(document).encode("utf-8"))
+        _write(folder / DOCUMENT, canonical_json(document).encode("utf-8"))
     except OSError as error:
         raise FileError(f"The result could not be written to {folder} ({error.strerror}).") from error
 
@@ -120,8 +119,8 @@ def read_run(folder: Path) -> RunSummary:
     """
     path = folder / DOCUMENT
     try:
-        document = strict_json(path.read_text("utf-8"), str(path))
-    except (OSError, UnicodeDecodeError, DatasetError, json.JSONDecodeError) as error:
+        document = parse_strict_json(path.read_text("utf-8"), str(path))
+    except (OSError, UnicodeDecodeError, FileError) as error:
         raise FileError(f"{folder} holds no result of a run.") from error
     if not isinstance(document, dict) or document.get("format") != FORMAT:
         raise FileError(f"{path} is no result of a run of this program.")

@@ -13,9 +13,9 @@ import numpy as np
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.imaging.grains import AgglutinateRecipe, Recipe, StarRecipe
 from regolith_studio.imaging.sample_volumes import tiff_bytes
-from regolith_studio.imaging.stl import stl_bytes
 from regolith_studio.imaging.synthetic_ct import ScanRecipe, synthetic_scan
 from regolith_studio.imaging.volume import Volume
+from regolith_studio.io.stl import stl_bytes
 
 SEED = 2026
 """Root of all shipped samples; each takes ``SeedSequence(SEED, spawn_key=(its variant,))``."""
@@ -196,7 +196,7 @@ def _write_volume(folder: Path, scan: str, volume: Volume, description: str) -> 
 
 def _write_grain(folder: Path, grain: SampleGrain) -> dict[str, Any]:
     mesh = grain.mesh()
-    content = stl_bytes(mesh, f"regolith-studio sample {grain.name}, unit um")
+    content = stl_bytes(mesh.triangles, f"regolith-studio sample {grain.name}, unit um")
     name = f"particles/{grain.name}.stl"
     (folder / name).write_bytes(content)
     return {

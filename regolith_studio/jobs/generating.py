@@ -11,7 +11,7 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.surface import DEFAULT_LEVEL
-from regolith_studio.imaging.stl import stl_bytes
+from regolith_studio.io.stl import stl_bytes
 from regolith_studio.jobs.batch import value_of
 from regolith_studio.jobs.crew import Crew, hired
 from regolith_studio.jobs.events import Job, Progress, Started, Steps
@@ -243,6 +243,6 @@ def _write_some(draws: Draws, groups: tuple[str, ...], level: int, folder: Path,
     yield Started("Writing particles", len(draws))
     facts = []
     for particle in particles_of(draws, groups, level, first):
-        (folder / f"{particle.name}.stl").write_bytes(stl_bytes(particle.mesh, STL_HEADER))
+        (folder / f"{particle.name}.stl").write_bytes(stl_bytes(particle.mesh.triangles, STL_HEADER))
         facts.append(examine(particle))
     return tuple(facts)

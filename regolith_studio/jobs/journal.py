@@ -12,8 +12,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Self
 
-from regolith_studio.dataset.disk import sync_folder
 from regolith_studio.errors import FileError
+from regolith_studio.io.atomic import sync_folder
 
 FORMAT = "regolith-studio journal"
 

@@ -13,8 +13,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from regolith_studio.dataset.disk import sync_folder
 from regolith_studio.errors import FileError
+from regolith_studio.io.atomic import sync_folder
 
 RECORDS = "records.jsonl"
 

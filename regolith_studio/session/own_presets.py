@@ -7,7 +7,7 @@ from typing import Any
 from pydantic import BaseModel, Field, ValidationError
 
 from regolith_studio.errors import InputError
-from regolith_studio.session.outputs.staging import write_bytes
+from regolith_studio.io.atomic import write_bytes
 from regolith_studio.session.preferences import preferences_path
 
 LONGEST_NAME = 40

@@ -19,6 +19,7 @@ from regolith_studio.dataset.build import software_versions
 from regolith_studio.dataset.streaming import check_count, write_stored
 from regolith_studio.errors import FileError, RegolithError
 from regolith_studio.geometry.particle import Particle
+from regolith_studio.io.atomic import staged_folder, write_bytes
 from regolith_studio.jobs.answers import Answers
 from regolith_studio.jobs.building import story
 from regolith_studio.jobs.chunked import JOURNAL, LOST, Batch, work_through
@@ -45,7 +46,6 @@ from regolith_studio.session.batch.standing import build_standing, check_standin
 from regolith_studio.session.batch.working import Wish, work_on
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.outputs.extraction import RECIPE as EXTRACTION
-from regolith_studio.session.outputs.staging import staged_folder, write_bytes
 from regolith_studio.session.outputs.studies import STUDIES
 from regolith_studio.session.outputs.summary import Summary, write_summary
 from regolith_studio.session.recipe import Recipe

@@ -10,10 +10,10 @@ from regolith_studio.descriptors.distributions import distribution
 from regolith_studio.descriptors.zingg import zingg_class
 from regolith_studio.errors import InputError
 from regolith_studio.imaging.extraction import is_remark
+from regolith_studio.io.tables import Column, Table
 from regolith_studio.jobs.examining import Examined
 from regolith_studio.session.outputs.descriptors import descriptor_table
 from regolith_studio.session.results import ParticleEntry
-from regolith_studio.studies.tables import Column, Table
 
 UNITS = {0: "", 1: "um", 2: "um^2", 3: "um^3", 5: "um^5"}
 QUANTILES = (0.1, 0.5, 0.9)

@@ -23,9 +23,9 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.fit import DEFAULT_FIT_OPTIONS, FitOptions
 from regolith_studio.harmonics.surface import reconstruct
+from regolith_studio.io.tables import Column, Table
 from regolith_studio.studies.loss_rows import StudyRow, paper_rows
 from regolith_studio.studies.progress import StudyProgress
-from regolith_studio.studies.tables import Column, Table
 
 COLUMNS = (*LOSS_KEYS, JACCARD)
 """Columns of the errors: the descriptors of Eq. 8 and the distance of Eq. 7."""

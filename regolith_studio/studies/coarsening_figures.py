@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 
 from regolith_studio.coarsening.weights import JACCARD, WEIGHT_KEYS
 from regolith_studio.descriptors.catalogue import CATALOGUE
+from regolith_studio.io.tables import write_table
 from regolith_studio.studies.coarsening import (
     COLUMNS,
     LEAST_DRAWN,
@@ -15,7 +16,6 @@ from regolith_studio.studies.coarsening import (
     rmsre_table,
 )
 from regolith_studio.studies.figure_files import with_subscript, write_figure
-from regolith_studio.studies.tables import write_table
 
 PAPER_SYMBOLS = {JACCARD: "IoU"}
 

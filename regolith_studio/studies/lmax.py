@@ -18,8 +18,8 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.fit import DEFAULT_FIT_OPTIONS, FitOptions, HarmonicFit
 from regolith_studio.harmonics.surface import DEFAULT_LEVEL, gallery
+from regolith_studio.io.tables import Column, Table
 from regolith_studio.studies.progress import StudyProgress
-from regolith_studio.studies.tables import Column, Table
 
 DEFAULT_DEGREES = tuple(range(1, 21))
 N_RESAMPLES = 1000

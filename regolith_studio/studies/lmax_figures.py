@@ -7,9 +7,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
+from regolith_studio.io.tables import write_table
 from regolith_studio.studies.figure_files import with_subscript, write_figure
 from regolith_studio.studies.lmax import LmaxStudy, particle_table, rmsre_table
-from regolith_studio.studies.tables import write_table
 
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
 """Okabe and Ito's palette, which most colour-blind people can tell apart."""

@@ -13,6 +13,7 @@ from scipy.stats import gaussian_kde
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.io.tables import write_table
 from regolith_studio.shape_models.models import MODELS
 from regolith_studio.studies.figure_files import write_figure
 from regolith_studio.studies.population import PopulationStudy
@@ -23,7 +24,6 @@ from regolith_studio.studies.population_tables import (
     ranking_table,
     target_table,
 )
-from regolith_studio.studies.tables import write_table
 
 COLOURS = ("#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
 """Okabe and Ito's palette; the measured sample is black and grey."""

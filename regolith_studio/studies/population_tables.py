@@ -4,9 +4,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from regolith_studio.io.tables import Column, Table
 from regolith_studio.studies.population import N_FLOOR_SPLITS, JudgedModel, PopulationStudy
 from regolith_studio.studies.population_distances import CONFIDENCE, N_RESAMPLES, WEIGHTINGS
-from regolith_studio.studies.tables import Column, Table
 
 PERCENTAGES = (
     "wasserstein",

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from regolith_studio.io.tables import Cell, Column, Table, write_table
 from regolith_studio.studies.figure_files import write_figure
-from regolith_studio.studies.tables import Cell, Column, Table, write_table
 
 COLUMNS = (
     Column("varied"),

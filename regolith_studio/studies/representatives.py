@@ -1,7 +1,7 @@
 """How many representatives are enough, as a table: one row a number, the noise of the population last."""
 
 from regolith_studio.dataset.quality import QualityCurve
-from regolith_studio.studies.tables import Column, Table
+from regolith_studio.io.tables import Column, Table
 
 
 def quality_table(curve: QualityCurve) -> Table:

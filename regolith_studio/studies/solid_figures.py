@@ -9,9 +9,9 @@ from matplotlib.figure import Figure
 
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.io.tables import write_table
 from regolith_studio.studies.figure_files import write_figure
 from regolith_studio.studies.solid_study import SolidStudy, StudiedSolid, solid_table
-from regolith_studio.studies.tables import write_table
 
 VIEW = np.array([[-0.5, 0.866, 0.0], [-0.296, -0.171, 0.94], [0.814, 0.47, 0.342]])
 """Rows: to the right, up, and towards the eye."""

@@ -11,7 +11,7 @@ from regolith_studio.coarsening.weights import JACCARD
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
-from regolith_studio.studies.tables import Cell, Column, Table
+from regolith_studio.io.tables import Cell, Column, Table
 
 
 @dataclass(frozen=True, eq=False)

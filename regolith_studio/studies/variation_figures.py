@@ -7,10 +7,10 @@ import numpy as np
 from matplotlib.colors import TwoSlopeNorm
 from matplotlib.figure import Figure
 
+from regolith_studio.io.tables import write_table
 from regolith_studio.studies.coarsening import COLUMNS, CoarseningStudy, particle_table
 from regolith_studio.studies.coarsening_figures import column_symbol, facet_count_figure
 from regolith_studio.studies.figure_files import write_figure
-from regolith_studio.studies.tables import write_table
 from regolith_studio.studies.variations import (
     VARIATIONS,
     beyond_chance,

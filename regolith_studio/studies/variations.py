@@ -11,6 +11,7 @@ from regolith_studio.coarsening.weights import JACCARD
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.io.tables import Column, Table
 from regolith_studio.studies.coarsening import COLUMNS, CoarseningStudy, rmsre_table, study_notes
 from regolith_studio.studies.loss_rows import (
     CHANGE_FACTORS,
@@ -22,7 +23,6 @@ from regolith_studio.studies.loss_rows import (
     sensitivity_rows,
     tradeoff_rows,
 )
-from regolith_studio.studies.tables import Column, Table
 
 
 @dataclass(frozen=True)

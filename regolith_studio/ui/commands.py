@@ -10,10 +10,10 @@ from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import QDialog, QFileDialog, QWidget
 
 from regolith_studio.errors import RegolithError
+from regolith_studio.io.atomic import write_bytes
 from regolith_studio.session.bringing import MOST
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.opening import FileKind, kind_of_all
-from regolith_studio.session.outputs.staging import write_bytes
 from regolith_studio.session.plan import Kind
 from regolith_studio.session.portrait import Portrait
 from regolith_studio.session.preferences import Preferences

@@ -11,7 +11,7 @@ from benchmarks.contests import Contest, Growth, Outcome
 from benchmarks.descriptors import by_trimesh, polyhedron, stone
 from regolith_studio.dem.repose import measure_repose
 from regolith_studio.descriptors.describe import describe
-from regolith_studio.imaging.stl import stl_bytes
+from regolith_studio.io.stl import stl_bytes
 from regolith_studio.shape_models.models import MODELS
 from regolith_studio.shape_models.sample import Sample
 
@@ -88,7 +88,7 @@ def test_that_the_plain_reader_and_writer_keep_the_volume(tmp_path: Path) -> Non
     planes = shape.half_spaces
     plain.write_dataset(tmp_path, [(shape.mesh.vertices, shape.mesh.faces, planes.normals, planes.offsets)])
     assert abs(plain.read(tmp_path / "meshes" / "particle_0000.stl").volume) == pytest.approx(1.0, abs=1e-5)
-    (tmp_path / "stone.stl").write_bytes(stl_bytes(stone(2), "test"))
+    (tmp_path / "stone.stl").write_bytes(stl_bytes(stone(2).triangles, "test"))
     assert plain.read(tmp_path / "stone.stl").volume == pytest.approx(stone(2).volume, rel=1e-5)
 
 

@@ -11,7 +11,7 @@ import pytest
 from regolith_studio.cli.entry import run
 from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.imaging.stl import stl_bytes
+from regolith_studio.io.stl import stl_bytes
 
 AXES = {"grain-a": (30.0, 20.0, 15.0), "grain-b": (22.0, 21.0, 20.0), "grain-c": (40.0, 25.0, 12.0)}
 
@@ -26,7 +26,7 @@ def grains(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with three ellipsoids as STL."""
     folder = tmp_path_factory.mktemp("grains")
     for name, axes in AXES.items():
-        (folder / f"{name}.stl").write_bytes(stl_bytes(ellipsoid(*axes), "test"))
+        (folder / f"{name}.stl").write_bytes(stl_bytes(ellipsoid(*axes).triangles, "test"))
     return folder
 
 

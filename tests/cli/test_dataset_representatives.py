@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from regolith_studio.dataset.folder import read_dataset
-from regolith_studio.imaging.stl import stl_bytes
+from regolith_studio.io.stl import stl_bytes
 
 from .conftest import ellipsoid
 
@@ -20,7 +20,7 @@ def crowd(tmp_path_factory: pytest.TempPathFactory) -> Path:
         long = 1.0 if index < 6 else 3.0
         size = 10.0 + index
         (folder / f"grain-{index}.stl").write_bytes(
-            stl_bytes(ellipsoid(size * long, size * (1.02 + index / 100), size), "test")
+            stl_bytes(ellipsoid(size * long, size * (1.02 + index / 100), size).triangles, "test")
         )
     return folder
 

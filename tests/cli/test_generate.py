@@ -10,7 +10,7 @@ import trimesh
 
 from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.imaging.stl import stl_bytes
+from regolith_studio.io.stl import stl_bytes
 
 
 def rows_of(path: Path) -> list[dict[str, str]]:
@@ -29,7 +29,7 @@ def ellipsoids(tmp_path_factory: pytest.TempPathFactory) -> Path:
         turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
         turn *= np.linalg.det(turn)
         body = Mesh(sphere.vertices * axes @ turn.T, sphere.faces)
-        (folder / f"grain-{number:02d}.stl").write_bytes(stl_bytes(body, "test"))
+        (folder / f"grain-{number:02d}.stl").write_bytes(stl_bytes(body.triangles, "test"))
     return folder
 
 

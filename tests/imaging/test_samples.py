@@ -12,7 +12,6 @@ import tifffile
 
 from regolith_studio.imaging.sample_volumes import sample_volume
 from regolith_studio.imaging.samples import GRAINS, SCANS, SEED, write_samples
-from regolith_studio.imaging.stl import RECORD, stl_bytes
 from regolith_studio.imaging.synthetic_ct import ScanRecipe, synthetic_scan
 from regolith_studio.resources import resource
 
@@ -80,19 +79,3 @@ def test_that_the_command_refuses_to_guess_a_folder() -> None:
     )
     assert run.returncode == 2
     assert "FOLDER" in run.stderr
-
-
-def test_that_stl_bytes_hold_outward_unit_normals_and_the_corners() -> None:
-    mesh = GRAINS[0].mesh()
-    content = stl_bytes(mesh, "a header")
-    assert len(content) == 84 + 50 * len(mesh.faces)
-    assert int.from_bytes(content[80:84], "little") == len(mesh.faces)
-    records = np.frombuffer(content[84:], dtype=RECORD)
-    assert np.linalg.norm(records["normal"], axis=1) == pytest.approx(1.0, abs=1e-6)
-    assert np.abs(records["corners"] - mesh.triangles).max() < 1e-5
-
-
-@pytest.mark.parametrize("header", ["solid body", "x" * 81, "µm"])
-def test_that_headers_which_readers_would_misread_are_refused(header: str) -> None:
-    with pytest.raises(ValueError, match="STL header"):
-        stl_bytes(GRAINS[0].mesh(), header)

@@ -12,7 +12,7 @@ from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.fit import fit_harmonics
-from regolith_studio.imaging.stl import stl_bytes
+from regolith_studio.io.stl import stl_bytes
 from regolith_studio.jobs.building import DatasetOptions, build_dataset_folder
 from regolith_studio.jobs.coarsening import CoarseningOrder, coarsen_one, coarsen_sample
 from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
@@ -38,7 +38,7 @@ def played(steps: Steps) -> tuple[list[Step], Any]:
 
 def test_that_a_story_begins_with_its_title_and_counts_to_its_end(tmp_path: Path) -> None:
     for name in ("b", "a"):
-        (tmp_path / f"{name}.stl").write_bytes(stl_bytes(GRAIN, "test"))
+        (tmp_path / f"{name}.stl").write_bytes(stl_bytes(GRAIN.triangles, "test"))
     heard, loaded = played(load_particles([tmp_path]))
     assert heard[0] == Started("Reading particles", 2)
     assert heard[-1] == Progress(2, 2, "b.stl")
@@ -52,7 +52,7 @@ def test_that_loading_nothing_is_an_error_with_the_first_sentence(tmp_path: Path
 
 def test_that_an_empty_folder_does_not_hide_the_others(tmp_path: Path) -> None:
     (tmp_path / "empty").mkdir()
-    (tmp_path / "a.stl").write_bytes(stl_bytes(GRAIN, "test"))
+    (tmp_path / "a.stl").write_bytes(stl_bytes(GRAIN.triangles, "test"))
     _, loaded = played(load_particles([tmp_path / "empty", tmp_path / "a.stl"]))
     assert len(loaded.particles) == 1
     assert len(loaded.problems) == 1

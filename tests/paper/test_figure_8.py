@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from regolith_studio.geometry.particle import Particle
+from regolith_studio.io.tables import rows_as_text
 from regolith_studio.readers.registry import read_mesh
 from regolith_studio.studies.coarsening import (
     COLUMNS,
@@ -16,7 +17,6 @@ from regolith_studio.studies.coarsening import (
     rmsre_table,
 )
 from regolith_studio.studies.loss_rows import paper_rows
-from regolith_studio.studies.tables import rows_as_text
 
 pytestmark = [pytest.mark.slow, pytest.mark.real_data]
 N_PARTICLES = 12

@@ -19,7 +19,7 @@ from regolith_studio.dataset.folder import validate_dataset
 from regolith_studio.errors import FileError, InputError
 from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.imaging.stl import stl_bytes
+from regolith_studio.io.stl import stl_bytes
 from regolith_studio.jobs.events import Progress, Started
 from regolith_studio.session.performing import Performed, perform
 from regolith_studio.session.recipe import Recipe, recipe_of
@@ -36,7 +36,7 @@ def grains(tmp_path_factory: pytest.TempPathFactory) -> Path:
     sphere = icosphere(3)
     for index in range(9):
         axes = np.random.default_rng(index).uniform(10, 30, 3)
-        content = stl_bytes(Mesh(sphere.vertices * axes, sphere.faces), "test")
+        content = stl_bytes(Mesh(sphere.vertices * axes, sphere.faces).triangles, "test")
         (folder / f"grain-{index}.stl").write_bytes(content)
     (folder / "broken.stl").write_bytes(b"solid nothing")
     return folder

@@ -13,7 +13,7 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings
 from regolith_studio.imaging.segmentation.splitting import SplittingSettings
-from regolith_studio.imaging.stl import stl_bytes
+from regolith_studio.io.stl import stl_bytes
 from regolith_studio.jobs.extracting import ExtractionSettings, VolumeInput, extract_file, extract_labels
 from regolith_studio.jobs.generating import GenerateOrder, make_particles
 from regolith_studio.jobs.grain_recipe import GrainRecipe
@@ -70,7 +70,7 @@ def write_grains(folder: Path, *names: str, size: float = 12.0) -> Path:
     sphere = icosphere(3)
     for index, name in enumerate(names):
         axes = np.random.default_rng(len(folder.name) + index).uniform(size, 2 * size, 3)
-        (folder / name).write_bytes(stl_bytes(Mesh(sphere.vertices * axes, sphere.faces), "test"))
+        (folder / name).write_bytes(stl_bytes(Mesh(sphere.vertices * axes, sphere.faces).triangles, "test"))
     return folder
 
 
@@ -100,7 +100,7 @@ def test_that_meshes_mended_and_left_as_they_are_are_the_same_in_a_run(
     two = np.vstack([icosphere(2).vertices, 0.2 * icosphere(2).vertices + [2.0, 0.0, 0.0]])
     faces = np.vstack([icosphere(2).faces, icosphere(2).faces + len(icosphere(2).vertices)])
     path = tmp_path / "two.stl"
-    path.write_bytes(stl_bytes(Mesh(two, faces), "test"))
+    path.write_bytes(stl_bytes(Mesh(two, faces).triangles, "test"))
     session.open([path])
     session.choose(repair=False)
     session.open([path], add=True)

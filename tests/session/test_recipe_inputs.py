@@ -12,7 +12,7 @@ from regolith_studio.errors import FileError, InputError, RegolithError
 from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.harmonics.fit import fit_harmonics
-from regolith_studio.imaging.stl import stl_bytes
+from regolith_studio.io.stl import stl_bytes
 from regolith_studio.jobs.events import Progress, Started
 from regolith_studio.jobs.extracting import VolumeInput, extract_file
 from regolith_studio.jobs.grain_recipe import GrainRecipe
@@ -59,7 +59,7 @@ def grains(tmp_path: Path) -> Path:
     for index in range(6):
         axes = np.random.default_rng(index).uniform(10, 30, 3)
         mesh = Mesh(sphere.vertices * axes * (1 + 0.1 * sphere.vertices[:, :1] ** 3), sphere.faces)
-        (folder / f"grain-{index}.stl").write_bytes(stl_bytes(mesh, "test"))
+        (folder / f"grain-{index}.stl").write_bytes(stl_bytes(mesh.triangles, "test"))
     return folder
 
 

@@ -9,7 +9,7 @@ import pytest
 from regolith_studio.cli.entry import run
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.geometry.directions import icosphere
-from regolith_studio.imaging.stl import stl_bytes
+from regolith_studio.io.stl import stl_bytes
 from regolith_studio.jobs.runners.inline import InlineRunner
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.project import Project, input_shown, inputs_of, read_project, without_file
@@ -23,7 +23,7 @@ CHOICES = Choices(method="quadric", level=2, l_max=4, n_facets=14, seed=3)
 @pytest.fixture
 def grain(tmp_path: Path) -> Path:
     path = tmp_path / "a grain.stl"
-    path.write_bytes(stl_bytes(icosphere(3).moved(scale=12.0), "test"))
+    path.write_bytes(stl_bytes(icosphere(3).moved(scale=12.0).triangles, "test"))
     return path
 
 

@@ -14,7 +14,7 @@ from regolith_studio.dataset.folder import read_dataset
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.imaging.stl import stl_bytes
+from regolith_studio.io.stl import stl_bytes
 from regolith_studio.jobs.building import DatasetOptions
 from regolith_studio.jobs.runners.inline import InlineRunner
 from regolith_studio.jobs.runners.thread import ThreadRunner
@@ -35,7 +35,7 @@ def ellipsoid(a: float, b: float, c: float) -> Mesh:
 def grains(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("grains")
     for number, axes in enumerate([(30, 20, 15), (22, 21, 20), (40, 25, 12)]):
-        (folder / f"grain-{number}.stl").write_bytes(stl_bytes(ellipsoid(*axes), "test"))
+        (folder / f"grain-{number}.stl").write_bytes(stl_bytes(ellipsoid(*axes).triangles, "test"))
     return folder
 
 

@@ -14,7 +14,7 @@ import typer.main
 from regolith_studio.cli.commands import app
 from regolith_studio.cli.entry import run
 from regolith_studio.harmonics.fit import fit_harmonics
-from regolith_studio.imaging.stl import stl_bytes
+from regolith_studio.io.stl import stl_bytes
 from regolith_studio.readers.sample import sample_particles
 from regolith_studio.session.recipe import Recipe
 
@@ -61,9 +61,9 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     grains.mkdir()
     meshes = {each.name: each.mesh for each in sample_particles()[:2]}
     for name, mesh in meshes.items():
-        (grains / f"{name}.stl").write_bytes(stl_bytes(mesh, name))
+        (grains / f"{name}.stl").write_bytes(stl_bytes(mesh.triangles, name))
     first = next(iter(meshes.values()))
-    (tmp_path / "grain.stl").write_bytes(stl_bytes(first, "grain"))
+    (tmp_path / "grain.stl").write_bytes(stl_bytes(first.triangles, "grain"))
     (tmp_path / "grain.anm").write_text(table(fit_harmonics(first, l_max=4).coefficients.values))
     with h5py.File(tmp_path / "scan.h5", "w") as file:
         file["exported_data"] = np.zeros((256, 256, 256), dtype=np.uint8)

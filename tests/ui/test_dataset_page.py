@@ -14,7 +14,7 @@ from regolith_studio.dataset.folder import read_dataset, validate_dataset
 from regolith_studio.dataset.reading import dataset_hash
 from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.imaging.stl import stl_bytes
+from regolith_studio.io.stl import stl_bytes
 from regolith_studio.jobs.runners.inline import InlineRunner
 from regolith_studio.session.performing import perform
 from regolith_studio.session.recipe import Recipe, read_recipe
@@ -308,7 +308,7 @@ def test_that_a_saved_recipe_makes_the_dataset_and_the_exports_of_the_page(
     page, wait, tmp_path, monkeypatch
 ) -> None:
     for grain in grains():
-        (tmp_path / f"{grain.name}.stl").write_bytes(stl_bytes(grain.mesh, "test"))
+        (tmp_path / f"{grain.name}.stl").write_bytes(stl_bytes(grain.mesh.triangles, "test"))
     page.session.open(sorted(tmp_path.glob("*.stl")), "um")
     saved = tmp_path / "recipe.json"
     monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (str(saved), ""))
@@ -338,7 +338,7 @@ def test_that_a_saved_recipe_makes_the_dataset_and_the_exports_of_the_page(
 
 def test_that_a_recipe_that_is_opened_sets_the_controls(page, wait, tmp_path) -> None:
     for grain in grains():
-        (tmp_path / f"{grain.name}.stl").write_bytes(stl_bytes(grain.mesh, "test"))
+        (tmp_path / f"{grain.name}.stl").write_bytes(stl_bytes(grain.mesh.triangles, "test"))
     said = Recipe(
         inputs=sorted(str(path) for path in tmp_path.glob("*.stl")),
         representatives=Representatives(count=6, weighting="volume", sizes="classes:30,60", name="six"),

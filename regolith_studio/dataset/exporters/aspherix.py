@@ -7,7 +7,7 @@ from regolith_studio.dataset.export_tables import shape_names, sizes_csv
 from regolith_studio.dataset.exporting import NOTES, Exporter, ExportOptions
 from regolith_studio.dataset.simulation_case import MICROMETRE
 from regolith_studio.dataset.size_classes import size_classes
-from regolith_studio.imaging.stl import stl_bytes
+from regolith_studio.io.stl import stl_bytes
 
 _NOTE = b"""templates.asx: one particle_template for each class and size, its share of the mass behind it as a
 comment. Include it in an input script after the materials and hand the templates to an insertion
@@ -18,7 +18,7 @@ examples, and these files were not run by it. LIGGGHTS-PUBLIC has no convex part
 def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
     keys = shape_names(dataset)
     files = {
-        f"meshes/{key}.stl": stl_bytes(one.shape.mesh, f"regolith-studio unit-volume {key}")
+        f"meshes/{key}.stl": stl_bytes(one.shape.mesh.triangles, f"regolith-studio unit-volume {key}")
         for key, one in zip(keys, dataset.representatives, strict=True)
     }
     to_metres = options.coarse_graining_factor * MICROMETRE * (np.pi / 6) ** (1 / 3)

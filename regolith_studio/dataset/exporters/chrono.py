@@ -7,8 +7,8 @@ from regolith_studio.dataset.export_tables import shape_names, sizes_csv
 from regolith_studio.dataset.exporting import NOTES, Exporter, ExportOptions
 from regolith_studio.dataset.simulation_case import MICROMETRE
 from regolith_studio.dataset.size_classes import size_classes
-from regolith_studio.dataset.strict_json import tidy_json
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.io.json_text import canonical_json
 
 _NOTE = b"""meshes/*.obj are closed, outward, of volume 1, centroid at the origin, principal axes x, y, z.
 A particle of scale s (particles.json, metres) at density rho has mass rho s^3 and principal moments
@@ -52,7 +52,7 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
         },
         "shapes": records,
     }
-    tables = {"particles.json": tidy_json(content).encode("utf-8"), "sizes.csv": sizes_csv(dataset)}
+    tables = {"particles.json": canonical_json(content).encode("utf-8"), "sizes.csv": sizes_csv(dataset)}
     return files | tables | {NOTES: _NOTE}
 
 

@@ -3,9 +3,10 @@
 import numpy as np
 
 from regolith_studio.dataset.dataset import Dataset
-from regolith_studio.dataset.export_tables import csv_bytes, shape_names, sizes_csv
+from regolith_studio.dataset.export_tables import shape_names, sizes_csv
 from regolith_studio.dataset.exporting import NOTES, Exporter, ExportOptions
-from regolith_studio.dataset.strict_json import tidy_json
+from regolith_studio.io.json_text import canonical_json
+from regolith_studio.io.tables import csv_bytes
 
 _NOTE = b"""All x with <normal, x> <= offset; normals have length 1 and point out; every plane bears a facet.
 Floats are written so that they read back bit for bit. sizes.csv: classes, weights, sizes."""
@@ -28,10 +29,10 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
             (index, one.name, *equation)
             for equation in np.column_stack([planes.normals, planes.offsets]).tolist()
         ]
-    text = tidy_json({"format": "half-spaces", "length_unit": "unit volume", "shapes": shapes})
+    text = canonical_json({"format": "half-spaces", "length_unit": "unit volume", "shapes": shapes})
     return {
         "half_spaces.json": text.encode("utf-8"),
-        "half_spaces.csv": csv_bytes(("class", "name", "nx", "ny", "nz", "offset"), rows),
+        "half_spaces.csv": csv_bytes([("class", "name", "nx", "ny", "nz", "offset"), *rows]),
         "sizes.csv": sizes_csv(dataset),
         NOTES: _NOTE,
     }

@@ -3,7 +3,7 @@
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export_tables import shape_names, sizes_csv
 from regolith_studio.dataset.exporting import NOTES, Exporter, ExportOptions
-from regolith_studio.dataset.strict_json import tidy_json
+from regolith_studio.io.json_text import canonical_json
 
 _NOTE = b"""type_shapes goes into the GSD chunk particles/type_shapes, types into particles/types:
     frame.particles.types, frame.particles.type_shapes = content["types"], content["type_shapes"]
@@ -25,7 +25,7 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
         "moments": [shape.mesh.inertia.diagonal().tolist() for shape in shapes],
     }
     return {
-        "type_shapes.json": tidy_json(content).encode("utf-8"),
+        "type_shapes.json": canonical_json(content).encode("utf-8"),
         "sizes.csv": sizes_csv(dataset),
         NOTES: _NOTE,
     }

@@ -3,9 +3,10 @@
 import numpy as np
 
 from regolith_studio.dataset.dataset import Dataset
-from regolith_studio.dataset.export_tables import csv_bytes, shape_names, sizes_csv
+from regolith_studio.dataset.export_tables import shape_names, sizes_csv
 from regolith_studio.dataset.exporting import NOTES, Exporter, ExportOptions
 from regolith_studio.dataset.sphere_fit import fit_errors, fit_spheres
+from regolith_studio.io.tables import csv_bytes
 
 _NOTE = """One file a shape, a line a sphere: x y z r, in the frame of the shape (volume 1, centroid at the
 origin). The spheres lie inside the polyhedron, so their union is smaller:
@@ -36,7 +37,7 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
             f"area {100 * errors.area:+.1f} %, moments of inertia up to {100 * errors.inertia:.1f} % off"
         )
     return files | {
-        "fit.csv": csv_bytes(HEADER, rows),
+        "fit.csv": csv_bytes([HEADER, *rows]),
         "sizes.csv": sizes_csv(dataset),
         NOTES: _NOTE.format(rows="\n".join(said)).encode("utf-8"),
     }

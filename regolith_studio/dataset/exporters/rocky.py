@@ -8,8 +8,8 @@ from regolith_studio.dataset.export_tables import shape_names, sizes_csv
 from regolith_studio.dataset.exporting import NOTES, Exporter, ExportOptions, case_settings
 from regolith_studio.dataset.simulation_case import MICROMETRE, particle_count
 from regolith_studio.dataset.size_classes import size_classes
-from regolith_studio.dataset.strict_json import tidy_json
-from regolith_studio.imaging.stl import stl_bytes
+from regolith_studio.io.json_text import canonical_json
+from regolith_studio.io.stl import stl_bytes
 from regolith_studio.resources import resource
 
 _NOTE = """rocky_case.py reads case.json and builds the case: materials, damped Hertzian and
@@ -28,7 +28,7 @@ GetExportToolkit().ExportParticleToStl before you trust a long run."""
 def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
     keys = shape_names(dataset)
     meshes = {
-        f"meshes/{key}.stl": stl_bytes(one.shape.mesh, f"regolith-studio unit-volume {key}")
+        f"meshes/{key}.stl": stl_bytes(one.shape.mesh.triangles, f"regolith-studio unit-volume {key}")
         for key, one in zip(keys, dataset.representatives, strict=True)
     }
     test, factor = options.test, options.coarse_graining_factor
@@ -37,9 +37,11 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
     return meshes | {
         "rocky_case.py": resource("exports", "rocky_case.py").read_bytes(),
         "rocky_positions.py": resource("exports", "rocky_positions.py").read_bytes(),
-        "case.json": tidy_json(_case(dataset, options, keys)).encode("utf-8"),
-        "walls/tube.stl": stl_bytes(tube_mesh(test.diameter, test.height), "regolith-studio tube, metres"),
-        "walls/plate.stl": stl_bytes(box_mesh(_plate(options)), "regolith-studio plate, metres"),
+        "case.json": canonical_json(_case(dataset, options, keys)).encode("utf-8"),
+        "walls/tube.stl": stl_bytes(
+            tube_mesh(test.diameter, test.height).triangles, "regolith-studio tube, metres"
+        ),
+        "walls/plate.stl": stl_bytes(box_mesh(_plate(options)).triangles, "regolith-studio plate, metres"),
         "sizes.csv": sizes_csv(dataset),
         NOTES: notes.encode("utf-8"),
     }

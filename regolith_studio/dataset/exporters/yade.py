@@ -6,9 +6,10 @@ import numpy as np
 
 from regolith_studio.dataset.bodies import Bodies, fitting_tube, lay_out
 from regolith_studio.dataset.dataset import Dataset
-from regolith_studio.dataset.export_tables import csv_bytes, shape_names, sizes_csv
+from regolith_studio.dataset.export_tables import shape_names, sizes_csv
 from regolith_studio.dataset.exporting import NOTES, Exporter, ExportOptions, case_settings
-from regolith_studio.dataset.strict_json import tidy_json
+from regolith_studio.io.json_text import canonical_json
+from regolith_studio.io.tables import csv_bytes
 from regolith_studio.resources import resource
 
 OVERLAP = 1e-2
@@ -36,8 +37,8 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
     bodies = lay_out(dataset, options, within=options.test.diameter)
     return {
         "yade_case.py": resource("exports", "yade_case.py").read_bytes(),
-        "case.json": tidy_json(_case(dataset, options, bodies)).encode("utf-8"),
-        "particles.csv": csv_bytes(COLUMNS, _rows(bodies)),
+        "case.json": canonical_json(_case(dataset, options, bodies)).encode("utf-8"),
+        "particles.csv": csv_bytes([COLUMNS, *_rows(bodies)]),
         "sizes.csv": sizes_csv(dataset),
         NOTES: _NOTE.format(n=len(bodies), wide=options.test.diameter * 1e3).encode("utf-8"),
     }

@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
+from regolith_studio.io.stl import RECORD
 from regolith_studio.readers.mesh_format import MeshFormat, ParsedMesh
 
 HEADER = 84
-RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 _FACET = (b"facet", b"normal", None, None, None, b"outer", b"loop") + (
     (b"vertex", None, None, None) * 3 + (b"endloop", b"endfacet")
 )

@@ -20,6 +20,8 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle, Source
 from regolith_studio.imaging.extraction import Extracted
 from regolith_studio.imaging.sample_volumes import SampleVolume, sample_file
+from regolith_studio.io.atomic import staged_folder
+from regolith_studio.io.json_text import json_bytes
 from regolith_studio.jobs.crew import Crew
 from regolith_studio.jobs.events import Steps
 from regolith_studio.jobs.extracting import VolumeInput, extract_each, fingerprint
@@ -30,7 +32,6 @@ from regolith_studio.readers.hashing import sha256_of
 from regolith_studio.readers.shape_files import is_shape_source, read_shape_source
 from regolith_studio.readers.volume_header import RawLayout
 from regolith_studio.session.outputs.extraction import RECIPE, recipe_document
-from regolith_studio.session.outputs.staging import json_bytes, staged_folder
 from regolith_studio.session.recipe import Recipe
 from regolith_studio.session.recipe_inputs import Population, RawVolume, VolumeEntry
 from regolith_studio.shape_models.files import write_model

@@ -1,8 +1,6 @@
 """The files that the records of a batch become, record by record: nothing is gathered whole but fits."""
 
-import csv
-import io
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,6 +14,9 @@ from regolith_studio.geometry.particle import Source
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.files import fits_from
 from regolith_studio.harmonics.fit import HarmonicFit
+from regolith_studio.io.atomic import staged_file, staged_folder, write_bytes
+from regolith_studio.io.json_text import JsonListWriter
+from regolith_studio.io.tables import csv_bytes
 from regolith_studio.jobs.chunked import LOST, Batch
 from regolith_studio.jobs.coarsening import CoarseningOrder
 from regolith_studio.jobs.shards import Record
@@ -23,8 +24,6 @@ from regolith_studio.session.batch.working import COEFFICIENTS, CUT, MESH, SHAPE
 from regolith_studio.session.outputs.coarsening import document_head
 from regolith_studio.session.outputs.descriptors import table_columns, table_row
 from regolith_studio.session.outputs.fits import FittedSample, write_fits
-from regolith_studio.session.outputs.staging import staged_file, staged_folder, write_bytes
-from regolith_studio.session.outputs.streams import JsonList
 
 
 class Sink(Protocol):
@@ -48,7 +47,7 @@ class Origin:
 class _Descriptors:
     """``descriptors.json`` and ``descriptors.csv``; rows wait until it is known which columns there are."""
 
-    entries: JsonList
+    entries: JsonListWriter
     table: IO[bytes]
     keys: list[str] = field(default_factory=list)
     waiting: list[dict[str, Any]] = field(default_factory=list)
@@ -76,7 +75,7 @@ class _Descriptors:
         self.waiting.clear()
 
     def _write(self, rows: list[list[Any]]) -> None:
-        self.table.write(_csv_bytes(rows))
+        self.table.write(csv_bytes(rows))
 
 
 @contextmanager
@@ -86,7 +85,7 @@ def descriptor_sink(folder: Path) -> Iterator[Sink]:
         staged_file(folder / "descriptors.json") as entries,
         staged_file(folder / "descriptors.csv") as table,
     ):
-        sink = _Descriptors(JsonList(entries), table)
+        sink = _Descriptors(JsonListWriter(entries), table)
         yield sink
         sink.close()
 
@@ -94,7 +93,7 @@ def descriptor_sink(folder: Path) -> Iterator[Sink]:
 @dataclass
 class _Meshes:
     stage: Path
-    entries: JsonList
+    entries: JsonListWriter
     failed: list[dict[str, str]] = field(default_factory=list)
 
     def add(self, record: Record) -> None:
@@ -110,7 +109,7 @@ class _Meshes:
 def mesh_sink(folder: Path, order: CoarseningOrder) -> Iterator[Sink]:
     """Writes one STL a polyhedron, and ``coarsening.json``."""
     with staged_folder(folder) as stage, (stage / "coarsening.json").open("wb") as stream:
-        sink = _Meshes(stage, JsonList(stream, document_head(order), "particles"))
+        sink = _Meshes(stage, JsonListWriter(stream, document_head(order), "particles"))
         yield sink
         sink.entries.close({"failed": sink.failed})
 
@@ -156,7 +155,7 @@ def failure_sink(folder: Path) -> Iterator[Sink]:
     yield sink
     path = folder / "failed.csv"
     if sink.rows:
-        write_bytes(path, _csv_bytes([["name", "stage", "reason"], *sink.rows]))
+        write_bytes(path, csv_bytes([["name", "stage", "reason"], *sink.rows]))
     else:
         path.unlink(missing_ok=True)
 
@@ -168,14 +167,14 @@ class _Times:
     def add(self, record: Record) -> None:
         seconds = record.values.get("seconds", {})
         row = [record.values["name"], *[seconds.get(stage) for stage in STAGES]]
-        self.stream.write(_csv_bytes([row]))
+        self.stream.write(csv_bytes([row]))
 
 
 @contextmanager
 def time_sink(path: Path) -> Iterator[Sink]:
     """Writes how long each stage took for each particle, as CSV."""
     with staged_file(path) as stream:
-        stream.write(_csv_bytes([["name", *[f"{stage} [s]" for stage in STAGES]]]))
+        stream.write(csv_bytes([["name", *[f"{stage} [s]" for stage in STAGES]]]))
         yield _Times(stream)
 
 
@@ -233,13 +232,6 @@ def reason_of(record: Record, stage: str = "") -> str:
 def n_failures(record: Record) -> int:
     """1 if anything has failed."""
     return int(bool(record.values.get("failures") or LOST in record.values))
-
-
-def _csv_bytes(rows: Sequence[Sequence[Any]]) -> bytes:
-    text = io.StringIO()
-    filled = [["" if cell is None else cell for cell in row] for row in rows]
-    csv.writer(text, lineterminator="\n").writerows(filled)
-    return text.getvalue().encode("utf-8")
 
 
 def _reasons(record: Record) -> list[str]:

@@ -12,8 +12,13 @@ from regolith_studio.dataset.streaming import stored_shape
 from regolith_studio.errors import Cancelled
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.files import fits_document
+<<<<<<< HEAD
 from regolith_studio.harmonics.fit import DEFAULT_FIT_OPTIONS, FitOptions, HarmonicFit
 from regolith_studio.imaging.stl import stl_bytes
+=======
+from regolith_studio.harmonics.fit import HarmonicFit
+from regolith_studio.io.stl import stl_bytes
+>>>>>>> 7329aee (Put STL, tables, JSON and atomic writing into a layer io below geometry)
 from regolith_studio.jobs.batch import call
 from regolith_studio.jobs.coarsening import CoarsenedParticle, CoarseningOrder, coarsen_particle
 from regolith_studio.jobs.events import Ending, Failed, Finished, Job, Progress, Started, Step, Steps
@@ -151,7 +156,7 @@ def _keep_coarse(entry: _Entry, particle: Particle, outcome: CoarsenedParticle, 
     coarse = outcome.coarsened
     assert coarse is not None
     values: dict[str, Any] = {"coarse": _finite(coarsening_entry(outcome, coarse))}
-    blobs = {MESH: stl_bytes(coarse.mesh, STL_HEADER)}
+    blobs = {MESH: stl_bytes(coarse.mesh.triangles, STL_HEADER)}
     if shapes:
         shape = stored_shape(particle, coarse)
         values["shape"] = _finite(shape.record)

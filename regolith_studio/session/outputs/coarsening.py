@@ -9,10 +9,11 @@ from regolith_studio.coarsening.exact.request import EXACT
 from regolith_studio.coarsening.result import Coarsened
 from regolith_studio.coarsening.weights import JACCARD
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
-from regolith_studio.imaging.stl import stl_bytes
+from regolith_studio.io.atomic import write_bytes
+from regolith_studio.io.json_text import json_bytes
+from regolith_studio.io.stl import stl_bytes
+from regolith_studio.io.tables import Cell, Column, Table
 from regolith_studio.jobs.coarsening import CoarsenedParticle, CoarseningOrder
-from regolith_studio.session.outputs.staging import json_bytes, write_bytes
-from regolith_studio.studies.tables import Cell, Column, Table
 
 STL_HEADER = "Regolith Studio, convex polyhedron, micrometres"
 
@@ -21,7 +22,7 @@ def write_coarsening(folder: Path, order: CoarseningOrder, done: Sequence[Coarse
     """Write ``<name>.stl`` for each particle that succeeded, in its own frame, and ``coarsening.json``."""
     for each in done:
         if each.coarsened:
-            write_bytes(folder / f"{each.name}.stl", stl_bytes(each.coarsened.mesh, STL_HEADER))
+            write_bytes(folder / f"{each.name}.stl", stl_bytes(each.coarsened.mesh.triangles, STL_HEADER))
     write_bytes(folder / "coarsening.json", json_bytes(coarsening_document(order, done)))
 
 

@@ -5,8 +5,8 @@ from typing import Any, Protocol
 
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.geometry.particle import Particle
+from regolith_studio.io.tables import Column, Table
 from regolith_studio.jobs.examining import Examined
-from regolith_studio.studies.tables import Column, Table
 
 SHARES = ("hidden_surface_share", "unrepresentable_volume_share")
 """What no radius function keeps, of :class:`~regolith_studio.harmonics.sight.Sight`."""

@@ -8,14 +8,15 @@ from typing import Any
 
 from regolith_studio.dataset.build import software_versions
 from regolith_studio.imaging.extraction import Extracted
-from regolith_studio.imaging.stl import stl_bytes
+from regolith_studio.io.atomic import write_bytes
+from regolith_studio.io.json_text import json_bytes
+from regolith_studio.io.stl import stl_bytes
+from regolith_studio.io.tables import Cell, Column, Table, csv_text
 from regolith_studio.jobs.examining import Examined
 from regolith_studio.jobs.extracting import ExtractedFile, VolumeInput
 from regolith_studio.jobs.grain_recipe import GrainRecipe
 from regolith_studio.session.outputs.descriptors import described, descriptor_table
 from regolith_studio.session.outputs.particles import STL_HEADER
-from regolith_studio.session.outputs.staging import json_bytes, write_bytes
-from regolith_studio.studies.tables import Cell, Column, Table, csv_text
 
 RECIPE = "extraction.json"
 _LIBRARIES = ("scikit-image", "connected-components-3d", "vtk", "tifffile", "h5py")
@@ -38,7 +39,7 @@ class ExtractionFolder:
     def add(self, found: Extracted, facts: Examined) -> None:
         """Write one particle's STL and remember its row."""
         particle = found.particle
-        write_bytes(self._folder / f"{particle.name}.stl", stl_bytes(particle.mesh, STL_HEADER))
+        write_bytes(self._folder / f"{particle.name}.stl", stl_bytes(particle.mesh.triangles, STL_HEADER))
         table = descriptor_table([particle], [facts])
         extra: Mapping[Column, Cell] = {
             Column("label"): found.label,

@@ -15,8 +15,9 @@ from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.sample_spectrum import sample_spectrum
 from regolith_studio.harmonics.spectrum import PowerSpectrum, roughness_split
 from regolith_studio.harmonics.surface import reconstruct
-from regolith_studio.imaging.stl import stl_bytes
-from regolith_studio.session.outputs.staging import json_bytes, write_bytes
+from regolith_studio.io.atomic import write_bytes
+from regolith_studio.io.json_text import json_bytes
+from regolith_studio.io.stl import stl_bytes
 
 
 class Known(Protocol):
@@ -90,7 +91,7 @@ def write_surfaces(folder: Path, sample: FittedSample, level: int) -> dict[str, 
         except GeometryError as error:
             reasons[particle.name] = str(error)
         else:
-            write_bytes(folder / f"{particle.name}.stl", stl_bytes(surface, header))
+            write_bytes(folder / f"{particle.name}.stl", stl_bytes(surface.triangles, header))
     return reasons
 
 

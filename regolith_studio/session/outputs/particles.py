@@ -4,11 +4,11 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.imaging.stl import stl_bytes
+from regolith_studio.io.atomic import write_bytes
+from regolith_studio.io.stl import stl_bytes
+from regolith_studio.io.tables import Cell, Column, Table, csv_text
 from regolith_studio.jobs.examining import Examined
 from regolith_studio.session.outputs.descriptors import descriptor_table
-from regolith_studio.session.outputs.staging import write_bytes
-from regolith_studio.studies.tables import Cell, Column, Table, csv_text
 
 STL_HEADER = "Regolith Studio, particle, micrometres"
 
@@ -27,7 +27,7 @@ def write_particles(
         More columns, by name.
     """
     for particle in particles:
-        write_bytes(folder / f"{particle.name}.stl", stl_bytes(particle.mesh, STL_HEADER))
+        write_bytes(folder / f"{particle.name}.stl", stl_bytes(particle.mesh.triangles, STL_HEADER))
     table = descriptor_table(particles, facts)
     for name, cells in (extra or {}).items():
         rows = tuple((*row, cell) for row, cell in zip(table.rows, cells, strict=True))

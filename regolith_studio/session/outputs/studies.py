@@ -7,11 +7,11 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+from regolith_studio.io.tables import Table
 from regolith_studio.studies.coarsening import rmsre_table as coarsening_table
 from regolith_studio.studies.lmax import rmsre_table as lmax_table
 from regolith_studio.studies.population_tables import ranking_table
 from regolith_studio.studies.solid_study import solid_table
-from regolith_studio.studies.tables import Table
 from regolith_studio.studies.variations import VARIATIONS
 
 

@@ -9,8 +9,8 @@ from typing import Any
 
 from regolith_studio.dataset.build import software_versions
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
+from regolith_studio.io.atomic import write_bytes
 from regolith_studio.jobs.shards import Record
-from regolith_studio.session.outputs.staging import write_bytes
 from regolith_studio.session.outputs.studies import STUDIES
 from regolith_studio.session.recipe import Recipe
 

@@ -10,15 +10,16 @@ import numpy as np
 
 from regolith_studio import __version__
 from regolith_studio.harmonics.coefficients import CONVENTION
+from regolith_studio.io.atomic import write_bytes
+from regolith_studio.io.json_text import json_bytes
+from regolith_studio.io.tables import Cell, Column, Table, csv_text
 from regolith_studio.jobs.examining import Examined
 from regolith_studio.jobs.generating import GenerateOrder, particle_names
 from regolith_studio.readers.shape_files import ShapeSource
 from regolith_studio.session.outputs.descriptors import descriptor_table
-from regolith_studio.session.outputs.staging import json_bytes, write_bytes
 from regolith_studio.shape_models.draws import Draws
 from regolith_studio.shape_models.protocol import FittedModel
 from regolith_studio.shape_models.sample import Sample
-from regolith_studio.studies.tables import Cell, Column, Table, csv_text
 
 FORMAT = "regolith-studio virtual particles"
 ARRAYS = "particles.npz"

@@ -18,8 +18,8 @@ from PySide6.QtSvg import QSvgGenerator
 from PySide6.QtWidgets import QWidget
 
 from regolith_studio.errors import InputError
-from regolith_studio.session.outputs.staging import write_bytes
-from regolith_studio.studies.tables import Column, Table, csv_text
+from regolith_studio.io.atomic import write_bytes
+from regolith_studio.io.tables import Column, Table, csv_text
 
 PIXELS = 3
 """Pixels of a PNG for one on the screen."""

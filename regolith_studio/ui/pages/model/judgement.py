@@ -19,12 +19,12 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from regolith_studio.io.tables import Table
 from regolith_studio.jobs.judging import JudgedShapes
 from regolith_studio.session.tasks import Task
 from regolith_studio.shape_models.models import MODELS
 from regolith_studio.studies.population import PopulationStudy
 from regolith_studio.studies.population_tables import distance_table, pair_table, ranking_table, target_table
-from regolith_studio.studies.tables import Table
 from regolith_studio.ui.layout import tabs
 from regolith_studio.ui.pages.model.table_view import TableView
 from regolith_studio.ui.translation import mark, tr

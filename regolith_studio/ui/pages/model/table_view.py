@@ -4,8 +4,8 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QTableWidget, QTableWidgetItem
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
+from regolith_studio.io.tables import Cell, Table
 from regolith_studio.shape_models.models import MODELS
-from regolith_studio.studies.tables import Cell, Table
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.translation.sentences import retold
 
@@ -43,7 +43,7 @@ TIPS = (
 
 
 class TableView(QTableWidget):
-    """Shows a :class:`~regolith_studio.studies.tables.Table`; keys of models and descriptors become words."""
+    """Shows a :class:`~regolith_studio.io.tables.Table`; keys of models and descriptors become words."""
 
     def __init__(self, name: str, spoken: str) -> None:
         super().__init__()

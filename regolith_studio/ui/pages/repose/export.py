@@ -8,8 +8,9 @@ from PySide6.QtWidgets import QFileDialog, QInputDialog, QWidget
 from regolith_studio.dem.pile import Pile, read_pile
 from regolith_studio.dem.repose import ReposeMeasurement, measurement_document
 from regolith_studio.errors import RegolithError
+from regolith_studio.io.atomic import staged_folder
+from regolith_studio.io.json_text import json_bytes
 from regolith_studio.readers.positions import read_positions
-from regolith_studio.session.outputs.staging import json_bytes, staged_folder
 from regolith_studio.studies.repose_figures import write_section_figure
 from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.translation import mark, tr

@@ -10,13 +10,13 @@ from PySide6.QtWidgets import QApplication, QFileDialog, QHBoxLayout, QLineEdit,
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.io.atomic import write_bytes
+from regolith_studio.io.tables import csv_text
 from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.examining import find_faults
 from regolith_studio.scene import faults, surfaces
-from regolith_studio.session.outputs.staging import write_bytes
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import filter_of, sample_table
-from regolith_studio.studies.tables import csv_text
 from regolith_studio.ui.layout import equal_parts, side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.sample.health import HealthPanel, retold_health

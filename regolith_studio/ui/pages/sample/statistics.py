@@ -18,9 +18,9 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.descriptors.distributions import WEIGHTINGS
+from regolith_studio.io.tables import Column, Table
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import UNITS, has_weights, statistics_table
-from regolith_studio.studies.tables import Column, Table
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.number_text import short_number
 from regolith_studio.ui.widgets.table import LetterRows

@@ -14,6 +14,8 @@ from regolith_studio.errors import RegolithError
 from regolith_studio.imaging.extraction import Extraction
 from regolith_studio.imaging.sample_volumes import sample_file
 from regolith_studio.imaging.segmentation.segment import Segmentation, SegmentationSettings
+from regolith_studio.io.atomic import write_bytes
+from regolith_studio.io.json_text import json_bytes
 from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.extracting import VolumeInput, extract_labels
 from regolith_studio.jobs.grain_recipe import GrainRecipe, read_grain_recipe
@@ -30,7 +32,6 @@ from regolith_studio.readers.raw_names import layout_from_name
 from regolith_studio.readers.volume_header import VolumeHeader
 from regolith_studio.session.batch.prepared import entry_of
 from regolith_studio.session.origins import Grains
-from regolith_studio.session.outputs.staging import json_bytes, write_bytes
 from regolith_studio.session.recipe_inputs import VolumeEntry
 from regolith_studio.ui.layout import CONTROLS_WIDTH, padded, scrolled_column, side_by_side
 from regolith_studio.ui.page import PageContext, PageWidget

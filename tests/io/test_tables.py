@@ -6,8 +6,8 @@ import json
 import numpy as np
 import pytest
 
+from regolith_studio.io.tables import Column, Table, rows_as_text, write_table
 from regolith_studio.studies.progress import StudyProgress
-from regolith_studio.studies.tables import Column, Table, rows_as_text, write_table
 
 
 @pytest.fixture

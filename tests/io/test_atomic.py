@@ -1,14 +1,12 @@
 """Outputs appear whole or not at all."""
 
-import json
-import math
 import os
 from pathlib import Path
 
 import pytest
 
 from regolith_studio.errors import FileError
-from regolith_studio.session.outputs.staging import json_bytes, staged_folder, write_bytes
+from regolith_studio.io.atomic import staged_folder, write_bytes
 
 
 def write_and_fail(folder: Path) -> None:
@@ -60,9 +58,3 @@ def test_that_files_get_the_permissions_that_the_user_gives_to_all_files(tmp_pat
     (tmp_path / "plain").write_text("")
     write_bytes(tmp_path / "ours", b"")
     assert (tmp_path / "ours").stat().st_mode == (tmp_path / "plain").stat().st_mode
-
-
-def test_that_json_holds_no_number_that_other_programs_cannot_read() -> None:
-    assert json.loads(json_bytes({"µ": [0.1]})) == {"µ": [0.1]}
-    with pytest.raises(ValueError, match="JSON compliant"):
-        json_bytes([math.nan])

@@ -8,11 +8,11 @@ from pathlib import Path
 
 import pytest
 
-from regolith_studio.dataset import disk
-from regolith_studio.dataset.disk import leftovers, recovered, replace_folder
 from regolith_studio.dataset.folder import read_dataset, write_dataset
 from regolith_studio.dataset.validation import validate_dataset
 from regolith_studio.errors import DatasetError
+from regolith_studio.io import atomic
+from regolith_studio.io.atomic import leftovers, recover_folder, replace_folder
 
 CALLS = ("mkdir", "open", "write", "fsync", "close", "rename")
 """Every function of ``os`` that writing a folder goes through; ``swap_folders`` is counted beside them."""
@@ -24,8 +24,8 @@ class Failing:
     def __init__(self, monkeypatch, at: int | None) -> None:
         self.count, self.at = 0, at
         for name in CALLS:
-            monkeypatch.setattr(disk.os, name, self._wrapped(getattr(os, name), name))
-        monkeypatch.setattr(disk, "swap_folders", self._wrapped(disk.swap_folders, "swap"))
+            monkeypatch.setattr(atomic.os, name, self._wrapped(getattr(os, name), name))
+        monkeypatch.setattr(atomic, "swap_folders", self._wrapped(atomic.swap_folders, "swap"))
 
     def _wrapped(self, call, name):
         def counted(*arguments, **options):
@@ -74,7 +74,7 @@ def test_that_a_failing_call_leaves_the_old_dataset_or_the_new_one(
                 assert len(leftovers(folder)) <= 1
         assert validate_dataset(folder) == []
         for rest in leftovers(folder):
-            disk.remove_quietly(rest)
+            atomic.remove_quietly(rest)
     assert refused >= 15
 
 
@@ -98,15 +98,15 @@ def test_that_a_failing_call_leaves_no_dataset_where_there_was_none(
 
 def test_that_short_writes_are_continued(tmp_path: Path, monkeypatch, make_dataset) -> None:
     write = os.write
-    monkeypatch.setattr(disk.os, "write", lambda handle, data: write(handle, bytes(data[:97])))
+    monkeypatch.setattr(atomic.os, "write", lambda handle, data: write(handle, bytes(data[:97])))
     assert validate_dataset(write_dataset(tmp_path / "set", make_dataset(2))) == []
 
 
 DRIVER = """
 import json, os, random, signal, sys, time
 from pathlib import Path
-from regolith_studio.dataset import disk
-from regolith_studio.dataset.disk import replace_folder
+from regolith_studio.io import atomic
+from regolith_studio.io.atomic import replace_folder
 from regolith_studio.dataset.folder import dataset_files, read_dataset
 from regolith_studio.dataset.validation import validate_dataset
 
@@ -116,7 +116,7 @@ def contents(root):
 
 files = [contents(folder) for folder in sys.argv[5:]]
 if not swaps:
-    disk.swap_folders = lambda first, second: False
+    atomic.swap_folders = lambda first, second: False
 count = 0
 
 def deadly(call, at, after):
@@ -137,8 +137,8 @@ def child(run):
     if mode != "time":
         for name in ("mkdir", "open", "write", "fsync", "close", "rename"):
             setattr(os, name, deadly(getattr(os, name), run + 1, mode == "after"))
-        disk.swap_folders = deadly(disk.swap_folders, run + 1, mode == "after")
-        disk.shutil.rmtree = deadly(disk.shutil.rmtree, run + 1, mode == "after")
+        atomic.swap_folders = deadly(atomic.swap_folders, run + 1, mode == "after")
+        atomic.shutil.rmtree = deadly(atomic.shutil.rmtree, run + 1, mode == "after")
         replace_folder(folder, files[1])
         os._exit(0)
     while True:
@@ -148,7 +148,7 @@ def child(run):
 found, killed, generator = [0, 0], 0, random.Random(1)
 for run in range(runs):
     if mode != "time":
-        disk.recovered(folder)
+        atomic.recover_folder(folder)
         replace_folder(folder, files[0])
     pid = os.fork()
     if pid == 0:
@@ -162,8 +162,8 @@ for run in range(runs):
     problems = validate_dataset(folder)
     assert not problems, problems
     found[names[0] != "grain-0"] += 1
-    for rest in disk.leftovers(folder):
-        disk.remove_quietly(rest)
+    for rest in atomic.leftovers(folder):
+        atomic.remove_quietly(rest)
     if mode != "time" and not os.WIFSIGNALED(status):
         break
 print(json.dumps({"found": found, "killed": killed, "runs": run + 1}))
@@ -240,11 +240,11 @@ def test_that_a_folder_moved_aside_by_a_writer_that_died_is_put_back(tmp_path: P
     folder = write_dataset(tmp_path / "set", make_dataset(1))
     folder.rename(tmp_path / ".set.regolith-old")
     assert names(folder) == ["grain-0"]
-    assert recovered(folder).is_dir()
+    assert recover_folder(folder).is_dir()
 
 
 def test_that_without_a_swap_the_folder_is_still_replaced(tmp_path: Path, monkeypatch, make_dataset) -> None:
-    monkeypatch.setattr(disk, "swap_folders", lambda *_: False)
+    monkeypatch.setattr(atomic, "swap_folders", lambda *_: False)
     write_dataset(tmp_path / "set", make_dataset(1))
     write_dataset(tmp_path / "set", make_dataset(1, first=10))
     assert names(tmp_path / "set") == ["grain-10"]

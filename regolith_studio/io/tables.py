@@ -1,10 +1,10 @@
-"""Tables of results, and their two files: CSV for spreadsheets, JSON for programs."""
+"""Tables of results, written as CSV for spreadsheets and as JSON for programs."""
 
 import csv
 import io
 import json
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -40,13 +40,13 @@ class Table:
     Parameters
     ----------
     title
-        One line that says what the rows are.
+        One line that describes the rows.
     columns
         One :class:`Column` a column.
     rows
         One sequence of cells a row.
     notes
-        Sentences that a reader of the numbers needs: definitions, settings, seeds.
+        Sentences for the reader: definitions, settings, seeds.
 
     Raises
     ------
@@ -87,11 +87,12 @@ class Table:
 
 def csv_text(table: Table) -> str:
     """The table as CSV: one header line (``name [unit]``), then the rows; missing values are empty."""
-    lines = io.StringIO()
-    writer = csv.writer(lines, lineterminator="\n")
-    writer.writerow([column.header for column in table.columns])
-    writer.writerows([["" if cell is None else cell for cell in row] for row in table.rows])
-    return lines.getvalue()
+    return _csv([[column.header for column in table.columns], *table.rows])
+
+
+def csv_bytes(rows: Iterable[Sequence[object]]) -> bytes:
+    """Rows as CSV in UTF-8: floats by ``repr``, ``None`` as an empty cell, text quoted where necessary."""
+    return _csv(rows).encode("utf-8")
 
 
 def json_text(table: Table) -> str:
@@ -119,6 +120,12 @@ def rows_as_text(table: Table, digits: int = 3) -> tuple[Sequence[str], ...]:
     """Header and rows as strings of `digits` significant digits, for a terminal or a summary page."""
     header = [column.header for column in table.columns]
     return (header, *[[_printed(cell, digits) for cell in row] for row in table.rows])
+
+
+def _csv(rows: Iterable[Sequence[object]]) -> str:
+    lines = io.StringIO()
+    csv.writer(lines, lineterminator="\n").writerows(rows)
+    return lines.getvalue()
 
 
 def _plain(cell: object) -> Cell:
