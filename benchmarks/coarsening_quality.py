@@ -26,8 +26,7 @@ from regolith_studio.coarsening.result import Coarsened
 from regolith_studio.coarsening.target import Target
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.readers.registry import read_mesh
-from regolith_studio.readers.sample import sample_particles
+from regolith_studio.readers.particles import read_mesh, sample_particles
 
 KEPT = ("volume", "sphericity", "min_diameter", "max_diameter", "aspect_ratio")
 MESH_ENDINGS = (".stl", ".ply", ".obj", ".off")

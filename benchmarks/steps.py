@@ -38,7 +38,7 @@ from regolith_studio.harmonics.synthesis import radii_on_icosphere
 from regolith_studio.imaging.extraction import extract_particles
 from regolith_studio.imaging.synthetic_ct import ScanRecipe, synthetic_scan
 from regolith_studio.io.stl import stl_bytes
-from regolith_studio.readers.registry import read_mesh
+from regolith_studio.readers.particles import read_mesh
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.shape_models.models import MODELS
 from regolith_studio.shape_models.sample import Sample

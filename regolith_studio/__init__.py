@@ -23,8 +23,7 @@ if TYPE_CHECKING:
     from regolith_studio.descriptors.describe import describe
     from regolith_studio.harmonics.fit import fit_harmonics
     from regolith_studio.harmonics.surface import reconstruct
-    from regolith_studio.readers.registry import read_mesh, read_particles
-    from regolith_studio.readers.sample import sample_particles
+    from regolith_studio.readers.particles import read_mesh, read_particles, sample_particles
     from regolith_studio.shape_models.models.gaussian_field import GaussianFieldModel as GaussianRadiusModel
 
 __version__ = "0.1.0"
@@ -54,10 +53,10 @@ _DOORS = {
     "fit_harmonics": "harmonics.fit:fit_harmonics",
     "measure_repose": "dem.repose:measure_repose",
     "read_dataset": "dataset.folder:read_dataset",
-    "read_mesh": "readers.registry:read_mesh",
-    "read_particles": "readers.registry:read_particles",
+    "read_mesh": "readers.particles:read_mesh",
+    "read_particles": "readers.particles:read_particles",
     "reconstruct": "harmonics.surface:reconstruct",
-    "sample_particles": "readers.sample:sample_particles",
+    "sample_particles": "readers.particles:sample_particles",
     "write_dataset": "dataset.folder:write_dataset",
 }
 

@@ -11,10 +11,10 @@ from regolith_studio.cli.terminal import complain, follow
 from regolith_studio.errors import RegolithError
 
 if TYPE_CHECKING:
-    from regolith_studio.jobs.loading import Loaded
+    from regolith_studio.readers.particles import LoadedParticles
 
 
-def read_inputs(paths: Sequence[Path], unit: str, repair: bool = True) -> "Loaded":
+def read_inputs(paths: Sequence[Path], unit: str, repair: bool = True) -> "LoadedParticles":
     """The particles in files and folders; what cannot be read is a sentence on stderr.
 
     Raises
@@ -27,7 +27,7 @@ def read_inputs(paths: Sequence[Path], unit: str, repair: bool = True) -> "Loade
 
     with as_bad_use():
         unit_factor(unit)
-    loaded: Loaded = follow(load_particles(tuple(paths), unit, repair))
+    loaded: LoadedParticles = follow(load_particles(tuple(paths), unit, repair))
     complain(problem.with_path for problem in loaded.problems)
     return loaded
 
@@ -43,7 +43,7 @@ def start_reader() -> None:
     threading.Thread(target=start, name="start reader", daemon=True).start()
 
 
-def exit_code(paths: Sequence[Path], loaded: "Loaded", failures: int = 0) -> int:
+def exit_code(paths: Sequence[Path], loaded: "LoadedParticles", failures: int = 0) -> int:
     """1 if a file that was named itself, or any particle, failed; a folder may hold other things."""
     named = {str(path) for path in paths if not path.is_dir()}
     return 1 if failures or any(problem.path in named for problem in loaded.problems) else 0

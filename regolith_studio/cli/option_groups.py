@@ -29,7 +29,7 @@ from regolith_studio.cli.options import (
 if TYPE_CHECKING:
     from regolith_studio.coarsening.weights import LossWeights
     from regolith_studio.harmonics.fit import FitOptions
-    from regolith_studio.jobs.loading import Loaded
+    from regolith_studio.readers.particles import LoadedParticles
     from regolith_studio.session.choices import Choices
 
 FACETS = 20
@@ -43,7 +43,7 @@ class ReadingOptions:
     unit: Unit = "um"
     repair: Repair = True
 
-    def read(self, paths: Sequence[Path]) -> "Loaded":
+    def read(self, paths: Sequence[Path]) -> "LoadedParticles":
         """The particles in files and folders; see :func:`~regolith_studio.cli.inputs.read_inputs`."""
         from regolith_studio.cli.inputs import read_inputs
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from regolith_studio.errors import FileError, InputError, RegolithError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.events import Progress, Started, Steps
-from regolith_studio.jobs.loading import Loaded, Problem
+from regolith_studio.readers.particles import FileProblem, LoadedParticles
 from regolith_studio.session.origins import Drawn, Files, Grains, Place, Shipped
 from regolith_studio.session.recipe import Recipe
 
@@ -25,7 +25,7 @@ MOST = 2000
 class Brought:
     """Particles with what a recipe names them by, one place a particle."""
 
-    loaded: Loaded
+    loaded: LoadedParticles
     places: tuple[Place, ...]
 
 
@@ -62,19 +62,19 @@ def bring_back(recipe: Recipe, beside: Path) -> Steps:
         return (yield from _read(items.members, list(items.problems), places))
 
 
-def _read(members: Sequence["Item"], problems: list[Problem], places: "_Places") -> Steps:
+def _read(members: Sequence["Item"], problems: list[FileProblem], places: "_Places") -> Steps:
     yield Started("Bringing particles back", len(members))
     found: list[tuple[Particle, Place]] = []
     for number, item in enumerate(members, start=1):
         try:
             found.append((item.particle(), places.of(item)))
         except RegolithError as error:
-            problems.append(Problem(item.name, str(error)))
+            problems.append(FileProblem(item.name, str(error)))
         yield Progress(number, len(members), item.name)
     if not found:
         raise FileError(problems[0].sentence if problems else "There is no particle in the recipe.")
     particles, known = zip(*found, strict=True)
-    return Brought(Loaded(particles, tuple(problems)), known)
+    return Brought(LoadedParticles(particles, tuple(problems)), known)
 
 
 class _Places:

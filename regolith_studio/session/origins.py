@@ -7,9 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.jobs.loading import files_in
 from regolith_studio.readers.formats import mesh_suffixes
-from regolith_studio.readers.sample import sample_particles
+from regolith_studio.readers.particles import find_files, sample_particles
 from regolith_studio.readers.table_particles import TABLE_SUFFIXES, TEXT_SUFFIXES
 from regolith_studio.session.recipe_inputs import Population, VolumeEntry
 
@@ -50,7 +49,7 @@ class Files:
 
     def members(self) -> tuple[Known, ...]:
         """All files that are there now, in order; also those that cannot be read."""
-        found = files_in([Path(path) for path in self.paths], [])
+        found = find_files([Path(path) for path in self.paths], [])
         return tuple((str(file.path), file.path.stem, file.group) for file in found)
 
 

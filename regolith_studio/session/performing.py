@@ -26,9 +26,9 @@ from regolith_studio.jobs.chunked import JOURNAL, LOST, Batch, work_through
 from regolith_studio.jobs.crew import Crew, hired
 from regolith_studio.jobs.events import Job, Progress, Started, Step, Steps
 from regolith_studio.jobs.journal import Journal
-from regolith_studio.jobs.loading import free_name
 from regolith_studio.jobs.shards import Record
 from regolith_studio.jobs.studying import study_coarsening, study_lmax
+from regolith_studio.readers.particles import unique_name
 from regolith_studio.session.batch.items import Items
 from regolith_studio.session.batch.prepared import Prepared, clear_prepared, prepare
 from regolith_studio.session.batch.sinks import (
@@ -268,7 +268,7 @@ def _tell_of_volumes(done: Performed, prepared: Prepared) -> None:
     """Write beside the results how the grains of each volume were found, and which were left out."""
     taken: set[str] = set()
     for entry, source in zip(done.recipe.volumes, prepared.volumes, strict=True):
-        name = free_name(Path(entry.file).stem, "", taken)
+        name = unique_name(Path(entry.file).stem, "", taken)
         write_bytes(done.folder / "volumes" / f"{name}.json", (source / EXTRACTION).read_bytes())
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from regolith_studio.errors import FileError
-from regolith_studio.jobs.loading import free_name
+from regolith_studio.readers.particles import unique_name
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.origins import Drawn, Files, Grains, Origin, Place, Shipped
 from regolith_studio.session.recipe import SAMPLE, Outputs, Recipe
@@ -123,4 +123,4 @@ def _names(origins: Sequence[Origin]) -> Iterator[tuple[Place | None, str]]:
     taken: set[str] = set()
     for origin in origins:
         for key, name, group in origin.members():
-            yield Place(origin, key), free_name(name, group, taken)
+            yield Place(origin, key), unique_name(name, group, taken)

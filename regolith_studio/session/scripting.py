@@ -49,7 +49,7 @@ def as_python(choices: Choices, source: str) -> str:
         "from regolith_studio.coarsening.coarsen import settings_of",
         "from regolith_studio.coarsening.weights import LossWeights",
         "from regolith_studio.harmonics.surface import reconstruct",
-        *(["from regolith_studio.readers.sample import sample_particles"] if sample else []),
+        *(["from regolith_studio.readers.particles import sample_particles"] if sample else []),
         "",
         f"l_max, level = {choices.l_max}, {choices.level}",
         f"particle = {reading}",

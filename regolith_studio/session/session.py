@@ -10,8 +10,9 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.building import Built, DatasetOptions, build_dataset_folder
 from regolith_studio.jobs.events import Failed, Job
 from regolith_studio.jobs.examining import Examined, examine_particles
-from regolith_studio.jobs.loading import Loaded, Problem, load_particles, load_sample, uniquely_named
+from regolith_studio.jobs.loading import load_particles, load_sample
 from regolith_studio.jobs.runners.protocol import Runner
+from regolith_studio.readers.particles import FileProblem, LoadedParticles, unique_names
 from regolith_studio.session.bringing import Brought, bring_back
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.live import LiveResults
@@ -137,7 +138,7 @@ class Session:
         kept = [entry for entry in self.particles if entry.id in ids]
         if not kept:
             raise InputError("There are no particles to keep.")
-        loaded = Loaded(tuple(entry.particle for entry in kept))
+        loaded = LoadedParticles(tuple(entry.particle for entry in kept))
         self._replace_particles(loaded, tuple(entry.place for entry in kept))
 
     def adopt(self, particles: Sequence[Particle], add: bool = False, origin: Origin | None = None) -> None:
@@ -158,7 +159,7 @@ class Session:
         if not particles:
             raise InputError("There are no particles to open.")
         places = places_of(particles, origin) if origin else ()
-        self._replace_particles(Loaded(tuple(particles)), places, add)
+        self._replace_particles(LoadedParticles(tuple(particles)), places, add)
 
     def select(self, id: str) -> None:
         """Put another particle on screen."""
@@ -236,7 +237,7 @@ class Session:
         job = Job(build_dataset_folder, (self._open_particles(), self.choices.order, Path(folder), wish))
 
         def tell(built: Built) -> None:
-            failed = tuple(Problem(o.name, o.problem) for o in built.outcomes if not o.coarsened)
+            failed = tuple(FileProblem(o.name, o.problem) for o in built.outcomes if not o.coarsened)
             if failed:
                 self.topics.problems.emit(failed)
             self.topics.exported.emit(built.folder)
@@ -324,18 +325,18 @@ class Session:
             self.update(*sorted(changed), outdated=names)
 
     def _load(self, title: str, job: Job, origin: Origin, add: bool = False) -> int:
-        def take(loaded: Loaded) -> None:
+        def take(loaded: LoadedParticles) -> None:
             self._replace_particles(loaded, places_of(loaded.particles, origin), add)
 
         return self._board.start("load", title, job, Reactions(take, failed=self.tell_failure(title)))
 
     def _replace_particles(
-        self, loaded: Loaded, places: Sequence[Place | None] = (), add: bool = False
+        self, loaded: LoadedParticles, places: Sequence[Place | None] = (), add: bool = False
     ) -> None:
         if loaded.problems:
             self.topics.problems.emit(loaded.problems)
         kept = self.particles if add else ()
-        fresh = uniquely_named(loaded.particles, [entry.id for entry in kept])
+        fresh = unique_names(loaded.particles, [entry.id for entry in kept])
         known = places or [place_by_source(particle) for particle in loaded.particles]
         self.particles = kept + tuple(
             ParticleEntry(particle.name, particle, place=place)

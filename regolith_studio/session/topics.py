@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from regolith_studio.jobs.loading import Problem
+from regolith_studio.readers.particles import FileProblem
 from regolith_studio.session.signal import Signal
 
 
@@ -32,7 +32,7 @@ class Topics:
     shelf: Signal[[str]] = field(default_factory=Signal)
     """The name of what was put on the shelf."""
     failed: Signal[[Failure]] = field(default_factory=Signal)
-    problems: Signal[[tuple[Problem, ...]]] = field(default_factory=Signal)
+    problems: Signal[[tuple[FileProblem, ...]]] = field(default_factory=Signal)
     """Files that were refused at opening, or particles that an export left out."""
     exported: Signal[[Path]] = field(default_factory=Signal)
     """The folder that was written."""

@@ -18,8 +18,9 @@ from regolith_studio.jobs.coarsening import CoarseningOrder, coarsen_one, coarse
 from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
 from regolith_studio.jobs.examining import examine, examine_particles
 from regolith_studio.jobs.fitting import FIT_DEGREE
-from regolith_studio.jobs.loading import load_particles, uniquely_named
+from regolith_studio.jobs.loading import load_particles
 from regolith_studio.jobs.warming import warm_up
+from regolith_studio.readers.particles import unique_names
 
 SPHERE = icosphere(3)
 GRAIN = Mesh(SPHERE.vertices * [30.0, 20.0, 15.0], SPHERE.faces)
@@ -65,7 +66,7 @@ def test_that_names_become_unique_by_group_and_then_by_number() -> None:
         Particle("a", GRAIN),
         Particle("b", GRAIN),
     ]
-    assert [each.name for each in uniquely_named(grains, ["b"])] == ["a", "left_low_a", "a_2", "b_2"]
+    assert [each.name for each in unique_names(grains, ["b"])] == ["a", "left_low_a", "a_2", "b_2"]
 
 
 def test_that_a_flat_mesh_is_examined_and_its_trouble_named() -> None:

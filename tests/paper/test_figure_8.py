@@ -9,7 +9,7 @@ import pytest
 
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.io.tables import rows_as_text
-from regolith_studio.readers.registry import read_mesh
+from regolith_studio.readers.particles import read_mesh
 from regolith_studio.studies.coarsening import (
     COLUMNS,
     CoarseningStudy,

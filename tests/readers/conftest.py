@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from regolith_studio.errors import FileError, GeometryError
-from regolith_studio.readers.registry import read_mesh
+from regolith_studio.readers.particles import read_mesh
 
 CORNERS = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=float)
 QUADS = np.array([[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]])

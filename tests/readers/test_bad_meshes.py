@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from regolith_studio.errors import FileError, GeometryError
-from regolith_studio.readers.registry import read_mesh
+from regolith_studio.readers.particles import read_mesh
 
 Bad = tuple[str, bytes | str, str]
 WORDS = ("one", "1,5", "0x1F", "--1", "1e", "1.2.3", "$", "None")

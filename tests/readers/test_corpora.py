@@ -4,7 +4,7 @@ import pytest
 
 from regolith_studio.errors import RegolithError
 from regolith_studio.readers.formats import mesh_suffixes
-from regolith_studio.readers.registry import read_mesh, read_particles
+from regolith_studio.readers.particles import read_mesh, read_particles
 
 pytestmark = pytest.mark.real_data
 

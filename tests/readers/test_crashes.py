@@ -13,7 +13,7 @@ import pytest
 
 from regolith_studio.errors import FileError, GeometryError
 from regolith_studio.readers.guard import Guard
-from regolith_studio.readers.registry import read_mesh
+from regolith_studio.readers.particles import read_mesh
 from regolith_studio.readers.volumes import describe_volume, open_slabs
 
 HERE = Path(__file__).parent

@@ -16,8 +16,8 @@ import pytest
 
 from regolith_studio.errors import FileError
 from regolith_studio.readers.guard import Guard, shared_guard
+from regolith_studio.readers.particles import read_mesh
 from regolith_studio.readers.protocol import Message, receive, send
-from regolith_studio.readers.registry import read_mesh
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 

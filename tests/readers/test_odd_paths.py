@@ -13,10 +13,10 @@ import pytest
 from regolith_studio.dataset.folder import read_dataset, validate_dataset
 from regolith_studio.errors import RegolithError
 from regolith_studio.jobs.grain_recipe import read_grain_recipe
-from regolith_studio.jobs.loading import Problem, load_particles
+from regolith_studio.jobs.loading import load_particles
 from regolith_studio.readers.coefficient_tables import read_coefficients
+from regolith_studio.readers.particles import FileProblem, read_mesh
 from regolith_studio.readers.positions import read_positions
-from regolith_studio.readers.registry import read_mesh
 from regolith_studio.readers.shape_files import read_shape_source
 from regolith_studio.readers.volumes import describe_volume
 from regolith_studio.session.opening import FileKind, kind_of
@@ -91,9 +91,9 @@ def test_that_odd_things_in_a_folder_cost_no_good_file(cube, tmp_path: Path) -> 
 
 
 def test_that_a_problem_names_its_path_once() -> None:
-    named = Problem("mixed/b.stl", "b.stl is empty: it has no bytes at all.")
+    named = FileProblem("mixed/b.stl", "b.stl is empty: it has no bytes at all.")
     assert named.with_path == "mixed/b.stl is empty: it has no bytes at all."
-    other = Problem("mixed", "The folder mixed holds no mesh file.")
+    other = FileProblem("mixed", "The folder mixed holds no mesh file.")
     assert other.with_path == "mixed: The folder mixed holds no mesh file."
 
 

@@ -9,8 +9,7 @@ import pytest
 from regolith_studio.errors import FileError, GeometryError
 from regolith_studio.harmonics.coefficient_tables import complex_rows
 from regolith_studio.harmonics.coefficients import ShCoefficients
-from regolith_studio.readers import read_mesh, read_particles
-from regolith_studio.readers.border_weights import weights_in
+from regolith_studio.readers.particles import read_mesh, read_particles, weights_in
 
 
 def table_of(values) -> str:

@@ -9,7 +9,7 @@ import pytest
 import tifffile
 
 from regolith_studio.errors import FileError, InputError
-from regolith_studio.readers import read_mesh
+from regolith_studio.readers.particles import read_mesh
 from regolith_studio.readers.raw_names import layout_from_name
 from regolith_studio.readers.volumes import (
     RawLayout,

@@ -16,7 +16,7 @@ from regolith_studio.io.stl import stl_bytes
 from regolith_studio.jobs.events import Progress, Started
 from regolith_studio.jobs.extracting import VolumeInput, extract_file
 from regolith_studio.jobs.grain_recipe import GrainRecipe
-from regolith_studio.readers.registry import read_mesh
+from regolith_studio.readers.particles import read_mesh
 from regolith_studio.resources import resource
 from regolith_studio.session.batch.prepared import read_grain, read_index
 from regolith_studio.session.performing import perform

@@ -15,7 +15,7 @@ from regolith_studio.cli.commands import app
 from regolith_studio.cli.entry import run
 from regolith_studio.harmonics.fit import fit_harmonics
 from regolith_studio.io.stl import stl_bytes
-from regolith_studio.readers.sample import sample_particles
+from regolith_studio.readers.particles import sample_particles
 from regolith_studio.session.recipe import Recipe
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -10,9 +10,14 @@ from typing import Any, Protocol, Self
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.generating import PAPER_DEGREE, drawn_names, groups_of
-from regolith_studio.jobs.loading import Problem, files_in, free_name
-from regolith_studio.readers.registry import MeshFile, read_file
-from regolith_studio.readers.sample import sample_particles
+from regolith_studio.readers.particles import (
+    FileProblem,
+    MeshFile,
+    find_files,
+    read_file,
+    sample_particles,
+    unique_name,
+)
 from regolith_studio.readers.shape_files import read_shape_source
 from regolith_studio.session.batch.prepared import MODEL, Prepared, read_grain, read_index
 from regolith_studio.session.recipe import SAMPLE, Recipe
@@ -161,7 +166,7 @@ class Items:
     """
 
     members: tuple[Item, ...]
-    problems: tuple[Problem, ...] = ()
+    problems: tuple[FileProblem, ...] = ()
 
     @classmethod
     def of(cls, recipe: Recipe, base: Path, prepared: Prepared = NOTHING) -> Self:
@@ -173,18 +178,18 @@ class Items:
             If the material card does not reach the degree asked for, or a particle that is chosen is not
             there.
         """
-        problems: list[Problem] = list(prepared.problems)
+        problems: list[FileProblem] = list(prepared.problems)
         members: list[Item] = []
         taken: set[str] = set()
         if SAMPLE in recipe.inputs:
             for particle in sample_particles():
-                members.append(SampleItem(free_name(particle.name, particle.group, taken), particle.name))
+                members.append(SampleItem(unique_name(particle.name, particle.group, taken), particle.name))
         for files, unit, repair in recipe.openings:
-            for file in files_in([base / name for name in files], problems):
-                members.append(FileItem(free_name(file.path.stem, file.group, taken), file, unit, repair))
+            for file in find_files([base / name for name in files], problems):
+                members.append(FileItem(unique_name(file.path.stem, file.group, taken), file, unit, repair))
         for folder in prepared.volumes:
             for entry in read_index(folder):
-                members.append(GrainItem(free_name(entry["name"], entry["group"], taken), folder, entry))
+                members.append(GrainItem(unique_name(entry["name"], entry["group"], taken), folder, entry))
         if recipe.population is not None:
             members += _drawn(recipe, recipe.population, prepared.model, taken)
         if recipe.particles is not None:
@@ -210,7 +215,7 @@ def _drawn(recipe: Recipe, population: Population, model: Path | None, taken: se
     seed = recipe.seed if population.seed is None else population.seed
     level = recipe.level if population.level is None else population.level
     return [
-        DrawnItem(free_name(name, "", taken), population, seed, index, level, model)
+        DrawnItem(unique_name(name, "", taken), population, seed, index, level, model)
         for index, name in enumerate(drawn_names(title_of(population), population.n))
     ]
 

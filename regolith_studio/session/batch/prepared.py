@@ -27,8 +27,9 @@ from regolith_studio.jobs.events import Steps
 from regolith_studio.jobs.extracting import VolumeInput, extract_each, fingerprint
 from regolith_studio.jobs.generating import GenerateOrder, expansion_of, fit_model, sample_of_meshes
 from regolith_studio.jobs.grain_recipe import GrainRecipe, read_grain_recipe
-from regolith_studio.jobs.loading import Problem, files_in, load_particles
+from regolith_studio.jobs.loading import load_particles
 from regolith_studio.readers.hashing import sha256_of
+from regolith_studio.readers.particles import FileProblem, find_files
 from regolith_studio.readers.shape_files import is_shape_source, read_shape_source
 from regolith_studio.readers.volume_header import RawLayout
 from regolith_studio.session.outputs.extraction import RECIPE, recipe_document
@@ -59,7 +60,7 @@ class Prepared:
 
     volumes: tuple[Path, ...] = ()
     model: Path | None = None
-    problems: tuple[Problem, ...] = ()
+    problems: tuple[FileProblem, ...] = ()
 
 
 def prepare(recipe: Recipe, base: Path, place: Path, crew: Crew, over: bool = False) -> Steps:
@@ -197,13 +198,13 @@ def _model(recipe: Recipe, population: Population, base: Path, place: Path, crew
             "A population is drawn from one card, fit or model, or from meshes and tables only, got "
             f"{', '.join(population.sources)}."
         )
-    problems: list[Problem] = []
+    problems: list[FileProblem] = []
     if named:
         source = read_shape_source(named[0])
         marks = [named[0], source.sha256]
     else:
         _check_there(population, paths)
-        marks = [sha256_of(file.path) for file in files_in(paths, problems)]
+        marks = [sha256_of(file.path) for file in find_files(paths, problems)]
     told = population.model_dump(mode="json", exclude={"n", "size_range"})
     folder = place / f"model-{_digest(told, recipe.seed, recipe.unit, recipe.repair, marks)}"
     if not (folder / f"{MODEL}.npz").is_file():

@@ -5,9 +5,9 @@ import hashlib
 import pytest
 
 from regolith_studio.errors import FileError, GeometryError, InputError
-from regolith_studio.readers import read_mesh, read_particles, sample_particles
 from regolith_studio.readers.formats import mesh_formats, mesh_suffixes
 from regolith_studio.readers.hashing import sha256_of
+from regolith_studio.readers.particles import read_mesh, read_particles, sample_particles
 from regolith_studio.readers.units import UNITS, unit_factor
 
 

@@ -1,28 +1,29 @@
-"""Files and folders to particles: the front door for meshes and for tables of coefficients."""
+"""Read particles from files and folders: meshes, tables of coefficients, and the shipped sample."""
 
+import csv
 import logging
+import math
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
 
-from regolith_studio.errors import FileError, GeometryError
+from regolith_studio.errors import EnvironmentProblem, FileError, GeometryError
 from regolith_studio.geometry import repair as mending
 from regolith_studio.geometry.health import inspect
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle, Source
 from regolith_studio.geometry.welding import welded
-from regolith_studio.readers.border_weights import weights_in
 from regolith_studio.readers.formats import mesh_suffixes
 from regolith_studio.readers.guard import Guard, shared_guard
 from regolith_studio.readers.sentences import counted, sentence_about, shown_name
 from regolith_studio.readers.table_particles import TABLE_SUFFIXES, TEXT_SUFFIXES, particle_of_table
-from regolith_studio.readers.units import UNITS, unit_factor
-
-__all__ = ["UNITS", "MeshFile", "ProblemListener", "mesh_files", "read_file", "read_mesh", "read_particles"]
+from regolith_studio.readers.units import unit_factor
+from regolith_studio.resources import resource
 
 ProblemListener = Callable[[Path, str], None]
-"""Told of each file that could not be read: its path, and one sentence."""
+"""Called for each file that could not be read, with its path and one sentence."""
 
 _log = logging.getLogger(__name__)
 
@@ -34,6 +35,30 @@ class MeshFile:
     path: Path
     group: str = ""
     weight: float = 1.0
+
+
+@dataclass(frozen=True)
+class FileProblem:
+    """A file that could not be read, and why, in one sentence."""
+
+    path: str
+    sentence: str
+
+    @property
+    def with_path(self) -> str:
+        """The sentence with the whole path, where the file's name alone may be ambiguous."""
+        name = shown_name(Path(self.path))
+        if self.sentence.startswith(f"{name} "):
+            return self.path + self.sentence.removeprefix(name)
+        return f"{self.path}: {self.sentence}"
+
+
+@dataclass(frozen=True)
+class LoadedParticles:
+    """Particles with unique names, and the files that could not be read."""
+
+    particles: tuple[Particle, ...]
+    problems: tuple[FileProblem, ...] = ()
 
 
 def read_mesh(
@@ -79,28 +104,76 @@ def read_particles(
     paths, unit, repair
         As for `read_mesh`; folders are searched to any depth.
     on_problem
-        Told of each file that could not be read; by default a line of the program's log.
+        Called for each file that could not be read; by default it is written to the program's log.
 
     Raises
     ------
     FileError
-        If no file could be read at all: the first file's sentence.
+        If no file could be read at all: the first file's message.
     """
-    tell = on_problem or _to_log
-    read: list[tuple[MeshFile, Particle]] = []
-    problems: list[str] = []
-    for file in mesh_files(paths):
+    problems: list[FileProblem] = []
+    results = [result for _, result in read_each(find_files(paths, problems), unit, repair)]
+    loaded = collect_particles(results, problems)
+    for problem in loaded.problems:
+        (on_problem or _log_problem)(Path(problem.path), problem.sentence)
+    return list(loaded.particles)
+
+
+def read_each(
+    files: Sequence[MeshFile], unit: str = "um", repair: bool = True
+) -> Iterator[tuple[MeshFile, "Particle | FileProblem"]]:
+    """Read one file after the other; a file that cannot be read gives a `FileProblem`."""
+    for file in files:
         try:
-            read.append((file, read_file(file, unit, repair)))
+            yield file, read_file(file, unit, repair)
         except (FileError, GeometryError) as error:
-            problems.append(str(error))
-            tell(file.path, str(error))
-    if not read:
-        more = (
-            f" ({counted(len(problems) - 1, 'more file')} could not be read either.)" if problems[1:] else ""
-        )
-        raise FileError((problems[0] if problems else "There is no file to read.") + more)
-    return _uniquely_named(read)
+            yield file, FileProblem(str(file.path), str(error))
+
+
+def collect_particles(
+    results: Iterable["Particle | FileProblem"], problems: Sequence[FileProblem] = ()
+) -> LoadedParticles:
+    """The results of `read_each` under unique names.
+
+    Parameters
+    ----------
+    problems
+        Of folders, which come before those of files.
+
+    Raises
+    ------
+    FileError
+        If there is no particle: the first problem's message, and the number of the others.
+    """
+    results = list(results)
+    particles = [result for result in results if isinstance(result, Particle)]
+    problems = (*problems, *(result for result in results if isinstance(result, FileProblem)))
+    if particles:
+        return LoadedParticles(unique_names(particles), problems)
+    if not problems:
+        raise FileError("There is no file to read.")
+    more = f" ({counted(len(problems) - 1, 'more file')} could not be read either.)" if problems[1:] else ""
+    raise FileError(problems[0].sentence + more)
+
+
+def unique_names(particles: Sequence[Particle], taken: Sequence[str] = ()) -> tuple[Particle, ...]:
+    """The particles; a name that is `taken`, or came before, gets the group, then a number."""
+    used = set(taken)
+    return tuple(
+        replace(particle, name=unique_name(particle.name, particle.group, used)) for particle in particles
+    )
+
+
+def unique_name(name: str, group: str, used: set[str]) -> str:
+    """The name; if it is `used`, the name with its group, then with a number. It is added to `used`."""
+    if name in used and group:
+        name = f"{group.replace('/', '_')}_{name}"
+    base, number = name, 1
+    while name in used:
+        number += 1
+        name = f"{base}_{number}"
+    used.add(name)
+    return name
 
 
 def read_file(file: MeshFile, unit: str = "um", repair: bool = True, guard: Guard | None = None) -> Particle:
@@ -148,6 +221,17 @@ def _read_mesh(file: MeshFile, unit: str, repair: bool, guard: Guard | None) -> 
     return Particle(path.stem, mesh, file.group, source, notes, file.weight, mended)
 
 
+def find_files(paths: Sequence[str | Path], problems: list[FileProblem]) -> list[MeshFile]:
+    """As `mesh_files`, but a folder without meshes is added to `problems`."""
+    try:
+        return mesh_files(paths)
+    except FileError as error:
+        if len(paths) == 1:
+            problems.append(FileProblem(str(paths[0]), str(error)))
+            return []
+    return [file for path in paths for file in find_files([path], problems)]
+
+
 def mesh_files(paths: Sequence[str | Path]) -> list[MeshFile]:
     """The files that `read_particles` would read, in its order: those given, and those in folders.
 
@@ -186,25 +270,60 @@ def _in_folder(folder: Path, several: bool) -> Iterator[MeshFile]:
                 yield MeshFile(Path(where) / file, group)
 
 
-def _uniquely_named(read: Sequence[tuple[MeshFile, Particle]]) -> list[Particle]:
-    """The particles, with those of the same name told apart by their group, then by a number."""
-    taken: set[str] = set()
-    particles = []
-    for file, particle in read:
-        name = particle.name
-        if name in taken and file.group:
-            name = f"{file.group.replace('/', '_')}_{particle.name}"
-        base, number = name, 2
-        while name in taken:
-            name, number = f"{base}_{number}", number + 1
-        taken.add(name)
-        particles.append(replace(particle, name=name))
-    return particles
-
-
-def _to_log(path: Path, sentence: str) -> None:
+def _log_problem(path: Path, sentence: str) -> None:
     _log.warning("%s: %s", path, sentence)
 
 
 def _lower(sentence: str) -> str:
     return sentence[0].lower() + sentence[1:]
+
+
+WEIGHTS_FILE = "particles.csv"
+LARGEST_TABLE = 256 * 1024**2
+
+
+def weights_in(folder: Path) -> dict[str, float]:
+    """Weight of each particle by its name; empty where the folder has no such table.
+
+    A table that somebody else wrote, with no columns ``name`` and ``weight``, or without a positive
+    number in the second, gives no weights: they are an addition to the meshes, not a part of them.
+    """
+    path = folder / WEIGHTS_FILE
+    found: dict[str, float] = {}
+    try:
+        if not path.is_file() or path.stat().st_size > LARGEST_TABLE:
+            return found
+        with path.open(encoding="utf-8-sig", newline="") as file:
+            rows = csv.DictReader(file)
+            if not {"name", "weight"} <= set(rows.fieldnames or ()):
+                return found
+            for row in rows:
+                weight = float(row["weight"] or 1.0)
+                if row["name"] and 0.0 < weight < math.inf:
+                    found[row["name"]] = weight
+    except (OSError, ValueError, csv.Error):
+        return {}
+    return found
+
+
+def sample_particles() -> list[Particle]:
+    """The shipped particles, in micrometres; an empty list in an installation without them."""
+    return list(_read())
+
+
+@cache
+def _read() -> tuple[Particle, ...]:
+    try:
+        folder = resource("samples", "particles")
+    except EnvironmentProblem:
+        return ()
+    files = sorted(folder.glob("*.stl"))
+    if not files:
+        return ()
+    return tuple(_named(particle) for particle in read_particles(files, unit="um"))
+
+
+def _named(particle: Particle) -> Particle:
+    assert particle.source is not None
+    source = Source(f"sample:{particle.name}", particle.source.sha256, "um")
+    return replace(particle, group="sample", source=source)
