@@ -5,7 +5,6 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from regolith_studio.model.models.gaussian_field import GaussianFieldModel
 
 from regolith_studio.coarsening.methods.quadric import QuadricMethod
 from regolith_studio.dataset.exporting import Exporter

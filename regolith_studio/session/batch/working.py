@@ -12,13 +12,8 @@ from regolith_studio.dataset.streaming import stored_shape
 from regolith_studio.errors import Cancelled
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.files import fits_document
-<<<<<<< HEAD
 from regolith_studio.harmonics.fit import DEFAULT_FIT_OPTIONS, FitOptions, HarmonicFit
-from regolith_studio.imaging.stl import stl_bytes
-=======
-from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.io.stl import stl_bytes
->>>>>>> 7329aee (Put STL, tables, JSON and atomic writing into a layer io below geometry)
 from regolith_studio.jobs.batch import call
 from regolith_studio.jobs.coarsening import CoarsenedParticle, CoarseningOrder, coarsen_particle
 from regolith_studio.jobs.events import Ending, Failed, Finished, Job, Progress, Started, Step, Steps
