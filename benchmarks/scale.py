@@ -74,8 +74,8 @@ def measured(particles: int, jobs: int) -> Run:
 
 def one(particles: int, jobs: int) -> Run:
     """In the process: perform the recipe in a temporary folder."""
-    from regolith_studio.jobs.crew import Crew
     from regolith_studio.jobs.events import Started
+    from regolith_studio.jobs.executor import Executor
     from regolith_studio.session.performing import perform
     from regolith_studio.session.recipe import recipe_of
 
@@ -90,12 +90,12 @@ def one(particles: int, jobs: int) -> Run:
     )
     with tempfile.TemporaryDirectory() as place, _watched() as memory:
         folder = Path(place) / "out"
-        crew, begun, mark = Crew(jobs), time.perf_counter(), 0.0
-        for step in perform(wish, Path(place), folder, crew):
+        executor, begun, mark = Executor(jobs), time.perf_counter(), 0.0
+        for step in perform(wish, Path(place), folder, executor):
             if isinstance(step, Started) and step.title.startswith("Writing"):
                 mark = time.process_time()
         assembling = time.process_time() - mark
-        crew.close()
+        executor.close()
         wall = time.perf_counter() - begun
         stages, disk = _stages(folder), sum(p.stat().st_size for p in folder.rglob("*") if p.is_file())
     return Run(particles, jobs, wall, _processor_time(), assembling, stages, memory.most, disk)

@@ -9,8 +9,7 @@ import typer
 from regolith_studio.cli.options import Folder, Jobs, Json, as_bad_use
 
 if TYPE_CHECKING:
-    from regolith_studio.jobs.crew import Crew
-    from regolith_studio.jobs.hiring import Hiring
+    from regolith_studio.jobs.executor import Executor, ExecutorSettings
 
 
 def run(
@@ -61,7 +60,7 @@ def run(
 ) -> None:
     """Do all that a recipe asks for: descriptors, fits, meshes, dataset, studies, summary."""
     from regolith_studio.cli.terminal import complain, follow, print_json
-    from regolith_studio.jobs.hiring import Hiring
+    from regolith_studio.jobs.executor import ExecutorSettings
     from regolith_studio.session.performing import perform
     from regolith_studio.session.recipe import read_recipe
 
@@ -69,9 +68,9 @@ def run(
     if seed is not None:
         wish = wish.model_copy(update={"seed": seed})
     with as_bad_use():
-        hiring = Hiring(runner, jobs, address, tls)
-    with contextlib.closing(_crew(hiring)) as crew:
-        done = follow(perform(wish, recipe.parent, output, crew, resume, chunk), logged=True)
+        settings = ExecutorSettings(runner, jobs, address, tls)
+    with contextlib.closing(_open_executor(settings)) as executor:
+        done = follow(perform(wish, recipe.parent, output, executor, resume, chunk), logged=True)
     complain(done.problems)
     if json:
         print_json({"folder": str(output), "files": done.files, "problems": list(done.problems)})
@@ -80,11 +79,11 @@ def run(
     raise typer.Exit(1 if done.problems else 0)
 
 
-def _crew(hiring: "Hiring") -> "Crew":
+def _open_executor(settings: "ExecutorSettings") -> "Executor":
     """Who is to work."""
     from regolith_studio.cli.terminal import complain
 
     with as_bad_use():
-        crew = hiring.crew()
-    complain([f"{crew.workers} workers; dashboard {crew.dashboard}"] if crew.dashboard else [])
-    return crew
+        executor = settings.open()
+    complain([f"{executor.workers} workers; dashboard {executor.dashboard}"] if executor.dashboard else [])
+    return executor

@@ -16,8 +16,8 @@ from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.fit import DEFAULT_FIT_OPTIONS, FitOptions
 from regolith_studio.harmonics.sample_spectrum import sample_spectrum
 from regolith_studio.jobs.coarsening import CoarsenedParticle, CoarseningOrder, coarsen_sample
-from regolith_studio.jobs.crew import Crew
 from regolith_studio.jobs.events import Progress, Started, Step, Steps
+from regolith_studio.jobs.executor import Executor
 from regolith_studio.jobs.representing import (
     ChosenParticles,
     Population,
@@ -40,7 +40,7 @@ class DatasetOptions:
     overwrite
         Whether a dataset that is there already may be replaced.
     workers
-        Processes that coarsen at the same time, 0 for one a core; or who is hired already.
+        Processes that coarsen at the same time, 0 for one a core; or an open executor.
     representatives
         How particles that stand for all are chosen; ``None`` lets every particle stand for itself.
     sizes
@@ -50,7 +50,7 @@ class DatasetOptions:
     name: str = ""
     preset: str | None = None
     overwrite: bool = False
-    workers: int | Crew = 1
+    workers: int | Executor = 1
     representatives: RepresentativesOrder | None = None
     sizes: str = "measured"
 

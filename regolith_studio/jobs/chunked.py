@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import Any, Self
 
 from regolith_studio.errors import Cancelled, EnvironmentProblem, FileError
-from regolith_studio.jobs.crew import Crew
-from regolith_studio.jobs.events import Ending, Failed, Finished, Job, Progress, Step, Stopped
+from regolith_studio.jobs.events import Failed, Finished, Job, JobResult, Progress, Step, Stopped
+from regolith_studio.jobs.executor import Executor
 from regolith_studio.jobs.journal import Journal
-from regolith_studio.jobs.pace import Pace
+from regolith_studio.jobs.progress_rate import ProgressRate
 from regolith_studio.jobs.shards import Record, read_shard, sha256, write_shard
 
 SMALL_BATCH = 200
@@ -173,7 +173,7 @@ class Batch:
 
 
 def work_through(
-    batch: Batch, work: Work, crew: Crew, failures: Callable[[Record], int] = lambda _: 0
+    batch: Batch, work: Work, executor: Executor, failures: Callable[[Record], int] = lambda _: 0
 ) -> Generator[Step, None, None]:
     """Do what is missing of a batch, telling rate and time left after each chunk.
 
@@ -185,41 +185,43 @@ def work_through(
     failures
         How often the item of a record has failed, for the story.
     """
-    pace = Pace(batch.n_items, batch.n_done)
+    rate = ProgressRate(batch.n_items, batch.n_done)
     missing = batch.missing
-    yield Progress(pace.done, pace.total, "")
-    answers = crew.as_they_end(work(chunk.indices) for chunk in missing)
+    yield Progress(rate.done, rate.total, "")
+    answers = executor.as_completed(work(chunk.indices) for chunk in missing)
     for answer in answers:
         if answer is not None:
-            number, ending = answer
+            number, result = answer
             chunk = missing[number]
-            records = yield from _records(chunk, ending, work, crew)
+            records = yield from _records(chunk, result, work, executor)
             batch.store(chunk, records)
-            pace.advance(chunk.count, sum(map(failures, records)))
-        yield Progress(pace.done, pace.total, str(pace))
+            rate.advance(chunk.count, sum(map(failures, records)))
+        yield Progress(rate.done, rate.total, str(rate))
 
 
-def _records(chunk: Chunk, ending: Ending, work: Work, crew: Crew) -> Generator[Step, None, Sequence[Record]]:
+def _records(
+    chunk: Chunk, result: JobResult, work: Work, executor: Executor
+) -> Generator[Step, None, Sequence[Record]]:
     """The records of a chunk, whatever became of its job."""
-    match ending:
+    match result:
         case Finished(value):
             return list(value)
         case Failed(sentence) if chunk.count == 1:
             return [Record(chunk.first, {LOST: sentence})]
         case Failed():
-            return (yield from _one_by_one(chunk, work, crew))
+            return (yield from _one_by_one(chunk, work, executor))
         case Stopped(reason) if reason:
             raise EnvironmentProblem(reason)
         case _:
             raise Cancelled("The work was stopped.")
 
 
-def _one_by_one(chunk: Chunk, work: Work, crew: Crew) -> Generator[Step, None, Sequence[Record]]:
+def _one_by_one(chunk: Chunk, work: Work, executor: Executor) -> Generator[Step, None, Sequence[Record]]:
     found: list[Record] = []
-    for index, ending in zip(chunk.indices, _said(crew, [work([i]) for i in chunk.indices]), strict=True):
-        found += yield from _records(Chunk(chunk.number, index, 1), ending, work, crew)
+    for index, result in zip(chunk.indices, _said(executor, [work([i]) for i in chunk.indices]), strict=True):
+        found += yield from _records(Chunk(chunk.number, index, 1), result, work, executor)
     return found
 
 
-def _said(crew: Crew, jobs: Sequence[Job]) -> Iterator[Ending]:
-    return (ending for ending in crew.endings(jobs) if ending is not None)
+def _said(executor: Executor, jobs: Sequence[Job]) -> Iterator[JobResult]:
+    return (result for result in executor.results(jobs) if result is not None)

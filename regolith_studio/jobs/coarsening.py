@@ -18,8 +18,18 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.fit import DEFAULT_FIT_OPTIONS, FitOptions, HarmonicFit
 from regolith_studio.harmonics.surface import reconstruct
-from regolith_studio.jobs.crew import Crew, hired
-from regolith_studio.jobs.events import Ending, Failed, Finished, Job, Partial, Progress, Started, Step, Steps
+from regolith_studio.jobs.events import (
+    Failed,
+    Finished,
+    Job,
+    JobResult,
+    Partial,
+    Progress,
+    Started,
+    Step,
+    Steps,
+)
+from regolith_studio.jobs.executor import Executor, open_executor
 from regolith_studio.jobs.fitting import FIT_DEGREE
 
 
@@ -124,7 +134,7 @@ def coarsen_particle(
 def coarsen_sample(
     particles: Sequence[Particle],
     order: CoarseningOrder,
-    workers: int | Crew = 1,
+    workers: int | Executor = 1,
     indices: Sequence[int] | None = None,
 ) -> Steps:
     """Fit and coarsen every particle; returns a tuple of :class:`CoarsenedParticle`.
@@ -137,13 +147,13 @@ def coarsen_sample(
     places = range(len(particles)) if indices is None else indices
     pairs = list(zip(particles, places, strict=True))
     jobs = [Job(coarsen_particle, (particle, order, at)) for particle, at in pairs]
-    with hired(workers) as crew:
-        endings = yield from crew.all(jobs, [particle.name for particle in particles])
-    return tuple(_outcome(at, p, ending) for (p, at), ending in zip(pairs, endings, strict=True))
+    with open_executor(workers) as executor:
+        results = yield from executor.run_all(jobs, [particle.name for particle in particles])
+    return tuple(_outcome(at, p, result) for (p, at), result in zip(pairs, results, strict=True))
 
 
-def _outcome(at: int, particle: Particle, ending: Ending) -> CoarsenedParticle:
-    match ending:
+def _outcome(at: int, particle: Particle, result: JobResult) -> CoarsenedParticle:
+    match result:
         case Finished(value) if isinstance(value, CoarsenedParticle):
             return value
         case Failed(sentence):

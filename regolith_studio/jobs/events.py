@@ -1,8 +1,8 @@
-"""The story of a job: small frozen events, the same for the window, the command line and the tests.
+"""Events of a job: small frozen records, the same for the window, the command line and the tests.
 
 A job is a generator function with picklable arguments. It yields :class:`Started`,
-:class:`Progress` and :class:`Partial`, and returns its result. How it ended is said by the runner:
-:class:`Finished`, :class:`Failed` or :class:`Stopped`, exactly one of them and always last.
+:class:`Progress` and :class:`Partial`, and returns its result. The runner reports how it ended with exactly
+one :class:`Finished`, :class:`Failed` or :class:`Stopped`, which always comes last.
 """
 
 from collections.abc import Callable, Generator, Mapping
@@ -20,7 +20,7 @@ class Started:
 
 @dataclass(frozen=True)
 class Progress:
-    """`done` of `total` steps are done; the message says what was done last."""
+    """`done` of `total` steps are done; the message names the last one."""
 
     done: int
     total: int
@@ -29,7 +29,7 @@ class Progress:
 
 @dataclass(frozen=True)
 class Partial:
-    """A result that is already of use: the best polyhedron so far, one row of a table."""
+    """An intermediate result: the best polyhedron so far, one row of a table."""
 
     value: Any
 
@@ -43,7 +43,7 @@ class Finished:
 
 @dataclass(frozen=True)
 class Failed:
-    """The job raised: one sentence for the user, the traceback for a report."""
+    """The job raised: a message for the user, and the traceback."""
 
     sentence: str
     details: str = ""
@@ -51,14 +51,14 @@ class Failed:
 
 @dataclass(frozen=True)
 class Stopped:
-    """The job was cancelled, or replaced by a newer one of its lane; `reason` where nobody asked for it."""
+    """The job was cancelled, or replaced by a newer one of its lane; `reason` if not by the user."""
 
     reason: str = ""
 
 
 Step = Started | Progress | Partial
-Ending = Finished | Failed | Stopped
-Event = Step | Ending
+JobResult = Finished | Failed | Stopped
+Event = Step | JobResult
 Listener = Callable[[Event], None]
 Steps = Generator[Step, None, Any]
 

@@ -13,9 +13,8 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.trouble_spots import fault_triangles
 from regolith_studio.harmonics.sight import Sight, sight
 from regolith_studio.harmonics.visibility import hidden_faces
-from regolith_studio.jobs.batch import value_of
-from regolith_studio.jobs.crew import Crew, hired
 from regolith_studio.jobs.events import Job, Partial, Progress, Started, Steps
+from regolith_studio.jobs.executor import Executor, open_executor, value_of
 
 
 @dataclass(frozen=True)
@@ -95,11 +94,11 @@ def examine_particles(particles: Sequence[Particle], box_metric: str = "exact") 
 
 
 def examine_sample(
-    particles: Sequence[Particle], box_metric: str = "exact", workers: int | Crew = 1
+    particles: Sequence[Particle], box_metric: str = "exact", workers: int | Executor = 1
 ) -> Steps:
     """As :func:`examine_particles`, by several processes; returns a tuple of :class:`Examined`."""
     yield Started("Measuring", len(particles))
     jobs = [Job(examine_one, (particle, box_metric)) for particle in particles]
-    with hired(workers) as crew:
-        endings = yield from crew.all(jobs, [particle.name for particle in particles])
-    return tuple(value_of(ending) for ending in endings)
+    with open_executor(workers) as executor:
+        results = yield from executor.run_all(jobs, [particle.name for particle in particles])
+    return tuple(value_of(result) for result in results)

@@ -25,10 +25,9 @@ from regolith_studio.imaging.segmentation.segment import (
 )
 from regolith_studio.imaging.slabs import Scratch, SlabSource
 from regolith_studio.imaging.volume import VolumeKind
-from regolith_studio.jobs.batch import value_of
-from regolith_studio.jobs.crew import Crew, hired
 from regolith_studio.jobs.events import Job, Progress, Started, Step, Steps
 from regolith_studio.jobs.examining import Examined, examine_one
+from regolith_studio.jobs.executor import Executor, open_executor, value_of
 from regolith_studio.jobs.grain_recipe import GrainRecipe
 from regolith_studio.readers.hashing import sha256_of
 from regolith_studio.readers.volume_files import slice_names
@@ -155,7 +154,7 @@ def extract_each(
 
 
 def extract_measured(
-    given: VolumeInput, recipe: GrainRecipe, scratch: Path | None, sink: Sink, workers: int | Crew = 1
+    given: VolumeInput, recipe: GrainRecipe, scratch: Path | None, sink: Sink, workers: int | Executor = 1
 ) -> Steps:
     """As :func:`extract_file`, but each particle is measured, handed to `sink` and forgotten.
 
@@ -258,7 +257,7 @@ def _collected(steps: _Extracting) -> Generator[Step, None, Extraction]:
     return (yield from _handed(steps, lambda _particle: None))
 
 
-def _measured(steps: _Extracting, sink: Sink, workers: int | Crew) -> Generator[Step, None, Extraction]:
+def _measured(steps: _Extracting, sink: Sink, workers: int | Executor) -> Generator[Step, None, Extraction]:
     """Measure particles by other processes while the next ones are extracted."""
     waiting: deque[ExtractionProgress] = deque()
     ended: list[Extraction] = []
@@ -273,12 +272,12 @@ def _measured(steps: _Extracting, sink: Sink, workers: int | Crew) -> Generator[
             waiting.append(step)
             yield Job(examine_one, (step.extracted.particle,))
 
-    with hired(workers) as crew:
-        for ending in crew.endings(jobs()):
-            if ending is None:
+    with open_executor(workers) as executor:
+        for result in executor.results(jobs()):
+            if result is None:
                 continue
             step = waiting.popleft()
-            sink(step.extracted, value_of(ending))
+            sink(step.extracted, value_of(result))
             yield Progress(step.done, step.total, step.extracted.particle.name)
     return ended[0]
 

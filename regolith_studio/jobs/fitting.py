@@ -9,9 +9,8 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.coefficients import checked_degree
 from regolith_studio.harmonics.fit import DEFAULT_FIT_OPTIONS, FitOptions, HarmonicFit
 from regolith_studio.harmonics.surface import reconstruct
-from regolith_studio.jobs.batch import value_of
-from regolith_studio.jobs.crew import Crew, hired
 from regolith_studio.jobs.events import Failed, Job, Partial, Progress, Started, Steps
+from regolith_studio.jobs.executor import Executor, open_executor, value_of
 
 FIT_DEGREE = 30
 """Everything is fitted to this degree once; lower ones are truncations of that fit."""
@@ -64,10 +63,12 @@ def describe_meshes(meshes: Mapping[str, Mesh], box_metric: str = "exact") -> St
     return described
 
 
-def fit_sample(particles: Sequence[Particle], order: FitOrder = FitOrder(), workers: int | Crew = 1) -> Steps:
+def fit_sample(
+    particles: Sequence[Particle], order: FitOrder = FitOrder(), workers: int | Executor = 1
+) -> Steps:
     """Fit every particle; returns a tuple of ``HarmonicFit``, or the sentence where that is impossible."""
     yield Started("Fitting spherical harmonics", len(particles))
     jobs = [Job(fit_one, (particle.mesh, order)) for particle in particles]
-    with hired(workers) as crew:
-        endings = yield from crew.all(jobs, [particle.name for particle in particles])
-    return tuple(e.sentence if isinstance(e, Failed) else value_of(e) for e in endings)
+    with open_executor(workers) as executor:
+        results = yield from executor.run_all(jobs, [particle.name for particle in particles])
+    return tuple(e.sentence if isinstance(e, Failed) else value_of(e) for e in results)

@@ -12,10 +12,9 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.surface import DEFAULT_LEVEL
 from regolith_studio.io.stl import stl_bytes
-from regolith_studio.jobs.batch import value_of
-from regolith_studio.jobs.crew import Crew, hired
 from regolith_studio.jobs.events import Job, Progress, Started, Steps
 from regolith_studio.jobs.examining import Examined, examine
+from regolith_studio.jobs.executor import Executor, open_executor, value_of
 from regolith_studio.jobs.fitting import FIT_DEGREE, FitOrder, fit_sample
 from regolith_studio.readers.shape_files import ShapeSource, radius_of
 from regolith_studio.shape_models.chunks import joined
@@ -84,7 +83,7 @@ def expansion_of(order: GenerateOrder | None = None) -> FitOrder:
     return FitOrder(min(FIT_DEGREE, 2 * degree))
 
 
-def sample_of_meshes(particles: Sequence[Particle], order: FitOrder, workers: int | Crew = 1) -> Steps:
+def sample_of_meshes(particles: Sequence[Particle], order: FitOrder, workers: int | Executor = 1) -> Steps:
     """Expand particles for a model; returns a :class:`ShapeSource`, its notes name those left out.
 
     Raises
@@ -210,7 +209,7 @@ def make_particles(draws: Draws, model: FittedModel, title: str, level: int = DE
 
 
 def write_meshes(
-    draws: Draws, groups: Sequence[str], level: int, folder: Path, workers: int | Crew = 1
+    draws: Draws, groups: Sequence[str], level: int, folder: Path, workers: int | Executor = 1
 ) -> Steps:
     """Write ``<name>.stl`` of each particle into `folder`; returns what is known of each, in order.
 
@@ -232,9 +231,9 @@ def write_meshes(
         for first in range(0, len(draws), BATCH)
     )
     facts: list[Examined] = []
-    with hired(workers) as crew:
-        for ending in crew.endings(jobs):
-            facts += value_of(ending) if ending is not None else ()
+    with open_executor(workers) as executor:
+        for result in executor.results(jobs):
+            facts += value_of(result) if result is not None else ()
             yield Progress(len(facts), len(draws))
     return tuple(facts)
 

@@ -17,9 +17,9 @@ from regolith_studio.dataset.size_distribution import Weighting
 from regolith_studio.descriptors.describe import Descriptors
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.jobs.crew import Crew
 from regolith_studio.jobs.events import Partial, Progress, Started, Steps
 from regolith_studio.jobs.examining import examine_sample
+from regolith_studio.jobs.executor import Executor
 
 
 @dataclass(frozen=True)
@@ -124,7 +124,7 @@ class ChosenParticles:
         return replace(self, representation=Representation(len(rows), errors, noise))
 
 
-def measure_population(particles: Sequence[Particle], workers: int | Crew = 1) -> Steps:
+def measure_population(particles: Sequence[Particle], workers: int | Executor = 1) -> Steps:
     """Descriptors of every particle; returns :class:`Population`.
 
     Raises
@@ -199,7 +199,7 @@ def survey(
     particles: Sequence[Particle],
     order: RepresentativesOrder,
     population: Population | None = None,
-    workers: int | Crew = 1,
+    workers: int | Executor = 1,
 ) -> Steps:
     """Measure a sample, unless that is done, and its quality curve; returns :class:`Survey`.
 

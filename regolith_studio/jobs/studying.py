@@ -6,10 +6,9 @@ from typing import Any
 
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.answers import Answers, Mapper, fingerprint, fingerprint_of_rows
-from regolith_studio.jobs.batch import call, value_of
 from regolith_studio.jobs.coarsening import CoarseningOrder
-from regolith_studio.jobs.crew import Crew, hired
 from regolith_studio.jobs.events import Job, Partial, Progress, Started, Step, Steps
+from regolith_studio.jobs.executor import Executor, call, open_executor, value_of
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.studies.coarsening import TargetChoice, coarsening_study
 from regolith_studio.studies.lmax import lmax_study
@@ -19,7 +18,7 @@ from regolith_studio.studies.progress import StudyProgress
 
 def study_lmax(
     particles: Sequence[Particle],
-    workers: int | Crew = 1,
+    workers: int | Executor = 1,
     seed: int = 0,
     answers: Answers | None = None,
     **options: Any,
@@ -38,15 +37,15 @@ def study_lmax(
     yield Started("RMSRE against l_max", len(particles))
     if answers is not None:
         answers.about("lmax", (seed, sorted(options.items())), fingerprint(particles))
-    with hired(workers) as crew:
-        mapper = _kept(crew.map, answers)
+    with open_executor(workers) as executor:
+        mapper = _kept(executor.map, answers)
         return (yield from told(lmax_study(particles, mapper=mapper, seed=seed, **options)))
 
 
 def study_population(
     sample: Sample,
     models: Sequence[str] | None = None,
-    workers: int | Crew = 1,
+    workers: int | Executor = 1,
     answers: Answers | None = None,
     **options: Any,
 ) -> Steps:
@@ -67,21 +66,21 @@ def study_population(
     if answers is not None:
         inputs = fingerprint_of_rows(sample.coefficients, (*sample.names, sample.unit))
         answers.about("population", (models, sorted(options.items())), inputs)
-    with hired(workers) as crew:
-        mapper = _kept(partial(_mapped, crew), answers)
+    with open_executor(workers) as executor:
+        mapper = _kept(partial(_mapped, executor), answers)
         return (yield from told(population_study(sample, models, mapper=mapper, **options)))
 
 
-def _mapped(crew: Crew, function: Callable[[Any], Any], items: Iterable[Any]) -> Iterator[Any]:
-    """As :meth:`Crew.map`, but with ``None`` while a result is waited for: the study can then be stopped."""
-    for ending in crew.endings(Job(call, (function, item)) for item in items):
-        yield None if ending is None else value_of(ending)
+def _mapped(executor: Executor, function: Callable[[Any], Any], items: Iterable[Any]) -> Iterator[Any]:
+    """As :meth:`Executor.map`, with ``None`` while waiting, so that the study can be stopped."""
+    for result in executor.results(Job(call, (function, item)) for item in items):
+        yield None if result is None else value_of(result)
 
 
 def study_coarsening(
     particles: Sequence[Particle],
     order: CoarseningOrder,
-    workers: int | Crew = 1,
+    workers: int | Executor = 1,
     answers: Answers | None = None,
     title: str = "RMSRE against loss weights",
     **options: Any,
@@ -104,7 +103,7 @@ def study_coarsening(
     yield Started(title, len(particles))
     if answers is not None:
         answers.about("coarsening", (order, sorted(options.items())), fingerprint(particles))
-    with hired(workers) as crew:
+    with open_executor(workers) as executor:
         study = coarsening_study(
             particles,
             n_facets=order.n_facets,
@@ -112,7 +111,7 @@ def study_coarsening(
             seed=order.seed,
             settings=dict(order.settings),
             target=TargetChoice(order.target, order.l_max, order.level, order.fit_options),
-            mapper=_kept(crew.map, answers),
+            mapper=_kept(executor.map, answers),
             **options,
         )
         return (yield from told(study))

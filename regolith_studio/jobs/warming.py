@@ -9,14 +9,13 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.fit import fit_harmonics
 from regolith_studio.harmonics.surface import reconstruct
-from regolith_studio.jobs.batch import call, value_of
-from regolith_studio.jobs.crew import Crew, hired
 from regolith_studio.jobs.events import Job, Started, Steps
 from regolith_studio.jobs.examining import examine
+from regolith_studio.jobs.executor import Executor, call, open_executor, value_of
 from regolith_studio.jobs.thrift import load_runtime_of_kernels
 
 
-def warm_up(workers: int | Crew = 0) -> Steps:
+def warm_up(workers: int | Executor = 0) -> Steps:
     """Run the whole chain on a small body, each method in a process of its own; returns the steps' names.
 
     Parameters
@@ -28,10 +27,10 @@ def warm_up(workers: int | Crew = 0) -> Steps:
     chores["fit"] = _measure_and_fit
     yield Started("Compiling", len(chores))
     jobs = [Job(call, (chore, name)) for name, chore in chores.items()]
-    with hired(workers) as crew:
-        endings = yield from crew.all(jobs, list(chores))
-    for ending in endings:
-        value_of(ending)
+    with open_executor(workers) as executor:
+        results = yield from executor.run_all(jobs, list(chores))
+    for result in results:
+        value_of(result)
     return tuple(chores)
 
 

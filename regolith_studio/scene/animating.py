@@ -7,9 +7,8 @@ from typing import Any
 from regolith_studio.coarsening.result import Coarsened
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.harmonics.fit import HarmonicFit
-from regolith_studio.jobs.batch import value_of
-from regolith_studio.jobs.crew import hired
 from regolith_studio.jobs.events import Job, Started, Steps
+from regolith_studio.jobs.executor import open_executor, value_of
 from regolith_studio.scene.cameras import CameraPose
 from regolith_studio.scene.degrees import degree_animation
 from regolith_studio.scene.figure import three_views
@@ -18,7 +17,7 @@ from regolith_studio.scene.turntable import turntable
 
 LEVEL = 4
 _PROCESSES = 2
-"""More than one, or the crew would draw in this thread; only one is started."""
+"""More than one, or the executor would draw in this thread; only one is started."""
 
 
 def animate(particle: Mesh, fit: HarmonicFit, degrees: Sequence[int], path: Path) -> Steps:
@@ -53,9 +52,9 @@ def draw_figure(
 
 def _apart(title: str, path: Path, draw: Callable[..., None], *arguments: Any) -> Steps:
     yield Started(title)
-    with hired(_PROCESSES) as crew:
-        endings = yield from crew.all([Job(_call, (title, draw, arguments))], [path.name])
-    return value_of(endings[0])
+    with open_executor(_PROCESSES) as executor:
+        results = yield from executor.run_all([Job(_call, (title, draw, arguments))], [path.name])
+    return value_of(results[0])
 
 
 def _call(title: str, draw: Callable[..., None], arguments: tuple[Any, ...]) -> Steps:

@@ -44,7 +44,7 @@ def bring_back(recipe: Recipe, beside: Path) -> Steps:
     InputError
         If a setting is wrong, or the population is too large to be opened.
     """
-    from regolith_studio.jobs.crew import Crew
+    from regolith_studio.jobs.executor import Executor
     from regolith_studio.session.batch.items import Items
     from regolith_studio.session.batch.prepared import prepare
 
@@ -55,7 +55,7 @@ def bring_back(recipe: Recipe, beside: Path) -> Steps:
         )
     with tempfile.TemporaryDirectory(prefix="regolith-") as scratch:
         prepared: Prepared = yield from prepare(
-            recipe, beside.absolute(), Path(scratch) / "work" / "prepared", Crew(1)
+            recipe, beside.absolute(), Path(scratch) / "work" / "prepared", Executor(1)
         )
         items = Items.of(recipe, beside.absolute(), prepared)
         places = _Places(recipe, beside.absolute(), prepared)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from regolith_studio.jobs.chunked import JOURNAL
 from regolith_studio.jobs.events import Partial, Started, Steps
-from regolith_studio.jobs.hiring import Hiring
+from regolith_studio.jobs.executor import ExecutorSettings
 from regolith_studio.session.recipe import Recipe
 
 
@@ -27,17 +27,19 @@ class Hired:
     dashboard: str = ""
 
 
-def perform_hired(recipe: Recipe, base: Path, folder: Path, hiring: Hiring, resume: bool = False) -> Steps:
-    """As :func:`~regolith_studio.session.performing.perform`, with a crew of its own, let go at the end.
+def perform_hired(
+    recipe: Recipe, base: Path, folder: Path, settings: ExecutorSettings, resume: bool = False
+) -> Steps:
+    """As :func:`~regolith_studio.session.performing.perform`, with an executor of its own, closed at the end.
 
     The first partial result is :class:`Hired`.
     """
     from regolith_studio.session.performing import perform  # with all that a batch needs, figures included
 
-    yield Started("Looking for the cluster" if hiring.runner == "dask" else "Starting the workers")
-    with contextlib.closing(hiring.crew()) as crew:
-        yield Partial(Hired(crew.workers, crew.dashboard))
-        return (yield from perform(recipe, base, folder, crew, resume))
+    yield Started("Looking for the cluster" if settings.runner == "dask" else "Starting the workers")
+    with contextlib.closing(settings.open()) as executor:
+        yield Partial(Hired(executor.workers, executor.dashboard))
+        return (yield from perform(recipe, base, folder, executor, resume))
 
 
 def is_unfinished(folder: Path) -> bool:

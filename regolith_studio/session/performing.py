@@ -23,8 +23,8 @@ from regolith_studio.io.atomic import staged_folder, write_bytes
 from regolith_studio.jobs.answers import Answers
 from regolith_studio.jobs.building import story
 from regolith_studio.jobs.chunked import JOURNAL, LOST, Batch, work_through
-from regolith_studio.jobs.crew import Crew, hired
 from regolith_studio.jobs.events import Job, Progress, Started, Step, Steps
+from regolith_studio.jobs.executor import Executor, open_executor
 from regolith_studio.jobs.journal import Journal
 from regolith_studio.jobs.shards import Record
 from regolith_studio.jobs.studying import study_coarsening, study_lmax
@@ -94,7 +94,7 @@ def perform(
     recipe: Recipe,
     base: Path,
     folder: Path,
-    workers: int | Crew = 1,
+    workers: int | Executor = 1,
     resume: bool = False,
     chunk: int | None = None,
 ) -> Steps:
@@ -135,9 +135,9 @@ def perform(
         )
     if recipe.population is not None:
         _check_size(recipe, recipe.population.n)
-    with hired(workers) as crew:
+    with open_executor(workers) as executor:
         prepared: Prepared = yield from prepare(
-            recipe, base, place / PREPARED_FOLDER, crew, over=over and resume
+            recipe, base, place / PREPARED_FOLDER, executor, over=over and resume
         )
         done = Performed(folder, recipe, choices, Items.of(recipe, base, prepared), resume=resume)
         _check(done)
@@ -145,10 +145,10 @@ def perform(
             if (ended := _ending(batch)) is not None:
                 done.problems = ended
                 return done
-            yield from _worked(done, batch, crew)
+            yield from _worked(done, batch, executor)
             yield from _assembled(done, batch)
             _tell_of_volumes(done, prepared)
-            yield from _whole(done, crew)
+            yield from _whole(done, executor)
             if recipe.outputs.summary:
                 write_summary(folder, done.recipe, done.summary, done.studies, done.problems)
             write_bytes(folder / "recipe.json", recipe.to_json().encode("utf-8"))
@@ -198,7 +198,7 @@ def _ending(batch: Batch) -> list[str] | None:
     return next((list(entry["ended"]) for entry in batch.notes if "ended" in entry), None)
 
 
-def _worked(done: Performed, batch: Batch, crew: Crew) -> Part:
+def _worked(done: Performed, batch: Batch, executor: Executor) -> Part:
     wish = done.recipe.outputs
     shapes = wish.dataset and done.recipe.representatives is None
     coarse = wish.meshes or shapes or wish.summary
@@ -213,7 +213,10 @@ def _worked(done: Performed, batch: Batch, crew: Crew) -> Part:
     members = done.items.members
     yield Started("Working on particles", len(members))
     yield from work_through(
-        batch, lambda chunk: Job(work_on, (tuple((i, members[i]) for i in chunk), asked)), crew, n_failures
+        batch,
+        lambda chunk: Job(work_on, (tuple((i, members[i]) for i in chunk), asked)),
+        executor,
+        n_failures,
     )
 
 
@@ -291,14 +294,14 @@ def _preset(done: Performed) -> str | None:
     return None if done.choices.preset_modified else done.choices.preset
 
 
-def _whole(done: Performed, crew: Crew) -> Part:
+def _whole(done: Performed, executor: Executor) -> Part:
     """What needs all particles at the same time: representatives and studies; then the exports."""
     recipe, wish, there = done.recipe, done.recipe.outputs, done.tally.n_coarse > 0
     if recipe.representatives or wish.lmax_study or wish.coarsening_study:
         particles = yield from _read(done)
         if recipe.representatives is not None:
-            there = yield from _represented(done, recipe.representatives, particles, crew)
-        yield from _studied(done, particles, crew)
+            there = yield from _represented(done, recipe.representatives, particles, executor)
+        yield from _studied(done, particles, executor)
     if recipe.exports is not None and there:
         try:
             yield from export_standing(recipe.exports, recipe.seed, done.folder)
@@ -307,12 +310,12 @@ def _whole(done: Performed, crew: Crew) -> Part:
 
 
 def _represented(
-    done: Performed, wish: Representatives, particles: list[Particle], crew: Crew
+    done: Performed, wish: Representatives, particles: list[Particle], executor: Executor
 ) -> Generator[Step, None, bool]:
     """Write the dataset of those that stand for all; whether that was possible."""
     try:
         built = yield from build_standing(
-            done.recipe, wish, particles, done.choices.order, _preset(done), done.folder, crew
+            done.recipe, wish, particles, done.choices.order, _preset(done), done.folder, executor
         )
     except RegolithError as error:
         done.problems.append(f"There is no dataset. ({error})")
@@ -322,13 +325,15 @@ def _represented(
     return True
 
 
-def _studied(done: Performed, particles: list[Particle], crew: Crew) -> Part:
+def _studied(done: Performed, particles: list[Particle], executor: Executor) -> Part:
     wish, choices = done.recipe.outputs, done.choices
     if wish.lmax_study:
-        lmax = partial(study_lmax, particles, crew, choices.seed, fit_options=choices.fit_options)
+        lmax = partial(study_lmax, particles, executor, choices.seed, fit_options=choices.fit_options)
         yield from _study(done, "lmax_study", lmax)
     if wish.coarsening_study:
-        yield from _study(done, "coarsening_study", partial(study_coarsening, particles, choices.order, crew))
+        yield from _study(
+            done, "coarsening_study", partial(study_coarsening, particles, choices.order, executor)
+        )
 
 
 def _read(done: Performed) -> Generator[Step, None, list[Particle]]:

@@ -11,8 +11,8 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.jobs.answers import Answers, fingerprint
 from regolith_studio.jobs.coarsening import CoarsenedParticle, CoarseningOrder, coarsen_particle
-from regolith_studio.jobs.crew import Crew, hired
 from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
+from regolith_studio.jobs.executor import Executor, open_executor
 from regolith_studio.session.choices import L_MAX_LIMIT
 from regolith_studio.studies.loss_rows import StudyRow, paper_rows
 from regolith_studio.studies.solid_study import SolidStudy, StudiedSolid
@@ -66,7 +66,7 @@ def study_solids(
     particles: Sequence[Particle],
     order: CoarseningOrder,
     rows: Sequence[StudyRow] | None = None,
-    workers: int | Crew = 1,
+    workers: int | Executor = 1,
     answers: Answers | None = None,
 ) -> Steps:
     """As :func:`draw_solids`, particle by particle; the result is the study that can be written.
@@ -84,8 +84,8 @@ def study_solids(
         answers.about("solids", (order, chosen), fingerprint(particles))
     labels, names = [row.label for row in chosen], [particle.name for particle in particles]
     cells: dict[tuple[int, int], StudiedSolid | str] = {}
-    with hired(workers) as crew:
-        mapper = crew.map if answers is None else answers.through(crew.map)
+    with open_executor(workers) as executor:
+        mapper = executor.map if answers is None else answers.through(executor.map)
         found = mapper(partial(solids_of, order=order, rows=chosen), list(enumerate(particles)))
         for column, (name, answer) in enumerate(zip(names, found, strict=True)):
             for row, cell in enumerate(answer["rows"]):

@@ -80,7 +80,7 @@ class Batches(QObject):
             dialog.finish(str(error))
             return
         base = order.recipe.parent if order.recipe else Path.cwd()
-        job = Job(perform_hired, (recipe, base, order.folder, order.hiring, order.resume))
+        job = Job(perform_hired, (recipe, base, order.folder, order.executor, order.resume))
         self._task = self._session.run(
             "batch", TITLE, job, self._done, self._hired, self._failed, self._stopped
         )

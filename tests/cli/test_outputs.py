@@ -7,7 +7,7 @@ import pytest
 
 from regolith_studio.cli.entry import run
 from regolith_studio.jobs.events import Failed, Job, Steps
-from regolith_studio.jobs.runners.drive import drive
+from regolith_studio.jobs.runners.run_job import run_job
 
 COMMANDS = (
     "coarsen MESH",
@@ -72,6 +72,6 @@ def test_that_a_full_disk_is_a_sentence_of_the_system(
     monkeypatch.setattr("regolith_studio.cli.commands.app", full)
     assert run(["describe"]) == 1
     assert capsys.readouterr().err == f"{sentence}\n"
-    ending = drive(Job(full), lambda _step: None, lambda: False)
+    ending = run_job(Job(full), lambda _step: None, lambda: False)
     assert isinstance(ending, Failed)
     assert ending.sentence == sentence

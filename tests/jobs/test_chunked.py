@@ -11,10 +11,10 @@ import pytest
 
 from regolith_studio.errors import FileError, InputError
 from regolith_studio.jobs.chunked import LOST, Batch, chunk_size, chunks_of, work_through
-from regolith_studio.jobs.crew import hired
 from regolith_studio.jobs.events import Job, Progress, Started, Steps
+from regolith_studio.jobs.executor import open_executor
 from regolith_studio.jobs.journal import Journal
-from regolith_studio.jobs.pace import Pace, spoken
+from regolith_studio.jobs.progress_rate import ProgressRate, format_duration
 from regolith_studio.jobs.shards import Record, read_shard, write_shard
 
 ABOUT = {"recipe": "squares"}
@@ -41,8 +41,8 @@ def deadly_of(indices: Sequence[int]) -> Job:
 
 
 def finish(batch: Batch, workers: int = 1, work=squares_of) -> list[Progress]:
-    with hired(workers) as crew:
-        return [step for step in work_through(batch, work, crew) if isinstance(step, Progress)]
+    with open_executor(workers) as executor:
+        return [step for step in work_through(batch, work, executor) if isinstance(step, Progress)]
 
 
 def found(batch: Batch) -> list[tuple[int, int | None, bytes | None]]:
@@ -165,13 +165,13 @@ def test_that_a_value_that_is_no_number_never_reaches_the_disk(tmp_path: Path) -
 
 def test_that_the_pace_is_items_by_seconds_and_forgets_what_was_done_before() -> None:
     now = [0.0]
-    pace = Pace(1000, 400, clock=lambda: now[0])
-    assert str(pace) == ""
+    rate = ProgressRate(1000, 400, clock=lambda: now[0])
+    assert str(rate) == ""
     now[0] = 10.0
-    pace.advance(50, failed=2)
-    assert pace.rate == 5.0
-    assert pace.seconds_left == 110.0
-    assert str(pace) == "5 a second, 1 min 50 s left, 2 failed"
+    rate.advance(50, failed=2)
+    assert rate.rate == 5.0
+    assert rate.seconds_left == 110.0
+    assert str(rate) == "5 a second, 1 min 50 s left, 2 failed"
 
 
 @pytest.mark.parametrize(
@@ -179,7 +179,7 @@ def test_that_the_pace_is_items_by_seconds_and_forgets_what_was_done_before() ->
     [(8.4, "8 s"), (99, "99 s"), (200, "3 min 20 s"), (1500, "25 min"), (7500, "2 h 5 min")],
 )
 def test_that_a_time_is_said_as_people_say_it(seconds: float, words: str) -> None:
-    assert spoken(seconds) == words
+    assert format_duration(seconds) == words
 
 
 def test_that_an_error_of_the_work_is_no_end_of_the_batch(tmp_path: Path) -> None:

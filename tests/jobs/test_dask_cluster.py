@@ -15,9 +15,9 @@ from pathlib import Path
 import pytest
 
 from regolith_studio.errors import EnvironmentProblem, InputError
-from regolith_studio.jobs.crew import Crew
 from regolith_studio.jobs.events import Progress
-from regolith_studio.jobs.runners import dask_cluster, scheduler_address
+from regolith_studio.jobs.executor import Executor
+from regolith_studio.jobs.runners import dask_cluster
 from regolith_studio.jobs.runners.dask_cluster import TlsFiles
 from regolith_studio.session.performing import perform
 from regolith_studio.session.recipe import Recipe, recipe_of
@@ -45,8 +45,8 @@ def digests(folder: Path) -> dict[str, bytes]:
     return {name.as_posix(): path.read_bytes() for name, path in names.items() if name.parts[0] != "journal"}
 
 
-def done(folder: Path, crew: Crew | int, n: int = 12) -> dict[str, bytes]:
-    for _ in perform(wish(n), folder.parent, folder, crew, chunk=2):
+def done(folder: Path, executor: Executor | int, n: int = 12) -> dict[str, bytes]:
+    for _ in perform(wish(n), folder.parent, folder, executor, chunk=2):
         pass
     return digests(folder)
 
@@ -112,10 +112,10 @@ def alone(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
 def test_that_a_cluster_that_loses_a_worker_ends_with_the_same_bytes(
     tmp_path: Path, alone: dict[str, bytes]
 ) -> None:
-    with cluster() as there, closing(Crew.on_cluster(there.address)) as crew:
-        crew._runner._client.wait_for_workers(2, timeout=60)  # type: ignore[union-attr]
+    with cluster() as there, closing(Executor.on_cluster(there.address)) as executor:
+        executor._runner._client.wait_for_workers(2, timeout=60)  # type: ignore[union-attr]
         killed = False
-        for step in perform(wish(), tmp_path, tmp_path / "out", crew, chunk=2):
+        for step in perform(wish(), tmp_path, tmp_path / "out", executor, chunk=2):
             if isinstance(step, Progress) and step.done >= 2 and not killed:
                 there.workers[0].send_signal(signal.SIGKILL)
                 killed = True
@@ -127,8 +127,8 @@ def test_that_a_cluster_that_loses_a_worker_ends_with_the_same_bytes(
 def test_that_a_cluster_that_goes_away_is_one_sentence_and_the_run_can_go_on(
     tmp_path: Path, alone: dict[str, bytes]
 ) -> None:
-    with cluster() as there, closing(Crew.on_cluster(there.address)) as crew:
-        steps = perform(wish(), tmp_path, tmp_path / "out", crew, chunk=2)
+    with cluster() as there, closing(Executor.on_cluster(there.address)) as executor:
+        steps = perform(wish(), tmp_path, tmp_path / "out", executor, chunk=2)
         with pytest.raises(EnvironmentProblem, match="--resume"):  # noqa: PT012
             for step in steps:
                 if isinstance(step, Progress) and step.done >= 4:
@@ -168,18 +168,18 @@ def test_that_an_encrypted_cluster_works_and_lets_no_stranger_in(
     )
     options = ("--tls-ca-file", files.authority, "--tls-cert", files.certificate, "--tls-key", files.key)
     with cluster("tls", *options) as there:
-        with closing(Crew.on_cluster(there.address, tls=files)) as crew:
-            assert done(tmp_path / "out", crew) == alone
+        with closing(Executor.on_cluster(there.address, tls=files)) as executor:
+            assert done(tmp_path / "out", executor) == alone
         with pytest.raises(EnvironmentProblem, match="No cluster answers"):
             dask_cluster.DaskRunner(there.address, tls=strangers)
 
 
 @pytest.mark.slow
 def test_that_a_cluster_of_this_machine_gives_the_same_bytes(tmp_path: Path, alone: dict[str, bytes]) -> None:
-    with closing(Crew.on_cluster(workers=2)) as crew:
-        assert crew.workers == 2
-        assert crew.dashboard.startswith("http://127.0.0.1:")
-        assert done(tmp_path / "out", crew) == alone
+    with closing(Executor.on_cluster(workers=2)) as executor:
+        assert executor.workers == 2
+        assert executor.dashboard.startswith("http://127.0.0.1:")
+        assert done(tmp_path / "out", executor) == alone
 
 
 def test_that_an_encrypted_address_needs_files_that_are_there(tmp_path: Path) -> None:
@@ -192,7 +192,7 @@ def test_that_an_encrypted_address_needs_files_that_are_there(tmp_path: Path) ->
 
 
 def test_that_a_silent_address_is_one_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(scheduler_address, "PATIENCE", 0.3)
+    monkeypatch.setattr(dask_cluster, "ANSWER_SECONDS", 0.3)
     with pytest.raises(EnvironmentProblem, match="No cluster answers at tcp://127"):
         dask_cluster.DaskRunner(f"tcp://127.0.0.1:{free_port()}")
 

@@ -6,11 +6,10 @@ from collections.abc import Iterator
 
 import pytest
 
-from regolith_studio.jobs.crew import Crew
 from regolith_studio.jobs.events import Event, Finished, Job, Progress, Steps, Stopped
-from regolith_studio.jobs.runners.gate import Gate
+from regolith_studio.jobs.executor import Executor
 from regolith_studio.jobs.runners.protocol import Pausable
-from regolith_studio.jobs.runners.thread import ThreadRunner
+from regolith_studio.jobs.runners.thread import PauseToken, ThreadRunner
 from regolith_studio.session.tasks import Reactions, TaskBoard
 
 HELD = 0.1
@@ -48,35 +47,35 @@ def bench() -> Iterator[Bench]:
     made.runner.close()
 
 
-def started(gate: Gate, answers: list[bool]) -> threading.Thread:
-    thread = threading.Thread(target=lambda: answers.append(gate.passed()))
+def started(token: PauseToken, answers: list[bool]) -> threading.Thread:
+    thread = threading.Thread(target=lambda: answers.append(token.wait_while_paused()))
     thread.start()
     return thread
 
 
-def test_that_a_closed_gate_holds_back_who_comes_and_an_open_one_does_not() -> None:
-    gate, answers = Gate(), list[bool]()
-    assert gate.passed()
-    gate.hold()
-    assert gate.held
-    thread = started(gate, answers)
+def test_that_a_paused_token_blocks_until_it_is_resumed() -> None:
+    token, answers = PauseToken(), list[bool]()
+    assert token.wait_while_paused()
+    token.pause()
+    assert token.paused
+    thread = started(token, answers)
     thread.join(HELD)
     assert thread.is_alive()
-    gate.release()
+    token.resume()
     thread.join(SECONDS)
     assert answers == [True]
 
 
 def test_that_who_is_stopped_waits_no_longer() -> None:
-    gate, answers = Gate(), list[bool]()
-    gate.hold()
-    thread = started(gate, answers)
-    gate.stop()
+    token, answers = PauseToken(), list[bool]()
+    token.pause()
+    thread = started(token, answers)
+    token.stop()
     thread.join(SECONDS)
     assert answers == [False]
-    gate.hold()
-    assert not gate.held
-    assert not gate.passed()
+    token.pause()
+    assert not token.paused
+    assert not token.wait_while_paused()
 
 
 def test_that_a_job_in_a_thread_waits_between_two_steps_and_goes_on(bench: Bench) -> None:
@@ -87,7 +86,7 @@ def test_that_a_job_in_a_thread_waits_between_two_steps_and_goes_on(bench: Bench
     handle.pause()
     bench.allowed.release(4)
     assert not bench.over.wait(HELD)
-    assert bench.reached.qsize() <= 1, "one step may have been under way when the gate was closed"
+    assert bench.reached.qsize() <= 1, "one step may have been under way when the job was paused"
     handle.resume()
     assert bench.over.wait(SECONDS)
     assert bench.heard[-1] == Finished("counted")
@@ -126,9 +125,9 @@ def item(number: int) -> Steps:
 
 def test_that_a_batch_is_held_back_between_two_particles(bench: Bench) -> None:
     def batch(n: int) -> Steps:
-        with_one = Crew(1)
-        for ending in with_one.endings(Job(item, (number,)) for number in range(n)):
-            if ending is not None:
+        with_one = Executor(1)
+        for result in with_one.results(Job(item, (number,)) for number in range(n)):
+            if result is not None:
                 yield from bench.count(1)
         return "all"
 

@@ -1,4 +1,4 @@
-"""The pool of processes and the crews hired from it: order, failures, deaths and stops."""
+"""The pool of processes and the executors on it: order, failures, deaths and stops."""
 
 import os
 import signal
@@ -8,9 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from regolith_studio.jobs.batch import in_order
-from regolith_studio.jobs.crew import Crew, hired
 from regolith_studio.jobs.events import Event, Failed, Finished, Job, Stopped
+from regolith_studio.jobs.executor import Executor, in_order, open_executor
 from regolith_studio.jobs.runners.inline import InlineRunner
 from regolith_studio.jobs.runners.process_pool import ProcessPoolRunner
 
@@ -37,25 +36,25 @@ def pool() -> Iterator[ProcessPoolRunner]:
 
 @pytest.mark.parametrize("workers", [1, 2])
 def test_that_a_batch_answers_in_the_order_of_the_questions(workers: int) -> None:
-    with hired(workers) as crew:
-        endings = [e for e in crew.endings(Job(square, (x,)) for x in range(7)) if e]
-        again = list(crew.map(abs, [-1, 2, -3]))
-    assert endings == [Finished(x * x) for x in range(7)]
+    with open_executor(workers) as executor:
+        results = [e for e in executor.results(Job(square, (x,)) for x in range(7)) if e]
+        again = list(executor.map(abs, [-1, 2, -3]))
+    assert results == [Finished(x * x) for x in range(7)]
     assert again == [1, 2, 3]
 
 
 def test_that_a_crew_that_was_lent_is_not_dismissed(pool: ProcessPoolRunner) -> None:
-    crew = Crew(2)
-    crew._runner = pool
-    with hired(crew) as lent:
-        assert lent is crew
-    assert list(crew.map(abs, [-5])) == [5]
+    executor = Executor(2)
+    executor._runner = pool
+    with open_executor(executor) as lent:
+        assert lent is executor
+    assert list(executor.map(abs, [-5])) == [5]
 
 
 def test_that_one_worker_can_be_stopped_within_a_job() -> None:
-    endings = Crew(1).endings([Job(wait_forever)])
-    assert [next(endings) for _ in range(3)] == [None] * 3
-    endings.close()
+    results = Executor(1).results([Job(wait_forever)])
+    assert [next(results) for _ in range(3)] == [None] * 3
+    results.close()
 
 
 def test_that_a_batch_asks_for_no_more_than_its_window() -> None:
@@ -111,12 +110,12 @@ def test_that_a_worker_that_dies_costs_its_particle_and_no_other() -> None:
     runner = ProcessPoolRunner(2)
     try:
         jobs = [Job(square, (1,)), Job(die), *(Job(square, (x,)) for x in range(2, 6))]
-        endings = [e for e in in_order(runner, jobs, window=3) if e]
+        results = [e for e in in_order(runner, jobs, window=3) if e]
     finally:
         runner.close()
-    assert isinstance(endings[1], Failed)
-    assert "died" in endings[1].sentence
-    assert [e for i, e in enumerate(endings) if i != 1] == [Finished(x * x) for x in (1, 2, 3, 4, 5)]
+    assert isinstance(results[1], Failed)
+    assert "died" in results[1].sentence
+    assert [e for i, e in enumerate(results) if i != 1] == [Finished(x * x) for x in (1, 2, 3, 4, 5)]
 
 
 def test_that_what_cannot_be_sent_or_answered_fails_with_a_sentence(pool: ProcessPoolRunner) -> None:
@@ -201,17 +200,17 @@ def test_that_a_process_that_cannot_start_is_a_sentence(monkeypatch: pytest.Monk
     def refuse_to_start() -> None:
         raise OSError(11, "Resource temporarily unavailable")
 
-    monkeypatch.setattr(runner, "_hire", refuse_to_start)
-    (ending,) = [e for e in in_order(runner, [Job(square, (2,))], 1) if e]
+    monkeypatch.setattr(runner, "_start_worker", refuse_to_start)
+    (result,) = [e for e in in_order(runner, [Job(square, (2,))], 1) if e]
     runner.close()
-    assert isinstance(ending, Failed)
-    assert "could not be started" in ending.sentence
+    assert isinstance(result, Failed)
+    assert "could not be started" in result.sentence
 
 
 def test_that_closing_waits_for_no_process_that_is_still_importing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("regolith_studio.jobs.runners.process_pool._LAST_WAIT", 300.0)
+    monkeypatch.setattr("regolith_studio.jobs.runners.process_pool._CLOSE_SECONDS", 300.0)
     runner, heard, begun = ProcessPoolRunner(1), list[Event](), tmp_path / "slow.begun"
     runner.submit(Job(square, (SlowToImport(str(begun)),)), heard.append)
     end = time.monotonic() + 60
@@ -221,4 +220,4 @@ def test_that_closing_waits_for_no_process_that_is_still_importing(
     assert begun.exists()
     assert heard == [Stopped()]
     assert not begun.with_suffix(".ended").exists()
-    assert not runner._team
+    assert not runner._workers

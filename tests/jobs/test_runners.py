@@ -20,8 +20,8 @@ from regolith_studio.jobs.events import (
     Steps,
     Stopped,
 )
-from regolith_studio.jobs.runners.drive import drive
 from regolith_studio.jobs.runners.inline import InlineRunner
+from regolith_studio.jobs.runners.run_job import run_job
 from regolith_studio.jobs.runners.thread import ThreadRunner
 
 from .small_jobs import count_to, give_up, refuse, stumble, wait_forever
@@ -67,27 +67,27 @@ def test_that_an_inline_job_is_heard_from_start_to_end() -> None:
 
 
 def test_that_an_error_meant_for_users_arrives_as_its_sentence() -> None:
-    ending = drive(Job(refuse), lambda _: None, lambda: False)
-    assert isinstance(ending, Failed)
-    assert ending.sentence == "The number is too green."
-    assert "InputError" in ending.details
+    result = run_job(Job(refuse), lambda _: None, lambda: False)
+    assert isinstance(result, Failed)
+    assert result.sentence == "The number is too green."
+    assert "InputError" in result.details
 
 
 def test_that_any_other_error_arrives_as_one_sentence_with_details() -> None:
-    ending = drive(Job(stumble), lambda _: None, lambda: False)
-    assert isinstance(ending, Failed)
-    assert "KeyError" in ending.sentence
-    assert "Traceback" in ending.details
+    result = run_job(Job(stumble), lambda _: None, lambda: False)
+    assert isinstance(result, Failed)
+    assert "KeyError" in result.sentence
+    assert "Traceback" in result.details
 
 
 def test_that_a_job_that_gives_up_counts_as_stopped() -> None:
-    assert drive(Job(give_up), lambda _: None, lambda: False) == Stopped()
+    assert run_job(Job(give_up), lambda _: None, lambda: False) == Stopped()
 
 
 def test_that_cancelling_takes_effect_between_two_yields() -> None:
     heard: list[Event] = []
-    ending = drive(Job(count_to, (5,)), heard.append, lambda: len(heard) == 3)
-    assert ending == Stopped()
+    result = run_job(Job(count_to, (5,)), heard.append, lambda: len(heard) == 3)
+    assert result == Stopped()
     assert heard == [Started("Counting", 5), Progress(1, 5), Progress(2, 5)]
 
 

@@ -8,13 +8,13 @@ from collections.abc import Iterator
 import pytest
 
 from regolith_studio.errors import EnvironmentProblem, InputError
-from regolith_studio.jobs.runners import scheduler_address
-from regolith_studio.jobs.runners.scheduler_address import SchedulerAddress
+from regolith_studio.jobs.runners import dask_cluster
+from regolith_studio.jobs.runners.dask_cluster import SchedulerAddress
 
 
 @pytest.fixture(autouse=True)
 def hasty(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(scheduler_address, "PATIENCE", 0.4)
+    monkeypatch.setattr(dask_cluster, "ANSWER_SECONDS", 0.4)
 
 
 @contextlib.contextmanager
@@ -50,7 +50,7 @@ def listener(greeting: bytes) -> Iterator[int]:
     ],
 )
 def test_that_an_address_is_read_in_its_usual_forms(text: str, whole: str) -> None:
-    assert str(SchedulerAddress.parsed(text)) == whole
+    assert str(SchedulerAddress.parse(text)) == whole
 
 
 @pytest.mark.parametrize(
@@ -67,7 +67,7 @@ def test_that_an_address_is_read_in_its_usual_forms(text: str, whole: str) -> No
 )
 def test_that_another_form_is_refused_with_the_right_one(text: str, sentence: str) -> None:
     with pytest.raises(InputError, match=sentence) as told:
-        SchedulerAddress.parsed(text)
+        SchedulerAddress.parse(text)
     assert "tcp://HOST:8786" in str(told.value)
 
 

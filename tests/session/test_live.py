@@ -7,7 +7,7 @@ import pytest
 from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.events import Job, Listener
-from regolith_studio.jobs.runners.drive import drive
+from regolith_studio.jobs.runners.run_job import run_job
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.grown import Grown
 from regolith_studio.session.session import Session
@@ -34,7 +34,7 @@ class Held:
             handle.listener(event)  # type: ignore[arg-type]
             between()
 
-        handle.listener(drive(handle.job, hear, lambda: handle.cancelled))
+        handle.listener(run_job(handle.job, hear, lambda: handle.cancelled))
         return not handle.cancelled
 
     def all(self) -> None:

@@ -7,9 +7,8 @@ import pytest
 from PySide6.QtWidgets import QWidget
 
 from regolith_studio.errors import InputError
-from regolith_studio.jobs.crew import Crew
-from regolith_studio.jobs.hiring import Hiring
-from regolith_studio.jobs.runners import scheduler_address
+from regolith_studio.jobs.executor import Executor, ExecutorSettings
+from regolith_studio.jobs.runners import dask_cluster
 from regolith_studio.jobs.runners.thread import ThreadRunner
 from regolith_studio.session.performing import perform
 from regolith_studio.session.recipe import Outputs, recipe_of
@@ -85,7 +84,7 @@ def test_that_the_dialog_begins_with_the_open_files_and_processes_of_this_machin
     assert order.recipe is None
     assert order.folder == tmp_path / "out"
     assert order.outputs == Outputs()
-    assert order.hiring.runner == "processes"
+    assert order.executor.runner == "processes"
     assert "2 open particles" in dialog.source.kind.currentText()
     assert dialog.source.missing.isVisible()
 
@@ -96,7 +95,7 @@ def test_that_who_works_is_asked_for_as_needed(dialog):
     assert not workers.count.isVisible()
     assert not workers.tls.isVisible()
     workers.address.setText("login:8786")
-    assert workers.value() == Hiring("dask", 0, "tcp://login:8786")
+    assert workers.value() == ExecutorSettings("dask", 0, "tcp://login:8786")
     workers.address.setText("tls://login:8786")
     assert workers.tls.isVisible()
     assert not dialog.go.isEnabled()
@@ -155,7 +154,7 @@ def test_that_a_bad_address_is_one_sentence_and_the_dialog_asks_again(
     batches, recipe, tmp_path, wait, monkeypatch
 ):
     pytest.importorskip("distributed")
-    monkeypatch.setattr(scheduler_address, "PATIENCE", 0.3)
+    monkeypatch.setattr(dask_cluster, "ANSWER_SECONDS", 0.3)
     dialog = filled_with_address(batches, recipe, tmp_path / "out", "tcp://127.0.0.1:9")
     dialog.go.click()
     wait(lambda: not batches._session.tasks)
@@ -173,12 +172,12 @@ def filled_with_address(batches, recipe, folder, address):
 
 @pytest.fixture(scope="module")
 def cluster():
-    """Two workers of this machine; Dask keeps two threads for good, which its first crew begins."""
+    """Two workers of this machine; Dask keeps two threads for good, which its first executor begins."""
     distributed = pytest.importorskip("distributed")
     place = {"host": "127.0.0.1", "dashboard_address": "127.0.0.1:0"}
     with distributed.LocalCluster(n_workers=2, threads_per_worker=1, **place) as made:
-        with contextlib.closing(Crew.on_cluster(made.scheduler_address)) as crew:
-            assert list(crew.map(abs, [-1, -2])) == [1, 2]
+        with contextlib.closing(Executor.on_cluster(made.scheduler_address)) as executor:
+            assert list(executor.map(abs, [-1, -2])) == [1, 2]
         yield made
 
 

@@ -1,1 +1,1 @@
-"""Runners: who drives a job. Threads, locks and ``except Exception`` live here and nowhere else."""
+"""Runners execute jobs. Threads, locks and ``except Exception`` occur here and nowhere else."""

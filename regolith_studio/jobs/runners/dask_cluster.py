@@ -1,22 +1,115 @@
 """Runs jobs on a Dask cluster: one of this machine's own, or one at an address."""
 
 import contextlib
+import socket
 import threading
+import time
 from dataclasses import dataclass, field
 from importlib import import_module
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
+from urllib.parse import urlsplit
 
 from regolith_studio.errors import EnvironmentProblem, InputError
-from regolith_studio.jobs.events import Ending, Event, Failed, Job, Listener, Stopped
-from regolith_studio.jobs.runners.drive import drive
+from regolith_studio.jobs.events import Event, Failed, Job, JobResult, Listener, Stopped
 from regolith_studio.jobs.runners.process_pool import cores, memory_limit
-from regolith_studio.jobs.runners.scheduler_address import SchedulerAddress
+from regolith_studio.jobs.runners.run_job import run_job
 
 CONNECT_SECONDS = 8.0
 WORKER_SECONDS = 20.0
-"""How long the scheduler, once it answers, and its first worker are waited for."""
+"""How long to wait for the scheduler, once it answers, and for its first worker."""
+ANSWER_SECONDS = 4.0
+"""Seconds in which a scheduler must answer."""
+SCHEMES = ("tcp", "tls")
+MAX_GREETING = 1 << 16
+"""Bytes; a scheduler begins with the length of a message of some hundred."""
+_FORM = "it has the form tcp://HOST:8786 or tls://HOST:8786"
 NEEDED = 'This needs Dask, which is an extra: pip install "regolith-studio[cluster]".'
+
+
+@dataclass(frozen=True)
+class SchedulerAddress:
+    """Where a scheduler listens."""
+
+    scheme: str
+    host: str
+    port: int
+
+    @classmethod
+    def parse(cls, text: str) -> Self:
+        """From ``tcp://host:port``, ``tls://host:port`` or ``host:port``.
+
+        Raises
+        ------
+        InputError
+            Saying what is wrong.
+        """
+        given = text.strip()
+        parts = urlsplit(given if "://" in given else f"tcp://{given}")
+        if parts.scheme not in SCHEMES:
+            raise InputError(f"The address {given} begins with {parts.scheme}://; {_FORM}.")
+        try:
+            port = parts.port
+        except ValueError:
+            raise InputError(
+                f"The address {given} has a port that is no number up to 65535; {_FORM}."
+            ) from None
+        if not parts.hostname or port is None:
+            missing = "host" if not parts.hostname else "port"
+            raise InputError(f"The address {given or 'that was given'} has no {missing}; {_FORM}.")
+        return cls(parts.scheme, parts.hostname, port)
+
+    def __str__(self) -> str:
+        host = f"[{self.host}]" if ":" in self.host else self.host
+        return f"{self.scheme}://{host}:{self.port}"
+
+    def check(self) -> None:
+        """Check that a Dask scheduler answers, within seconds.
+
+        Dask's own client tries for half a minute, and takes the answer of a web server for a message length.
+
+        Raises
+        ------
+        EnvironmentProblem
+            If nothing answers, or something else does.
+        """
+        deadline = time.monotonic() + ANSWER_SECONDS
+        with self._connect(deadline) as connection:
+            if self.scheme == "tcp":
+                connection.settimeout(max(0.1, deadline - time.monotonic()))
+                self._check_greeting(connection)
+
+    def _connect(self, deadline: float) -> socket.socket:
+        while True:
+            try:
+                return socket.create_connection((self.host, self.port), max(0.1, deadline - time.monotonic()))
+            except socket.gaierror as error:
+                raise EnvironmentProblem(
+                    f"No cluster answers at {self}: there is no machine called {self.host}."
+                ) from error
+            except ConnectionRefusedError as error:  # it may be about to start
+                if time.monotonic() + 0.2 > deadline:
+                    raise EnvironmentProblem(
+                        f"No cluster answers at {self}: the machine is there, but nothing listens on port "
+                        f"{self.port}."
+                    ) from error
+                time.sleep(0.2)
+            except OSError as error:
+                raise EnvironmentProblem(
+                    f"No cluster answers at {self} ({error.strerror or error})."
+                ) from error
+
+    def _check_greeting(self, connection: socket.socket) -> None:
+        """A scheduler sends first: eight bytes of message length, little-endian."""
+        try:
+            greeting = connection.recv(8, getattr(socket, "MSG_WAITALL", 0))
+        except OSError:
+            greeting = b""
+        if len(greeting) < 8 or not 0 < int.from_bytes(greeting, "little") < MAX_GREETING:
+            raise EnvironmentProblem(
+                f"What answers at {self} is no Dask scheduler; take the scheduler's port (usually 8786), "
+                "not of its dashboard (8787) or of a worker, and tls:// where it is encrypted."
+            )
 
 
 @dataclass(frozen=True)
@@ -36,7 +129,7 @@ class TlsFiles:
     key: Path
 
     def security(self) -> Any:
-        """As Dask wants it: everything encrypted, both ends checked.
+        """For Dask's client: everything encrypted, both ends authenticated.
 
         Raises
         ------
@@ -58,7 +151,7 @@ class TlsFiles:
 class _DaskHandle:
     listener: Listener
     future: Any = None
-    asked_to_stop: bool = False
+    cancelled: bool = False
     ended: threading.Event = field(default_factory=threading.Event)
 
     @property
@@ -66,24 +159,24 @@ class _DaskHandle:
         return self.ended.is_set()
 
     def cancel(self) -> None:
-        self.asked_to_stop = True
+        self.cancelled = True
         if self.future is not None and not self.done:
             with contextlib.suppress(Exception):
                 self.future.cancel()
         self.finish(Stopped())
 
-    def finish(self, ending: Ending) -> None:
-        """Tell the ending, once."""
+    def finish(self, result: JobResult) -> None:
+        """Pass the result on, once."""
         if not self.ended.is_set():
             self.ended.set()
-            self.listener(ending)
+            self.listener(result)
 
 
 class DaskRunner:
     """Each job runs whole in a worker of the cluster; listeners are called in a thread of the client.
 
     A worker that dies is replaced by the cluster, and its jobs are done again by others; a job that has
-    ended several workers has failed. A job that was cancelled may run on to its end unheard.
+    ended several workers has failed. A job that was cancelled may run on to its end; its result is dropped.
 
     Parameters
     ----------
@@ -97,7 +190,7 @@ class DaskRunner:
     Raises
     ------
     EnvironmentProblem
-        If Dask is not installed, nobody answers, or the workers run other versions of what the numbers
+        If Dask is not installed, nothing answers, or the workers run other versions of what the numbers
         come from.
     InputError
         If an address asks for encryption and there are no files for it.
@@ -112,7 +205,7 @@ class DaskRunner:
         self._lock = threading.Lock()
         self._cluster = None if self.address else _local_cluster(workers or cores())
         try:
-            self._client = _connected(self._cluster if self._cluster is not None else self.address, tls)
+            self._client = _connect(self._cluster if self._cluster is not None else self.address, tls)
         except BaseException:
             self._close_cluster()
             raise
@@ -134,16 +227,16 @@ class DaskRunner:
 
     def submit(self, job: Job, listener: Listener, lane: str = "") -> _DaskHandle:  # noqa: ARG002
         if self._client.status != "running":
-            raise EnvironmentProblem(self._gone())
+            raise EnvironmentProblem(self._lost_connection())
         handle = _DaskHandle(listener)
         with self._lock:
             self._open.add(handle)
         handle.future = self._client.submit(_run_whole, job, pure=False)
-        handle.future.add_done_callback(lambda future: self._conclude(handle, future))
+        handle.future.add_done_callback(lambda future: self._finish(handle, future))
         return handle
 
     def close(self) -> None:
-        """Cancel what runs, and let go of the cluster; one that was started here ends."""
+        """Cancel what runs and disconnect; a cluster that was started here ends."""
         for handle in list(self._open):
             handle.cancel()
         with contextlib.suppress(Exception):
@@ -155,23 +248,23 @@ class DaskRunner:
             with contextlib.suppress(Exception):
                 self._cluster.close(timeout=CONNECT_SECONDS)
 
-    def _conclude(self, handle: _DaskHandle, future: Any) -> None:
+    def _finish(self, handle: _DaskHandle, future: Any) -> None:
         with self._lock:
             self._open.discard(handle)
-        handle.finish(self._ending(handle, future))
+        handle.finish(self._result(handle, future))
 
-    def _ending(self, handle: _DaskHandle, future: Any) -> Ending:
-        if handle.asked_to_stop:
+    def _result(self, handle: _DaskHandle, future: Any) -> JobResult:
+        if handle.cancelled:
             return Stopped()
         if future.status in ("cancelled", "lost"):
-            return Stopped(self._gone())
+            return Stopped(self._lost_connection())
         try:
-            ending: Ending = future.result()
+            result: JobResult = future.result()
         except _distributed().KilledWorker as error:
             return Failed("Workers died of it; they may have run out of memory.", str(error))
         except Exception as error:  # noqa: BLE001  whatever could not be sent, received or unpickled
             return Failed(f"A worker of the cluster could not answer ({error}).", repr(error))
-        return ending
+        return result
 
     def _check_versions(self) -> None:
         from regolith_studio.dataset.build import software_versions
@@ -191,17 +284,17 @@ class DaskRunner:
                         f"{version}: the results would not be the same bytes."
                     )
 
-    def _gone(self) -> str:
+    def _lost_connection(self) -> str:
         where = f"at {self.address} " if self.address else ""
         return f"The cluster {where}does not answer any more; what it has done is kept, go on with --resume."
 
 
-def _run_whole(job: Job) -> Ending:
-    return drive(job, _silent, lambda: False)
+def _run_whole(job: Job) -> JobResult:
+    return run_job(job, _ignore, lambda: False)
 
 
-def _silent(_event: Event) -> None:
-    """Steps are not sent over the network: what counts in a batch is each job's ending."""
+def _ignore(_event: Event) -> None:
+    """Steps are not sent over the network: what counts in a batch is each job's result."""
 
 
 def _local_cluster(workers: int) -> Any:
@@ -219,12 +312,12 @@ def _checked(address: str, tls: TlsFiles | None) -> str:
     """The address in full, where a scheduler answers."""
     if tls:
         tls.security()
-    place = SchedulerAddress.parsed(address)
+    place = SchedulerAddress.parse(address)
     place.check()
     return str(place)
 
 
-def _connected(place: Any, tls: TlsFiles | None) -> Any:
+def _connect(place: Any, tls: TlsFiles | None) -> Any:
     distributed = _distributed()
     security = tls.security() if tls else None
     try:

@@ -1,9 +1,9 @@
-"""Runs a job where it is submitted; for tests and for the command line."""
+"""Runs a job in the thread that submits it; for tests and the command line."""
 
 from dataclasses import dataclass
 
 from regolith_studio.jobs.events import Job, Listener
-from regolith_studio.jobs.runners.drive import drive
+from regolith_studio.jobs.runners.run_job import run_job
 
 
 @dataclass
@@ -20,9 +20,9 @@ class InlineRunner:
 
     def submit(self, job: Job, listener: Listener, lane: str = "") -> _InlineHandle:  # noqa: ARG002
         handle = _InlineHandle()
-        ending = drive(job, listener, lambda: handle.cancelled)
+        result = run_job(job, listener, lambda: handle.cancelled)
         handle.done = True
-        listener(ending)
+        listener(result)
         return handle
 
     def close(self) -> None:

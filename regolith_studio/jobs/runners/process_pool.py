@@ -1,9 +1,9 @@
-"""Runs jobs in a few warm processes; for batches."""
+"""Runs jobs in a few processes that stay warm between jobs; for batches."""
 
 import contextlib
 import logging
 import multiprocessing
-import multiprocessing.util as process_end
+import multiprocessing.util
 import os
 import pickle
 import threading
@@ -13,13 +13,13 @@ from dataclasses import dataclass, field
 from multiprocessing.connection import Connection, wait
 from typing import Any
 
-from regolith_studio.jobs.events import Ending, Failed, Finished, Job, Listener, Stopped
-from regolith_studio.jobs.runners.worker import BEGUN, SLOTS, work
+from regolith_studio.jobs.events import Failed, Finished, Job, JobResult, Listener, Stopped
+from regolith_studio.jobs.runners.worker import SLOTS, STARTED, run_jobs
 
 _log = logging.getLogger(__name__)
 _THREAD_LIMITS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
-_LEAST_MEMORY, _MOST_MEMORY, _SHARE_OF_MEMORY = 768 * 1024**2, 2 * 1024**3, 0.6
-_LAST_WAIT = 10.0
+_MIN_MEMORY, _MAX_MEMORY, _MEMORY_FRACTION = 768 * 1024**2, 2 * 1024**3, 0.6
+_CLOSE_SECONDS = 10.0
 """Seconds that a closing pool waits for a job that does not stop between two steps."""
 
 
@@ -36,7 +36,7 @@ def memory_limit(workers: int) -> int:
         machine = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     except (AttributeError, ValueError, OSError):
         machine = 8 * 1024**3
-    return int(min(max(_SHARE_OF_MEMORY * machine / workers, _LEAST_MEMORY), _MOST_MEMORY))
+    return int(min(max(_MEMORY_FRACTION * machine / workers, _MIN_MEMORY), _MAX_MEMORY))
 
 
 @dataclass(eq=False)
@@ -45,8 +45,8 @@ class _PoolHandle:
     number: int
     listener: Listener
     flags: Any
-    ring: Callable[[], None]
-    suspect: bool = False
+    wake: Callable[[], None]
+    is_retry: bool = False
     ended: threading.Event = field(default_factory=threading.Event)
 
     @property
@@ -59,16 +59,16 @@ class _PoolHandle:
 
     def cancel(self) -> None:
         self.flags[self.number % SLOTS] = self.number
-        self.ring()
+        self.wake()
 
-    def finish(self, ending: Ending) -> None:
-        if self.cancelled and isinstance(ending, Finished):
-            ending = Stopped()
+    def finish(self, result: JobResult) -> None:
+        if self.cancelled and isinstance(result, Finished):
+            result = Stopped()
         self.ended.set()
         try:
-            self.listener(ending)
-        except Exception:  # noqa: BLE001  the pool must outlive whoever listens
-            _log.exception("A listener to a process pool made a mistake.")
+            self.listener(result)
+        except Exception:  # noqa: BLE001  the pool must outlive its listeners
+            _log.exception("A listener of the process pool raised an exception.")
 
 
 @dataclass(eq=False)
@@ -78,17 +78,17 @@ class _Worker:
     process: Any
     pipe: Connection
     handle: _PoolHandle | None = None
-    begun: bool = False
+    started: bool = False
 
-    def dismiss(self) -> None:
-        """Let it end by itself, as soon as it has answered."""
+    def stop(self) -> None:
+        """Let the process end by itself, once its current job is done."""
         with contextlib.suppress(OSError):
             self.pipe.send_bytes(b"")
         self.pipe.close()
 
 
 class ProcessPoolRunner:
-    """Each job runs whole in one process; listeners are called in a thread of the pool, endings only.
+    """Each job runs whole in one process; listeners are called in a thread of the pool, with results only.
 
     The processes are spawned, not forked (no locks or OpenGL contexts come along), start when there is
     work for them, stay warm and keep to one thread each. One that holds more memory than it may is
@@ -112,9 +112,9 @@ class ProcessPoolRunner:
         self._closed = False
         self._lock = threading.Lock()
         self._waiting: deque[_PoolHandle] = deque()
-        self._team: list[_Worker] = []
+        self._workers: list[_Worker] = []
         self._retired: list[Any] = []
-        self._bell, self._rope = self._context.Pipe(duplex=False)
+        self._wakeup_recv, self._wakeup_send = self._context.Pipe(duplex=False)
         self._manager: threading.Thread | None = None
         self._at_exit: Any = None
 
@@ -122,7 +122,7 @@ class ProcessPoolRunner:
         if self._closed:
             raise RuntimeError("the runner is closed")
         self._number += 1
-        handle = _PoolHandle(b"", self._number, listener, self._flags, self._ring)
+        handle = _PoolHandle(b"", self._number, listener, self._flags, self._wake)
         try:
             handle.message = pickle.dumps((self._number, job))
         except Exception as error:  # noqa: BLE001  whatever an argument's pickling raises
@@ -131,10 +131,10 @@ class ProcessPoolRunner:
         with self._lock:
             self._waiting.append(handle)
             if self._manager is None:
-                self._at_exit = process_end.Finalize(self, self.close, exitpriority=100)
+                self._at_exit = multiprocessing.util.Finalize(self, self.close, exitpriority=100)
                 self._manager = threading.Thread(target=self._manage, name="process pool", daemon=True)
                 self._manager.start()
-        self._ring()
+        self._wake()
         return handle
 
     def close(self) -> None:
@@ -149,45 +149,45 @@ class ProcessPoolRunner:
             self._flags[number % SLOTS] = number
         if self._manager is not None:
             self._at_exit.cancel()
-            self._ring()
+            self._wake()
             self._manager.join()
-        self._bell.close()
-        self._rope.close()
+        self._wakeup_recv.close()
+        self._wakeup_send.close()
 
-    def _ring(self) -> None:
+    def _wake(self) -> None:
         with contextlib.suppress(OSError):
-            self._rope.send_bytes(b"!")
+            self._wakeup_send.send_bytes(b"!")
 
     def _manage(self) -> None:
-        """In a thread: hand out jobs, hear answers, replace who dies, until closed and all have ended."""
+        """In a thread: dispatch jobs and receive results until closed and all have ended."""
         while True:
             self._drop_cancelled()
             if self._closed:
-                self._leave_unbegun()
+                self._kill_not_started()
                 if not self._busy:
                     break
-            self._hand_out()
-            ready = wait([self._bell, *[worker.pipe for worker in self._team]], self._patience)
+            self._dispatch()
+            ready = wait([self._wakeup_recv, *[worker.pipe for worker in self._workers]], self._timeout)
             if not ready:
                 for worker in self._busy:
                     worker.process.kill()
-            while self._bell.poll():
-                self._bell.recv_bytes()
-            for worker in [each for each in self._team if each.pipe in ready]:
-                self._hear(worker)
-        for worker in self._team:
-            worker.dismiss()
-        for process in [*self._retired, *[worker.process for worker in self._team]]:
+            while self._wakeup_recv.poll():
+                self._wakeup_recv.recv_bytes()
+            for worker in [each for each in self._workers if each.pipe in ready]:
+                self._receive(worker)
+        for worker in self._workers:
+            worker.stop()
+        for process in [*self._retired, *[worker.process for worker in self._workers]]:
             _end(process)
-        self._team.clear()
+        self._workers.clear()
 
     @property
     def _busy(self) -> list[_Worker]:
-        return [worker for worker in self._team if worker.handle]
+        return [worker for worker in self._workers if worker.handle]
 
     @property
-    def _patience(self) -> float | None:
-        return _LAST_WAIT if self._closed else None
+    def _timeout(self) -> float | None:
+        return _CLOSE_SECONDS if self._closed else None
 
     def _drop_cancelled(self) -> None:
         with self._lock:
@@ -197,95 +197,98 @@ class ProcessPoolRunner:
         for handle in dropped:
             handle.finish(Stopped())
 
-    def _leave_unbegun(self) -> None:
-        """End the processes whose jobs have not taken a step: what they import is of no use any more."""
-        for worker in [each for each in self._busy if not (each.begun or each.pipe.poll())]:
+    def _kill_not_started(self) -> None:
+        """End the processes whose jobs have not taken a step yet; they may still be importing."""
+        for worker in [each for each in self._busy if not (each.started or each.pipe.poll())]:
             handle, worker.handle = worker.handle, None
             worker.process.kill()
-            self._retire(worker)
+            self._remove(worker)
             if handle:
                 handle.finish(Stopped())
 
-    def _hand_out(self) -> None:
-        """Give waiting jobs to idle processes; a suspect only while nobody else works."""
+    def _dispatch(self) -> None:
+        """Give waiting jobs to idle processes; a retry only while no other job runs."""
         while len(self._busy) < self.workers and (handle := self._next()):
             try:
-                idle = next((worker for worker in self._team if not worker.handle), None) or self._hire()
+                idle = self._idle_worker() or self._start_worker()
             except OSError as error:
                 handle.finish(
                     Failed(f"A worker process could not be started ({error.strerror}).", repr(error))
                 )
                 continue
-            idle.handle, idle.begun = handle, False
-            with contextlib.suppress(OSError):  # it has died idle: its pipe tells so in a moment
+            idle.handle, idle.started = handle, False
+            with contextlib.suppress(OSError):  # it died while idle, which its pipe reports next
                 idle.pipe.send_bytes(handle.message)
 
     def _next(self) -> _PoolHandle | None:
-        """The job whose turn it is, if there is one."""
+        """The job to be started next, if there is one."""
         with self._lock:
             if not self._waiting:
                 return None
-            alone = self._waiting[0].suspect or any(w.handle and w.handle.suspect for w in self._team)
+            alone = self._waiting[0].is_retry or any(w.handle and w.handle.is_retry for w in self._workers)
             return None if alone and self._busy else self._waiting.popleft()
 
-    def _hire(self) -> _Worker:
-        here, there = self._context.Pipe()
-        process = self._context.Process(target=work, args=(there, self._flags), name="worker")
-        with _one_thread_each():
+    def _idle_worker(self) -> _Worker | None:
+        return next((worker for worker in self._workers if not worker.handle), None)
+
+    def _start_worker(self) -> _Worker:
+        ours, theirs = self._context.Pipe()
+        process = self._context.Process(target=run_jobs, args=(theirs, self._flags), name="worker")
+        with _SingleThreadedBlas():
             process.start()
-        there.close()
-        worker = _Worker(process, here)
-        self._team.append(worker)
+        theirs.close()
+        worker = _Worker(process, ours)
+        self._workers.append(worker)
         return worker
 
-    def _hear(self, worker: _Worker) -> None:
-        """Take an answer, or find that the process is dead."""
+    def _receive(self, worker: _Worker) -> None:
+        """Receive a result, or find that the process is dead."""
         try:
             answer = worker.pipe.recv_bytes()
         except (EOFError, OSError):
-            self._bury(worker)
+            self._handle_death(worker)
             return
-        if answer == BEGUN:
-            worker.begun = True
+        if answer == STARTED:
+            worker.started = True
             return
         try:
-            ending, memory = pickle.loads(answer)
+            result, memory = pickle.loads(answer)
         except Exception as error:  # noqa: BLE001  whatever an answer's unpickling raises
-            ending, memory = Failed(f"A worker process could not answer ({error}).", repr(error)), 0
+            result, memory = Failed(f"A worker process could not answer ({error}).", repr(error)), 0
         handle, worker.handle = worker.handle, None
         if memory > self.memory:
-            self._retire(worker)
+            self._remove(worker)
         if handle:
-            handle.finish(ending)
+            handle.finish(result)
 
-    def _bury(self, worker: _Worker) -> None:
-        """Take a dead process off the team; its job gets a second chance, alone."""
+    def _handle_death(self, worker: _Worker) -> None:
+        """Remove a dead process; its job is tried once more, alone."""
         handle = worker.handle
-        self._retire(worker)
+        self._remove(worker)
         if handle is None:
             return
-        if handle.suspect:
+        if handle.is_retry:
             handle.finish(Failed("A worker process died of it; it may have run out of memory."))
             return
-        handle.suspect = True
+        handle.is_retry = True
         with self._lock:
             self._waiting.appendleft(handle)
 
-    def _retire(self, worker: _Worker) -> None:
-        self._team.remove(worker)
-        worker.dismiss()
+    def _remove(self, worker: _Worker) -> None:
+        self._workers.remove(worker)
+        worker.stop()
         self._retired = [process for process in [*self._retired, worker.process] if process.is_alive()]
 
 
 def _end(process: Any) -> None:
-    process.join(_LAST_WAIT)
+    process.join(_CLOSE_SECONDS)
     if process.is_alive():
         process.kill()
         process.join()
 
 
-class _one_thread_each:  # noqa: N801  a context, read like a sentence
-    """Lets the processes that start meanwhile keep to one thread for linear algebra."""
+class _SingleThreadedBlas:
+    """Processes that are started meanwhile use one thread for linear algebra."""
 
     def __enter__(self) -> None:
         self._before = {name: os.environ.get(name) for name in _THREAD_LIMITS}

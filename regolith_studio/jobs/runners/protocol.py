@@ -1,4 +1,4 @@
-"""What every runner offers."""
+"""Interface of runners and of handles to submitted jobs."""
 
 from typing import Protocol, runtime_checkable
 
@@ -14,28 +14,28 @@ class Handle(Protocol):
         ...
 
     def cancel(self) -> None:
-        """Ask the job to stop between two of its steps; harmless when it has ended."""
+        """Ask the job to stop between two of its steps; no effect when it has ended."""
         ...
 
 
 @runtime_checkable
 class Pausable(Handle, Protocol):
-    """A handle of a runner that can hold a job back between two of its steps."""
+    """A handle of a job that can be paused between two of its steps."""
 
     def pause(self) -> None:
-        """Let the job wait after the step that it is at; harmless when it has ended."""
+        """Let the job wait after its current step; no effect when it has ended."""
         ...
 
     def resume(self) -> None:
-        """Let it go on."""
+        """Let the job go on."""
         ...
 
 
 class Runner(Protocol):
-    """Drives jobs and tells a listener what they say."""
+    """Runs jobs and passes their events to a listener."""
 
     def submit(self, job: Job, listener: Listener, lane: str = "") -> Handle:
-        """Run `job`; `listener` hears its steps and, last, exactly one ending.
+        """Run `job`; `listener` receives its steps and, last, exactly one result.
 
         Parameters
         ----------

@@ -1,28 +1,68 @@
-"""Runs jobs in threads, one a lane, for a program whose own thread must stay free."""
+"""Runs jobs in threads, one a lane, for a program whose main thread must stay free; they can be paused."""
 
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from regolith_studio.jobs.events import (
-    Ending,
     Event,
     Finished,
     Job,
+    JobResult,
     Listener,
     Partial,
     Progress,
     Stopped,
 )
-from regolith_studio.jobs.runners.drive import drive
-from regolith_studio.jobs.runners.gate import Gate
+from regolith_studio.jobs.runners.run_job import run_job
 
 Post = Callable[[Callable[[], None]], None]
 """Takes a function and calls it, soon and in order, in the thread that owns the listeners."""
 
 
+class PauseToken:
+    """Pauses, resumes or stops a job; the runner checks it between two steps, from any thread."""
+
+    def __init__(self) -> None:
+        self._changed = threading.Condition()
+        self._paused = self._stopped = False
+
+    @property
+    def paused(self) -> bool:
+        """Whether the job waits, or will as soon as its current step is done."""
+        return self._paused
+
+    @property
+    def stopped(self) -> bool:
+        """Whether the job shall go no further."""
+        return self._stopped
+
+    def pause(self) -> None:
+        """Let the job wait after its current step; no effect when it has been stopped."""
+        with self._changed:
+            self._paused = not self._stopped
+
+    def resume(self) -> None:
+        """Let the job go on."""
+        with self._changed:
+            self._paused = False
+            self._changed.notify_all()
+
+    def stop(self) -> None:
+        """Let the job end, also if it waits."""
+        with self._changed:
+            self._paused, self._stopped = False, True
+            self._changed.notify_all()
+
+    def wait_while_paused(self) -> bool:
+        """Block while paused; returns whether the job may go on."""
+        with self._changed:
+            self._changed.wait_for(lambda: not self._paused)
+            return not self._stopped
+
+
 class _Mailbox:
-    """Carries events to the owner; progress that nobody has read yet is replaced by the newer."""
+    """Carries events to the listener's thread; progress that has not been delivered is replaced by newer."""
 
     def __init__(self, listener: Listener, post: Post) -> None:
         self._listener, self._post = listener, post
@@ -49,7 +89,7 @@ class _Mailbox:
 class _ThreadHandle:
     job: Job
     mailbox: _Mailbox
-    gate: Gate = field(default_factory=Gate)
+    token: PauseToken = field(default_factory=PauseToken)
     end: threading.Event = field(default_factory=threading.Event)
 
     @property
@@ -57,19 +97,19 @@ class _ThreadHandle:
         return self.end.is_set()
 
     def cancel(self) -> None:
-        self.gate.stop()
+        self.token.stop()
 
     def pause(self) -> None:
-        self.gate.hold()
+        self.token.pause()
 
     def resume(self) -> None:
-        self.gate.release()
+        self.token.resume()
 
     def run(self) -> None:
-        self.finish(drive(self.job, self.mailbox.put, lambda: not self.gate.passed()))
+        self.finish(run_job(self.job, self.mailbox.put, lambda: not self.token.wait_while_paused()))
 
-    def finish(self, ending: Ending) -> None:
-        if self.gate.stopped and isinstance(ending, Finished):
+    def finish(self, ending: JobResult) -> None:
+        if self.token.stopped and isinstance(ending, Finished):
             ending = Stopped()
         self.end.set()
         self.mailbox.put(ending)
@@ -90,27 +130,27 @@ class _Lane:
         with self._condition:
             if self._running:
                 self._running.cancel()
-            overtaken, self._next = self._next, handle
+            replaced, self._next = self._next, handle
             self._condition.notify()
-        if overtaken:
-            overtaken.finish(Stopped())
+        if replaced:
+            replaced.finish(Stopped())
 
     def close(self) -> None:
         with self._condition:
             self._closing = True
-            overtaken, self._next = self._next, None
+            replaced, self._next = self._next, None
             if self._running:
                 self._running.cancel()
             self._condition.notify()
-        if overtaken:
-            overtaken.finish(Stopped())
+        if replaced:
+            replaced.finish(Stopped())
 
     def _work(self) -> None:
         while self._run_next():
             pass
 
     def _run_next(self) -> bool:
-        """Wait for a job and run it; what it was made of is let go before the next is waited for."""
+        """Wait for a job and run it; its objects are freed before the next one is waited for."""
         handle = self._take()
         if handle is None:
             return False

@@ -1,4 +1,4 @@
-"""What runs in a process of the pool: jobs one after the other, until told to stop."""
+"""Main loop of a worker process of the pool: runs one job after the other."""
 
 import os
 import pickle
@@ -8,41 +8,41 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
-from regolith_studio.jobs.events import Ending, Event, Failed, Job
-from regolith_studio.jobs.runners.drive import drive
+from regolith_studio.jobs.events import Event, Failed, Job, JobResult
+from regolith_studio.jobs.runners.run_job import run_job
 
 SLOTS = 4096
-"""Jobs that can be told apart by the shared flags; more than are ever under way."""
-BEGUN = b""
-"""Sent back when a job and all modules that it needs are there, before its first step."""
+"""Length of the shared array of cancel flags; more than the jobs that are ever open at a time."""
+STARTED = b""
+"""Sent back when a job and all modules that it needs are loaded, before its first step."""
 
 
-def work(answers: Connection, flags: Any) -> None:
-    """Run the jobs that come through `answers`, and send each one's ending back with the memory in use.
+def run_jobs(pipe: Connection, flags: Any) -> None:
+    """Run the jobs that come through `pipe`, and send each one's result back with the memory in use.
 
-    Before the first step of each :data:`BEGUN` is sent: a process that has not said so has done nothing yet
-    and can be ended at once. A job that shall stop by then takes no step.
+    Before the first step of each job :data:`STARTED` is sent: a process that has not sent it can be killed
+    without loss. A job that is cancelled by then takes no step.
 
     Parameters
     ----------
     flags
         Shared with the parent: slot n holds the number of a job that shall stop.
     """
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the parent's to handle
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent handles Ctrl-C
     while True:
         try:
-            message = answers.recv_bytes()
+            message = pipe.recv_bytes()
             if not message:
                 return
             number, job = pickle.loads(message)
-            answers.send_bytes(BEGUN)
-            answers.send_bytes(_packed(_ending(job, number, flags)))
+            pipe.send_bytes(STARTED)
+            pipe.send_bytes(_pickled(_run(job, number, flags)))
         except (EOFError, OSError):
             return  # the parent is gone
 
 
 def resident_memory() -> int:
-    """Bytes of memory that this process holds; its peak where that is all the system tells; or 0."""
+    """Resident memory of this process in bytes; its peak where the system reports only that; 0 if unknown."""
     statistics = Path("/proc/self/statm")
     if statistics.exists():
         return int(statistics.read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
@@ -53,17 +53,17 @@ def resident_memory() -> int:
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)
 
 
-def _ending(job: Job, number: int, flags: Any) -> Ending:
-    return drive(job, _silent, lambda: bool(flags[number % SLOTS] == number))
+def _run(job: Job, number: int, flags: Any) -> JobResult:
+    return run_job(job, _ignore, lambda: bool(flags[number % SLOTS] == number))
 
 
-def _silent(_event: Event) -> None:
-    """Steps are not sent across processes: what counts in a batch is each job's ending."""
+def _ignore(_event: Event) -> None:
+    """Steps are not sent across processes: what counts in a batch is each job's result."""
 
 
-def _packed(ending: Ending) -> bytes:
+def _pickled(result: JobResult) -> bytes:
     try:
-        return pickle.dumps((ending, resident_memory()))
+        return pickle.dumps((result, resident_memory()))
     except Exception as error:  # noqa: BLE001  whatever a result's pickling raises
         failed = Failed(f"A worker process could not answer ({error}).", repr(error))
         return pickle.dumps((failed, resident_memory()))

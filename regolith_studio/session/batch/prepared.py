@@ -22,8 +22,8 @@ from regolith_studio.imaging.extraction import Extracted
 from regolith_studio.imaging.sample_volumes import SampleVolume, sample_file
 from regolith_studio.io.atomic import staged_folder
 from regolith_studio.io.json_text import json_bytes
-from regolith_studio.jobs.crew import Crew
 from regolith_studio.jobs.events import Steps
+from regolith_studio.jobs.executor import Executor
 from regolith_studio.jobs.extracting import VolumeInput, extract_each, fingerprint
 from regolith_studio.jobs.generating import GenerateOrder, expansion_of, fit_model, sample_of_meshes
 from regolith_studio.jobs.grain_recipe import GrainRecipe, read_grain_recipe
@@ -63,7 +63,7 @@ class Prepared:
     problems: tuple[FileProblem, ...] = ()
 
 
-def prepare(recipe: Recipe, base: Path, place: Path, crew: Crew, over: bool = False) -> Steps:
+def prepare(recipe: Recipe, base: Path, place: Path, executor: Executor, over: bool = False) -> Steps:
     """Extract the grains of all volumes and fit the population's model; returns :class:`Prepared`.
 
     Parameters
@@ -87,7 +87,7 @@ def prepare(recipe: Recipe, base: Path, place: Path, crew: Crew, over: bool = Fa
         volumes.append((yield from _grains(entry, base, place, over)))
     model, problems = None, ()
     if recipe.population is not None and not is_card(recipe.population, base):
-        model, problems = yield from _model(recipe, recipe.population, base, place, crew)
+        model, problems = yield from _model(recipe, recipe.population, base, place, executor)
     return Prepared(tuple(volumes), model, problems)
 
 
@@ -182,7 +182,7 @@ def _stored(stage: Path, found: Extracted) -> dict[str, Any]:
     }
 
 
-def _model(recipe: Recipe, population: Population, base: Path, place: Path, crew: Crew) -> Steps:
+def _model(recipe: Recipe, population: Population, base: Path, place: Path, executor: Executor) -> Steps:
     order = GenerateOrder(
         population.model,
         tuple(population.settings.items()),
@@ -210,7 +210,7 @@ def _model(recipe: Recipe, population: Population, base: Path, place: Path, crew
     if not (folder / f"{MODEL}.npz").is_file():
         if not named:
             loaded = yield from load_particles(paths, recipe.unit, recipe.repair)
-            source = yield from sample_of_meshes(loaded.particles, expansion_of(order), crew)
+            source = yield from sample_of_meshes(loaded.particles, expansion_of(order), executor)
         fitted = yield from fit_model(source, order)
         with _tidy(place), staged_folder(folder) as stage:
             write_model(stage / MODEL, fitted, {"source": source.name, "notes": list(source.notes)})

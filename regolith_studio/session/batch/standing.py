@@ -10,8 +10,8 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.building import DatasetOptions, build_dataset_folder
 from regolith_studio.jobs.coarsening import CoarseningOrder
-from regolith_studio.jobs.crew import Crew
 from regolith_studio.jobs.events import Steps
+from regolith_studio.jobs.executor import Executor
 from regolith_studio.jobs.exporting import chosen_exporters, export_dataset_folder
 from regolith_studio.jobs.representing import RepresentativesOrder
 from regolith_studio.session.recipe import Recipe
@@ -50,7 +50,7 @@ def build_standing(
     order: CoarseningOrder,
     preset: str | None,
     folder: Path,
-    workers: int | Crew,
+    workers: int | Executor,
 ) -> Steps:
     """Write ``dataset`` below `folder`; returns :class:`regolith_studio.jobs.building.Built`.
 

@@ -14,12 +14,12 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.files import fits_document
 from regolith_studio.harmonics.fit import DEFAULT_FIT_OPTIONS, FitOptions, HarmonicFit
 from regolith_studio.io.stl import stl_bytes
-from regolith_studio.jobs.batch import call
 from regolith_studio.jobs.coarsening import CoarsenedParticle, CoarseningOrder, coarsen_particle
-from regolith_studio.jobs.events import Ending, Failed, Finished, Job, Progress, Started, Step, Steps
+from regolith_studio.jobs.events import Failed, Finished, Job, JobResult, Progress, Started, Step, Steps
 from regolith_studio.jobs.examining import Examined, examine
+from regolith_studio.jobs.executor import call
 from regolith_studio.jobs.fitting import FitOrder, fit_one
-from regolith_studio.jobs.runners.drive import told
+from regolith_studio.jobs.runners.run_job import iterate_job
 from regolith_studio.jobs.shards import Record
 from regolith_studio.session.batch.items import Item
 from regolith_studio.session.outputs.coarsening import STL_HEADER, coarsening_entry
@@ -67,9 +67,9 @@ class _Entry:
     def attempt(self, stage: str, job: Job) -> Generator[Step, None, Any]:
         """What the job returns, or ``None`` with its sentence noted; the time that it took is noted too."""
         begun = time.perf_counter()
-        ending: Ending = yield from told(job)
+        result: JobResult = yield from iterate_job(job)
         self.values["seconds"][stage] = round(time.perf_counter() - begun, 4)
-        match ending:
+        match result:
             case Finished(value):
                 return value
             case Failed(sentence):

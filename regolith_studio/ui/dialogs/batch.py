@@ -20,7 +20,7 @@ from PySide6.QtWidgets import (
 )
 
 from regolith_studio.errors import InputError
-from regolith_studio.jobs.hiring import Hiring
+from regolith_studio.jobs.executor import ExecutorSettings
 from regolith_studio.session.hired import Hired, is_unfinished
 from regolith_studio.session.recipe import Outputs
 from regolith_studio.session.tasks import Task
@@ -53,7 +53,7 @@ class BatchOrder:
         Whether to go on with the run that has not ended there.
     outputs
         What is written; a recipe file says that itself.
-    hiring
+    executor
         Who works.
     """
 
@@ -61,7 +61,7 @@ class BatchOrder:
     folder: Path
     resume: bool
     outputs: Outputs
-    hiring: Hiring
+    executor: ExecutorSettings
 
 
 class BatchDialog(QDialog):

@@ -18,9 +18,9 @@ from PySide6.QtWidgets import (
 )
 
 from regolith_studio.errors import InputError
-from regolith_studio.jobs.hiring import TLS_NAMES, Hiring
+from regolith_studio.jobs.executor import TLS_NAMES, ExecutorSettings
+from regolith_studio.jobs.runners.dask_cluster import SchedulerAddress
 from regolith_studio.jobs.runners.process_pool import cores
-from regolith_studio.jobs.runners.scheduler_address import SchedulerAddress
 from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.labels import remark
@@ -126,7 +126,7 @@ class SourceField(QWidget):
 
 
 class WorkersField(QWidget):
-    """Edits a :class:`Hiring`."""
+    """Edits :class:`ExecutorSettings`."""
 
     changed = Signal()
 
@@ -161,7 +161,7 @@ class WorkersField(QWidget):
         self.tls.changed.connect(self._changed)
         self._changed()
 
-    def value(self) -> Hiring:
+    def value(self) -> ExecutorSettings:
         """Who shall work.
 
         Raises
@@ -171,16 +171,16 @@ class WorkersField(QWidget):
         """
         place = self.place.currentData()
         if place == "processes":
-            return Hiring("processes", self.count.value())
+            return ExecutorSettings("processes", self.count.value())
         if place == "local":
-            return Hiring("dask", self.count.value())
-        address = SchedulerAddress.parsed(self.address.text())
+            return ExecutorSettings("dask", self.count.value())
+        address = SchedulerAddress.parse(self.address.text())
         tls = self.tls.value() if address.scheme == "tls" else None
         missing = [name for name in TLS_NAMES if tls and not (tls / name).is_file()]
         if address.scheme == "tls" and (tls is None or missing):
             names = ", ".join(TLS_NAMES)
             raise InputError(tr("An encrypted cluster needs a folder with {names}.", names=names))
-        return Hiring("dask", 0, str(address), tls)
+        return ExecutorSettings("dask", 0, str(address), tls)
 
     def remembered(self) -> dict[str, str]:
         """For the next sitting."""

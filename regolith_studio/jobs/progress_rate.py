@@ -1,22 +1,22 @@
-"""How fast a batch goes and when it will be done, in words."""
+"""Rate of a batch and its remaining time, as text."""
 
 import time
 from collections import deque
 from collections.abc import Callable
 
 _SPAN = 60.0
-"""Seconds over which the rate is taken: long enough to be calm, short enough to follow the work."""
+"""Seconds over which the rate is averaged: long enough to be steady, short enough to follow changes."""
 
 
-class Pace:
-    """Counts what is done and says how fast that goes.
+class ProgressRate:
+    """Counts items that are done and estimates their rate.
 
     Parameters
     ----------
     total
         Items in all.
     done
-        Items that were done before: they do not count for the rate.
+        Items that were done in an earlier run; they do not count for the rate.
     clock
         Seconds; any start.
     """
@@ -37,7 +37,7 @@ class Pace:
 
     @property
     def rate(self) -> float:
-        """Items a second over the last minute; 0 where nothing is known yet."""
+        """Items a second over the last minute; 0 before the first item."""
         (begun, before), (now, after) = self._seen[0], self._seen[-1]
         return (after - before) / (now - begun) if now > begun else 0.0
 
@@ -51,14 +51,14 @@ class Pace:
         if self.rate > 0:
             parts.append(f"{self.rate:.3g} a second" if self.rate >= 1 else f"{1 / self.rate:.3g} s each")
         if (left := self.seconds_left) is not None and self.done < self.total:
-            parts.append(f"{spoken(left)} left")
+            parts.append(f"{format_duration(left)} left")
         if self.failed:
             parts.append(f"{self.failed:,} failed")
         return ", ".join(parts)
 
 
-def spoken(seconds: float) -> str:
-    """A time as one would say it: 8 s, 3 min 20 s, 2 h 5 min."""
+def format_duration(seconds: float) -> str:
+    """Seconds as text: 8 s, 3 min 20 s, 2 h 5 min."""
     whole = round(seconds)
     if whole < 100:
         return f"{whole} s"

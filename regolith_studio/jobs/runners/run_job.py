@@ -1,37 +1,37 @@
-"""Drives one job from its first step to its ending; the only place that catches everything."""
+"""Runs one job to its result; the only place that catches every exception."""
 
 import traceback
 from collections.abc import Callable, Generator
 
 from regolith_studio.errors import Cancelled, RegolithError, of_the_system
-from regolith_studio.jobs.events import Ending, Failed, Finished, Job, Listener, Step, Stopped
+from regolith_studio.jobs.events import Failed, Finished, Job, JobResult, Listener, Step, Stopped
 
 
-def drive(job: Job, listener: Listener, stopped: Callable[[], bool]) -> Ending:
-    """Run `job` to its end, telling `listener` every step, and return how it ended.
+def run_job(job: Job, listener: Listener, stopped: Callable[[], bool]) -> JobResult:
+    """Run `job` to its end, pass every step to `listener`, and return the result.
 
     Parameters
     ----------
     stopped
-        Asked before the first step and between any two; a true answer closes the generator.
+        Called before the first step and between any two; a true answer closes the generator.
     """
     if stopped():
         return Stopped()
-    story = told(job)
+    steps = iterate_job(job)
     while True:
         try:
-            step = next(story)
+            step = next(steps)
         except StopIteration as end:
-            ending: Ending = end.value
-            return ending
+            result: JobResult = end.value
+            return result
         if stopped():
-            story.close()
+            steps.close()
             return Stopped()
         listener(step)
 
 
-def told(job: Job) -> Generator[Step, None, Ending]:
-    """The steps of `job`; returns how it ended, whatever it raised."""
+def iterate_job(job: Job) -> Generator[Step, None, JobResult]:
+    """Iterate over the steps of `job`; the generator returns the result, whatever the job raised."""
     try:
         return Finished((yield from job.steps()))
     except Cancelled:
@@ -41,7 +41,7 @@ def told(job: Job) -> Generator[Step, None, Ending]:
 
 
 def failure(error: BaseException) -> Failed:
-    """The event that tells `error`: its own sentence if it was meant for users, else a general one."""
+    """The event for an exception: its own message if it was meant for users, else a general one."""
     details = "".join(traceback.format_exception(error))
     if isinstance(error, RegolithError):
         return Failed(str(error), details)

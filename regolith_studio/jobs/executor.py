@@ -1,0 +1,275 @@
+"""Runs many jobs at the same time: in this thread, in processes of this machine or on a Dask cluster."""
+
+import queue
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Self
+
+from regolith_studio.errors import Cancelled, EnvironmentProblem, InputError, RegolithError
+from regolith_studio.jobs.events import (
+    Event,
+    Failed,
+    Finished,
+    Job,
+    JobResult,
+    Progress,
+    Started,
+    Step,
+    Steps,
+    Stopped,
+)
+from regolith_studio.jobs.runners.process_pool import ProcessPoolRunner, cores
+from regolith_studio.jobs.runners.protocol import Handle, Runner
+from regolith_studio.jobs.runners.run_job import iterate_job
+
+if TYPE_CHECKING:
+    from regolith_studio.jobs.runners.dask_cluster import TlsFiles
+
+RUNNERS = {"processes": "processes of this machine", "dask": "a Dask cluster"}
+"""Where jobs can run: key and description."""
+TLS_NAMES = ("ca.pem", "cert.pem", "key.pem")
+_POLL_SECONDS = 0.1
+"""Seconds without a result after which the caller gets a turn, so that it can be cancelled."""
+
+
+class Executor:
+    """Runs jobs for a caller that wants their results in order; results do not depend on its size.
+
+    Parameters
+    ----------
+    workers
+        Jobs at the same time: 1 for this thread alone, more for as many processes, 0 for one a core.
+    runner
+        Used in place of processes of this machine; closed with the executor.
+    """
+
+    def __init__(self, workers: int = 1, runner: Runner | None = None) -> None:
+        self.workers = workers or cores()
+        self._runner = runner
+        self.dashboard = ""
+        """Address of a cluster's status page, if there is one."""
+
+    @classmethod
+    def on_cluster(cls, address: str = "", workers: int = 0, tls: "TlsFiles | None" = None) -> Self:
+        """An executor on a Dask cluster; the parameters are those of :class:`DaskRunner`."""
+        from regolith_studio.jobs.runners.dask_cluster import DaskRunner
+
+        runner = DaskRunner(address, workers, tls)
+        executor = cls(runner.workers, runner)
+        executor.dashboard = runner.dashboard
+        return executor
+
+    def results(self, jobs: Iterable[Job]) -> Generator[JobResult | None, None, None]:
+        """Results of `jobs` in their order; ``None`` whenever the caller may want to stop."""
+        if self._in_this_thread:
+            return (None if answer is None else answer[1] for answer in _run_one_by_one(jobs))
+        return in_order(self._open_runner(), jobs, window=2 * self.workers)
+
+    def as_completed(self, jobs: Iterable[Job]) -> Generator[tuple[int, JobResult] | None, None, None]:
+        """Number and result of each of `jobs`, the quick ones first; ``None`` as for :meth:`results`."""
+        if self._in_this_thread:
+            return _run_one_by_one(jobs)
+        return as_completed(self._open_runner(), jobs, window=2 * self.workers)
+
+    def map(self, function: Callable[[Any], Any], items: Iterable[Any]) -> Iterator[Any]:
+        """As the built-in ``map``, in order and lazily, for a picklable function.
+
+        Raises
+        ------
+        RegolithError
+            With the message of the first call that raised.
+        """
+        for result in self.results(Job(call, (function, item)) for item in items):
+            if result is not None:
+                yield value_of(result)
+
+    def run_all(self, jobs: Sequence[Job], names: Sequence[str]) -> Generator[Step, None, list[JobResult]]:
+        """Results of `jobs`, with a progress event after each that names what is done."""
+        results: list[JobResult] = []
+        for result in self.results(jobs):
+            if result is not None:
+                results.append(result)
+            yield Progress(len(results), len(jobs), names[len(results) - 1] if results else "")
+        return results
+
+    @property
+    def _in_this_thread(self) -> bool:
+        return self.workers == 1 and self._runner is None
+
+    def _open_runner(self) -> Runner:
+        if self._runner is None:
+            self._runner = ProcessPoolRunner(self.workers)
+        return self._runner
+
+    def close(self) -> None:
+        """End the processes, if there are any."""
+        if self._runner is not None:
+            self._runner.close()
+            self._runner = None
+
+
+@contextmanager
+def open_executor(workers: int | Executor) -> Iterator[Executor]:
+    """The executor itself, or a new one of so many workers that is closed at the end."""
+    if isinstance(workers, Executor):
+        yield workers
+        return
+    executor = Executor(workers)
+    try:
+        yield executor
+    finally:
+        executor.close()
+
+
+@dataclass(frozen=True)
+class ExecutorSettings:
+    """Where jobs shall run, as the command line and the window ask for it; picklable.
+
+    Parameters
+    ----------
+    runner
+        Key of :data:`RUNNERS`.
+    workers
+        Processes of this machine, also of a cluster that is started on it; 0 for one a core.
+    address
+        Of the cluster's scheduler; without it a cluster is started on this machine.
+    tls
+        Folder with :data:`TLS_NAMES` for a ``tls://`` address.
+
+    Raises
+    ------
+    InputError
+        If these do not go together.
+    """
+
+    runner: str = "processes"
+    workers: int = 1
+    address: str = ""
+    tls: Path | None = None
+
+    def __post_init__(self) -> None:
+        if self.runner not in RUNNERS:
+            raise InputError(f"There is no runner {self.runner!r}; there are {' and '.join(RUNNERS)}.")
+        if self.workers < 0:
+            raise InputError(f"The number of workers must not be negative, got {self.workers}.")
+        if self.runner == "processes" and (self.address or self.tls):
+            raise InputError("An address and TLS files go with the runner dask.")
+
+    def open(self) -> Executor:
+        """A new executor, to be closed by the caller.
+
+        Raises
+        ------
+        InputError, EnvironmentProblem
+            As :class:`~regolith_studio.jobs.runners.dask_cluster.DaskRunner`.
+        """
+        if self.runner == "processes":
+            return Executor(self.workers)
+        from regolith_studio.jobs.runners.dask_cluster import TlsFiles
+
+        files = TlsFiles(*[self.tls / name for name in TLS_NAMES]) if self.tls else None
+        return Executor.on_cluster(self.address, self.workers, files)
+
+
+def in_order(runner: Runner, jobs: Iterable[Job], window: int = 2) -> Generator[JobResult | None, None, None]:
+    """Results of `jobs` in their order; ``None`` while the next one is being waited for.
+
+    Parameters
+    ----------
+    window
+        Jobs that are submitted and whose results have not been handed on: bounds the memory.
+    """
+    early: dict[int, JobResult] = {}
+    expected = 0
+    for answer in as_completed(runner, jobs, window, n_buffered=lambda: len(early)):
+        if answer is None:
+            yield None
+            continue
+        number, result = answer
+        early[number] = result
+        while expected in early:
+            yield early.pop(expected)
+            expected += 1
+
+
+def as_completed(
+    runner: Runner, jobs: Iterable[Job], window: int = 2, n_buffered: Callable[[], int] = lambda: 0
+) -> Generator[tuple[int, JobResult] | None, None, None]:
+    """Number and result of each of `jobs` as they end; ``None`` while the next one is being waited for.
+
+    Parameters
+    ----------
+    window
+        Jobs that are submitted at the same time.
+    n_buffered
+        Number of results that the caller keeps back; they count as if they were still running.
+    """
+    answers: queue.SimpleQueue[tuple[int, JobResult]] = queue.SimpleQueue()
+    waiting = enumerate(jobs)
+    open_handles: dict[int, Handle] = {}
+    try:
+        while True:
+            while len(open_handles) + n_buffered() < window and (entry := next(waiting, None)):
+                number, job = entry
+                open_handles[number] = runner.submit(job, _put_result(answers, number))
+            if not open_handles:
+                return
+            try:
+                number, result = answers.get(timeout=_POLL_SECONDS)
+            except queue.Empty:
+                yield None
+                continue
+            del open_handles[number]
+            yield number, result
+    finally:
+        for handle in open_handles.values():
+            handle.cancel()
+
+
+def call(function: Callable[[Any], Any], item: Any) -> Steps:
+    """A job of a single step: `function` of `item`."""
+    yield Started("Working")
+    return function(item)
+
+
+def value_of(result: JobResult) -> Any:
+    """What a job returned.
+
+    Raises
+    ------
+    RegolithError
+        If it failed.
+    Cancelled
+        If it was stopped.
+    """
+    match result:
+        case Finished(value):
+            return value
+        case Failed(sentence):
+            raise RegolithError(sentence)
+        case Stopped(reason) if reason:
+            raise EnvironmentProblem(reason)
+        case _:
+            raise Cancelled("The work was stopped.")
+
+
+def _put_result(answers: "queue.SimpleQueue[tuple[int, JobResult]]", number: int) -> Callable[[Event], None]:
+    def listen(event: Event) -> None:
+        if isinstance(event, Finished | Failed | Stopped):
+            answers.put((number, event))
+
+    return listen
+
+
+def _run_one_by_one(jobs: Iterable[Job]) -> Generator[tuple[int, JobResult] | None, None, None]:
+    for number, job in enumerate(jobs):
+        steps = iterate_job(job)
+        while True:
+            try:
+                next(steps)
+            except StopIteration as end:
+                yield number, end.value
+                break
+            yield None
