@@ -14,9 +14,9 @@ import trimesh
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.geometry import ConvexPolyhedron, HalfSpaces, Mesh
-from regolith_studio.geometry.directions import fibonacci_directions, icosphere
 from regolith_studio.geometry.oriented_box import minimum_volume_box
 from regolith_studio.geometry.ray_casting import radial_hits
+from regolith_studio.geometry.sphere_points import fibonacci_directions, icosphere
 
 KEYS = tuple(CATALOGUE)[:8]
 

@@ -9,8 +9,8 @@ def warm_up() -> None:
     import numpy as np
 
     from regolith_studio.coarsening.coarsen import coarsen
-    from regolith_studio.geometry.directions import icosphere
     from regolith_studio.geometry.mesh import Mesh
+    from regolith_studio.geometry.sphere_points import icosphere
 
     sphere = icosphere(2)
     egg = Mesh(sphere.vertices * (1.0, 0.8, 0.6) + 0.1 * np.abs(sphere.vertices), sphere.faces)

@@ -9,7 +9,7 @@ from scipy.stats import qmc
 
 from regolith_studio.geometry.arrays import BoolArray, FloatArray
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
-from regolith_studio.geometry.directions import fibonacci_directions
+from regolith_studio.geometry.sphere_points import fibonacci_directions
 
 PROBES = 4096
 """Points that the fit tries to cover; a power of two for Sobol's sequence."""

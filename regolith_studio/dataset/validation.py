@@ -19,8 +19,8 @@ from regolith_studio.dataset.reading import (
 from regolith_studio.dataset.schema import RepresentativeRecord
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
-from regolith_studio.geometry.edges import edge_table
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.topology import edge_table
 from regolith_studio.io.atomic import recover_folder
 
 FLOAT32_TOLERANCE = 1e-6

@@ -8,11 +8,10 @@ import numpy as np
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
-from regolith_studio.geometry.ellipsoid import ellipsoid_area, equal_ellipsoid
 from regolith_studio.geometry.heuristic_box import heuristic_box
+from regolith_studio.geometry.mass_properties import ellipsoid_area, equal_ellipsoid, volume_and_area
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.oriented_box import OrientedBox, minimum_volume_box
-from regolith_studio.geometry.volume_and_area import volume_and_area
 
 FLAT = 1e-9
 """A mesh whose volume is below this share of its size cubed encloses nothing."""
@@ -46,7 +45,7 @@ class ShapeFacts:
         self._solid = solid
         self.box_metric = box_metric
         self.mesh = solid.mesh if isinstance(solid, ConvexPolyhedron) else solid
-        self.volume, self.surface_area = volume_and_area(self.mesh)
+        self.volume, self.surface_area = volume_and_area(self.mesh.vertices, self.mesh.faces)
         _check_volume(self.mesh, self.volume)
 
     @cached_property
@@ -68,7 +67,7 @@ class ShapeFacts:
     @cached_property
     def hull_ellipsoid_area(self) -> float:
         """Surface area of the ellipsoid with the volume and the ratios of second moments of the hull."""
-        return ellipsoid_area(equal_ellipsoid(self.hull))
+        return ellipsoid_area(equal_ellipsoid(self.hull.normalised().inertia, self.hull.volume))
 
 
 def _check_volume(mesh: Mesh, volume: float) -> None:

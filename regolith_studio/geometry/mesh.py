@@ -11,9 +11,9 @@ from scipy.spatial import ConvexHull, QhullError
 
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats, locked_integers
-from regolith_studio.geometry.derived import Derived
+from regolith_studio.geometry.cached_arrays import CachedArray
 from regolith_studio.geometry.kernels import kernel
-from regolith_studio.geometry.moments import volume_moments
+from regolith_studio.geometry.mass_properties import volume_moments
 from regolith_studio.geometry.vectors import cross, dot, mixed, row
 
 
@@ -23,7 +23,7 @@ class Mesh:
 
     Any triangles are accepted; volume, centroid and inertia mean what their names say only for
     closed surfaces whose triangles run counter-clockwise seen from outside
-    (:mod:`regolith_studio.geometry.health` tells).
+    (:mod:`regolith_studio.geometry.mesh_health` tells).
 
     Parameters
     ----------
@@ -52,18 +52,18 @@ class Mesh:
     def __reduce__(self) -> tuple[Callable[..., "Mesh"], tuple[ArrayLike, ArrayLike]]:
         return Mesh, (self.vertices, self.faces)
 
-    @Derived
+    @CachedArray
     def triangles(self) -> FloatArray:
         """Corner coordinates, shape (m, 3, 3): triangle, corner, axis."""
         return self.vertices[self.faces]
 
-    @Derived
+    @CachedArray
     def face_area_vectors(self) -> FloatArray:
         """Normal of each triangle times its area, shape (m, 3)."""
         a, b, c = np.moveaxis(self.triangles, 1, 0)
         return np.asarray(np.cross(b - a, c - a) / 2)
 
-    @Derived
+    @CachedArray
     def face_areas(self) -> FloatArray:
         """Area of each triangle, shape (m,)."""
         return np.asarray(np.linalg.norm(self.face_area_vectors, axis=1))
@@ -108,7 +108,7 @@ class Mesh:
         second = self._moments[2]
         return np.asarray(np.trace(second) * np.eye(3) - second)
 
-    @Derived
+    @CachedArray
     def hull(self) -> "Mesh":
         """Convex hull (Qhull), triangulated, with outward normals.
 

@@ -14,9 +14,9 @@ from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
 from regolith_studio.geometry.box_search import minimum_box
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
-from regolith_studio.geometry.directions import fibonacci_directions
 from regolith_studio.geometry.kernels import kernel
 from regolith_studio.geometry.mesh import Mesh, bounds_of
+from regolith_studio.geometry.sphere_points import fibonacci_directions
 from regolith_studio.geometry.vectors import length, mixed, row
 
 SHAKE = 1e-10

@@ -3,7 +3,9 @@
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.mesh_health import locate_defects
 
 if TYPE_CHECKING:
     from regolith_studio.geometry.repair import Repair
@@ -22,7 +24,7 @@ class Source:
     unit
         Length unit that the file's numbers were taken in: ``um``, ``mm``, ``m``, ``voxel`` ...
     repaired
-        Whether what was wrong with the mesh was mended as it was read.
+        Whether the mesh was repaired as it was read.
     """
 
     path: str
@@ -51,7 +53,7 @@ class Particle:
         How many grains of its population it stands for: above 1 where larger grains were more often
         left out because the border of a scan cut them (Miles and Lantuejoul).
     repair
-        What the mesh was like before it was mended and what was done; ``None`` if it was taken as it is.
+        Health before and after the repair, and what was done; ``None`` if the mesh was not repaired.
     """
 
     name: str
@@ -61,3 +63,17 @@ class Particle:
     notes: tuple[str, ...] = field(default=())
     weight: float = 1.0
     repair: "Repair | None" = field(default=None, compare=False, repr=False)
+
+
+def defect_triangles(particle: Particle) -> dict[str, FloatArray]:
+    """Corners (k, 3, 3) of the triangles at each kind of defect of the mesh as it was read.
+
+    The keys are those of :func:`~regolith_studio.geometry.mesh_health.locate_defects`, and ``filled`` for
+    the triangles that close holes.
+    """
+    done = particle.repair
+    given = particle.mesh if done is None or done.given is None else done.given
+    found = {kind: given.triangles[at] for kind, at in locate_defects(given).items()}
+    if done is not None and done.filling_faces:
+        found["filled"] = done.mesh.triangles[-done.filling_faces :]
+    return found

@@ -8,26 +8,25 @@ import numpy as np
 
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
-from regolith_studio.geometry.crowded_edges import without_crowded_edges
-from regolith_studio.geometry.edges import bodies, edge_table, neighbours
-from regolith_studio.geometry.enclosure import refuse_sheet
-from regolith_studio.geometry.health import MeshHealth, body_volumes, inspect, unit_size
-from regolith_studio.geometry.holes import filled
+from regolith_studio.geometry.hole_filling import fill_holes, require_closed_volume
+from regolith_studio.geometry.merge_vertices import merged_vertices
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.geometry.welding import welded
+from regolith_studio.geometry.mesh_health import MeshHealth, body_volumes, inspect, unit_size
+from regolith_studio.geometry.non_manifold import split_non_manifold_edges
+from regolith_studio.geometry.topology import edge_table, find_bodies, neighbours
 
 TOLERANCES = (1e-7, 1e-6, 1e-5)
 """Shares of the mesh's size within which the vertices of an open mesh may be joined."""
 
-LEAST_JUDGED_SHARE = 0.002
+MIN_JUDGED_SHARE = 0.002
 """Up to this share of the surface holes are closed without asking whether there is a body about them."""
 
-LARGEST_TWISTED_SHARE = 0.05
+MAX_TWISTED_SHARE = 0.05
 """A mesh from which more of the surface must be cut to have two sides is one-sided."""
 
 TWIST_ROUNDS = 5
 
-LEAST_VOLUME = 1e-9
+MIN_VOLUME = 1e-9
 """Share of its bounding cube that a mesh must enclose, or it is flat."""
 
 
@@ -105,7 +104,7 @@ class _Draft:
 
 
 def repair(mesh: Mesh) -> Repair:
-    """Make one sound body of a mesh: weld, clean, keep the largest body, wind, close holes.
+    """Make one sound body of a mesh: merge vertices, clean, keep the largest body, wind, close holes.
 
     Raises
     ------
@@ -116,13 +115,13 @@ def repair(mesh: Mesh) -> Repair:
     if not before.faces:
         raise GeometryError("The mesh has points but no faces: a point cloud encloses no particle.")
     if before.sound and not before.duplicate_faces:
-        _refuse_flat(unit_size(mesh)[0], mesh.faces)
+        _require_volume(unit_size(mesh)[0], mesh.faces)
         return Repair(mesh, before, before, ())
     draft = _Draft(*unit_size(mesh))
     for step in (
-        _weld,
+        _merge_equal_vertices,
         _drop_degenerate,
-        _weld_near,
+        _merge_near_vertices,
         _drop_duplicates,
         _wind,
         _keep_largest,
@@ -130,20 +129,20 @@ def repair(mesh: Mesh) -> Repair:
         _face_outwards,
     ):
         draft = step(draft)
-    mended = _restored(draft, mesh)
-    after = inspect(mended)
+    repaired = _in_frame_of_input(draft, mesh)
+    after = inspect(repaired)
     if not after.sound:
         raise GeometryError(f"The mesh cannot be repaired: {_lower(after.problems[0])}")
-    return Repair(mended, before, after, draft.actions, given=mesh, **_in_unit_of(mesh, draft.numbers))
+    return Repair(repaired, before, after, draft.actions, given=mesh, **_in_unit_of(mesh, draft.numbers))
 
 
 def _in_unit_of(mesh: Mesh, numbers: Mapping[str, Any]) -> dict[str, Any]:
     return {**numbers, "filled_area": numbers.get("filled_area", 0.0) * _size(mesh) ** 2}
 
 
-def _weld(draft: _Draft) -> _Draft:
+def _merge_equal_vertices(draft: _Draft) -> _Draft:
     used = len(np.unique(draft.faces))
-    vertices, faces = welded(draft.vertices, draft.faces)
+    vertices, faces = merged_vertices(draft.vertices, draft.faces)
     joined = used - len(vertices)
     action = (
         f"Joined {_count(joined, 'vertex', 'vertices')} with another at the same place." if joined else ""
@@ -196,17 +195,17 @@ def _closed_without(draft: _Draft, double: BoolArray, first: IntArray) -> BoolAr
     return np.asarray(np.isin(single[table.edge.reshape(-1, 3)[first]], (0, 2)).all(axis=1))
 
 
-def _weld_near(draft: _Draft) -> _Draft:
-    """Join near vertices where that closes far more edges than it crowds."""
+def _merge_near_vertices(draft: _Draft) -> _Draft:
+    """Join near vertices where that closes far more edges than it makes non-manifold."""
     table = edge_table(draft.faces, len(draft.vertices))
     best, least = draft, table.open_edges
     for tolerance in TOLERANCES if least else ():
-        vertices, faces = welded(draft.vertices, draft.faces, tolerance)
+        vertices, faces = merged_vertices(draft.vertices, draft.faces, tolerance)
         a, b, c = faces.T
         faces = faces[(a != b) & (b != c) & (c != a)]
         near = edge_table(faces, len(vertices))
-        crowded = max(near.crowded_edges - table.crowded_edges, 0)
-        if len(faces) and near.open_edges < least and 4 * crowded < table.open_edges - near.open_edges:
+        non_manifold = max(near.non_manifold_edges - table.non_manifold_edges, 0)
+        if len(faces) and near.open_edges < least and 4 * non_manifold < table.open_edges - near.open_edges:
             joined = len(draft.vertices) - len(vertices)
             near_by = f"within {tolerance:.0e} of the mesh's size"
             text = f"Joined {_count(joined, 'vertex', 'vertices')} with another {near_by}."
@@ -215,34 +214,34 @@ def _weld_near(draft: _Draft) -> _Draft:
 
 
 def _wind(draft: _Draft) -> _Draft:
-    """Turn faces so that neighbours agree, the fewer of each patch; then take crowded edges apart."""
-    draft = _untwist(draft)
+    """Turn faces so that neighbours agree, the fewer of each patch; then take non-manifold edges apart."""
+    draft = _make_orientable(draft)
     table = edge_table(draft.faces, len(draft.vertices))
-    parts = bodies(neighbours(table), table.forward)
+    parts = find_bodies(neighbours(table), table.forward)
     share = np.bincount(parts.body, parts.turned) / np.bincount(parts.body)
     turned = parts.turned ^ (share > 0.5)[parts.body]
     faces = np.where(turned[:, None], draft.faces[:, ::-1], draft.faces)
     count = int(np.count_nonzero(turned))
     text = f"Turned {_count(count, 'face', 'faces')} that looked the wrong way." if count else ""
     draft = draft.changed(text, faces=faces)
-    return _take_apart(draft) if table.crowded_edges else draft
+    return _split_non_manifold(draft) if table.non_manifold_edges else draft
 
 
-def _untwist(draft: _Draft) -> _Draft:
+def _make_orientable(draft: _Draft) -> _Draft:
     """Cut out the few faces over which a surface becomes one-sided, if they are few."""
     area = Mesh(draft.vertices, draft.faces).face_areas
     kept = np.arange(len(draft.faces))
     for _ in range(TWIST_ROUNDS):
         table = edge_table(draft.faces[kept], len(draft.vertices))
         across = neighbours(table)
-        parts = bodies(across, table.forward)
+        parts = find_bodies(across, table.forward)
         if not parts.conflicts:
             break
         half = np.flatnonzero(across >= 0)
         turn = parts.turned[half // 3] ^ parts.turned[across[half] // 3]
         clash = half[(table.forward[half] == table.forward[across[half]]) != turn]
         kept = np.delete(kept, np.unique(clash // 3))
-        if area[kept].sum() < (1 - LARGEST_TWISTED_SHARE) * area.sum():
+        if area[kept].sum() < (1 - MAX_TWISTED_SHARE) * area.sum():
             raise GeometryError("The mesh is one-sided like a Möbius strip: its faces have no outside.")
     else:
         raise GeometryError("The mesh is one-sided like a Möbius strip: its faces have no outside.")
@@ -251,15 +250,14 @@ def _untwist(draft: _Draft) -> _Draft:
     return draft.changed(text, faces=draft.faces[kept])
 
 
-def _take_apart(draft: _Draft) -> _Draft:
-    """Make every edge one of two faces: each wedge of the solid at a crowded edge gets its own."""
+def _split_non_manifold(draft: _Draft) -> _Draft:
+    """Make every edge one of two faces: each wedge of the solid at a non-manifold edge gets its own."""
     inside_out = float(_whole_volume(draft)) < 0.0
     faces = draft.faces[:, ::-1] if inside_out else draft.faces
-    crowded = edge_table(faces, len(draft.vertices)).crowded_edges
-    apart = without_crowded_edges(draft.vertices, faces)
-    text = f"Took the surface apart along {_count(crowded, 'edge', 'edges')} where more than two faces met."
-    faces = apart.faces[:, ::-1] if inside_out else apart.faces
-    return draft.changed(text, vertices=apart.vertices, faces=faces)
+    count = edge_table(faces, len(draft.vertices)).non_manifold_edges
+    vertices, faces = split_non_manifold_edges(draft.vertices, faces)
+    text = f"Took the surface apart along {_count(count, 'edge', 'edges')} where more than two faces met."
+    return draft.changed(text, vertices=vertices, faces=faces[:, ::-1] if inside_out else faces)
 
 
 def _whole_volume(draft: _Draft) -> float:
@@ -268,7 +266,7 @@ def _whole_volume(draft: _Draft) -> float:
 
 def _keep_largest(draft: _Draft) -> _Draft:
     table = edge_table(draft.faces, len(draft.vertices))
-    parts = bodies(neighbours(table), table.forward)
+    parts = find_bodies(neighbours(table), table.forward)
     if parts.count == 1:
         return draft
     volumes = np.abs(body_volumes(draft.vertices, draft.faces, parts.body))
@@ -284,15 +282,15 @@ def _keep_largest(draft: _Draft) -> _Draft:
 
 
 def _fill(draft: _Draft) -> _Draft:
-    holes = filled(draft.vertices, draft.faces)
+    holes = fill_holes(draft.vertices, draft.faces)
     if not holes.count:
         return draft
     if not (edge_table(holes.faces, len(holes.vertices)).uses == 2).all():
-        holes = filled(draft.vertices, draft.faces, only_fans=True)
+        holes = fill_holes(draft.vertices, draft.faces, only_fans=True)
     whole = Mesh(holes.vertices, holes.faces).surface_area
     share = holes.area / whole if whole > 0.0 else 1.0
-    if share > LEAST_JUDGED_SHARE:
-        refuse_sheet(Mesh(holes.vertices, holes.faces), len(holes.faces) - len(draft.faces), share)
+    if share > MIN_JUDGED_SHARE:
+        require_closed_volume(Mesh(holes.vertices, holes.faces), len(holes.faces) - len(draft.faces), share)
     text = f"Filled {_count(holes.count, 'hole', 'holes')} with {_percent(share)} of the surface."
     return draft.changed(
         text,
@@ -306,18 +304,18 @@ def _fill(draft: _Draft) -> _Draft:
 
 
 def _face_outwards(draft: _Draft) -> _Draft:
-    _refuse_flat(draft.vertices, draft.faces)
+    _require_volume(draft.vertices, draft.faces)
     if Mesh(draft.vertices, draft.faces).volume > 0.0:
         return draft
     return draft.changed("Turned all faces: the mesh was inside out.", faces=draft.faces[:, ::-1])
 
 
-def _refuse_flat(vertices: FloatArray, faces: IntArray) -> None:
-    if abs(Mesh(vertices, faces).volume) < LEAST_VOLUME:
+def _require_volume(vertices: FloatArray, faces: IntArray) -> None:
+    if abs(Mesh(vertices, faces).volume) < MIN_VOLUME:
         raise GeometryError("The mesh is flat and encloses no volume.")
 
 
-def _restored(draft: _Draft, mesh: Mesh) -> Mesh:
+def _in_frame_of_input(draft: _Draft, mesh: Mesh) -> Mesh:
     """The draft at the place and size of the given mesh, without vertices that no face uses."""
     points = mesh.vertices[np.unique(mesh.faces)]
     middle = (points.min(axis=0) + points.max(axis=0)) / 2

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.directions import icosphere
+from regolith_studio.geometry.sphere_points import icosphere
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,9 +13,9 @@ from scipy import optimize
 
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.geometry.directions import fibonacci_directions
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.ray_casting import radial_hits
+from regolith_studio.geometry.sphere_points import fibonacci_directions
 from regolith_studio.harmonics.radius_function import sample_radius
 
 SEARCH_RADIUS = 0.25

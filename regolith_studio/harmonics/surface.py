@@ -7,9 +7,9 @@ from numpy.typing import ArrayLike
 
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.kernels import kernel
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics import quadrature
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.fit import HarmonicFit

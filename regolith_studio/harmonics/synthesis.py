@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.kernels import kernel
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.icosphere_edges import icosphere_edges
 from regolith_studio.harmonics.legendre import fill_legendre, harmonics, legendre_factors

@@ -8,9 +8,8 @@ import numpy as np
 from regolith_studio.descriptors.describe import Descriptors, describe
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.geometry.health import MeshHealth, inspect
-from regolith_studio.geometry.particle import Particle
-from regolith_studio.geometry.trouble_spots import fault_triangles
+from regolith_studio.geometry.mesh_health import MeshHealth, inspect
+from regolith_studio.geometry.particle import Particle, defect_triangles
 from regolith_studio.harmonics.sight import Sight, sight
 from regolith_studio.harmonics.visibility import hidden_faces
 from regolith_studio.jobs.events import Job, Partial, Progress, Started, Steps
@@ -58,11 +57,11 @@ def _seen(particle: Particle) -> Sight | None:
 def find_faults(particle: Particle, seen: Sight | None = None) -> Steps:
     """Where a mesh is wrong or was before it was mended, and what its star point cannot see.
 
-    Returns the corners (k, 3, 3) of the triangles of each kind, as ``fault_triangles`` names them, and
+    Returns the corners (k, 3, 3) of the triangles of each kind, as ``defect_triangles`` names them, and
     ``hidden``.
     """
     yield Started("Looking for faults")
-    found: dict[str, FloatArray] = fault_triangles(particle)
+    found: dict[str, FloatArray] = defect_triangles(particle)
     if seen is not None and seen.hidden_surface_share > 0.0:
         hidden = hidden_faces(particle.mesh, np.array(seen.star_point))
         found["hidden"] = particle.mesh.triangles[hidden]

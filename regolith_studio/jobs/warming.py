@@ -4,9 +4,9 @@ from collections.abc import Callable
 
 from regolith_studio.coarsening.coarsen import coarsen
 from regolith_studio.coarsening.methods import METHODS
-from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.fit import fit_harmonics
 from regolith_studio.harmonics.surface import reconstruct
 from regolith_studio.jobs.events import Job, Started, Steps

@@ -11,10 +11,10 @@ from pathlib import Path
 
 from regolith_studio.errors import EnvironmentProblem, FileError, GeometryError
 from regolith_studio.geometry import repair as mending
-from regolith_studio.geometry.health import inspect
+from regolith_studio.geometry.merge_vertices import merged_vertices
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.mesh_health import inspect
 from regolith_studio.geometry.particle import Particle, Source
-from regolith_studio.geometry.welding import welded
 from regolith_studio.readers.formats import mesh_suffixes
 from regolith_studio.readers.guard import Guard, shared_guard
 from regolith_studio.readers.sentences import counted, sentence_about, shown_name
@@ -205,7 +205,7 @@ def _read_mesh(file: MeshFile, unit: str, repair: bool, guard: Guard | None) -> 
     answer = (guard or shared_guard()).request("mesh", path)
     vertices, faces = answer.arrays
     if not answer.header["shares_vertices"]:
-        vertices, faces = welded(vertices, faces)
+        vertices, faces = merged_vertices(vertices, faces)
     mesh = Mesh(vertices * factor, faces)
     notes = tuple(answer.header["notes"])
     mended = None

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from regolith_studio.geometry.plane_cut import PlaneCut
+from regolith_studio.geometry.cross_section import CrossSection
 from regolith_studio.scene import extras, palette, sectioning
 from regolith_studio.scene.divider import Divider, clip
 from regolith_studio.scene.palette import Surroundings
@@ -28,7 +28,7 @@ def show_cuts(
     plotter: Any,
     own: str,
     other: str,
-    cuts: Mapping[str, PlaneCut],
+    cuts: Mapping[str, CrossSection],
     colours: Mapping[str, str],
 ) -> None:
     """Fill the cuts of the bodies that are shown, and draw the outlines of all.

@@ -15,14 +15,14 @@ COLOURS = {
     "crossing": "#cc79a7",
     "turned": "#e69f00",
     "small bodies": "#56b4e9",
-    "crowded": "#009e73",
+    "non-manifold": "#009e73",
     "double": "#b5a900",
     "degenerate": "#7b3fa0",
     "hidden": "#7d8a99",
 }
-"""One for each kind of ``fault_triangles``, and for what the star point cannot see; later ones lie on top."""
+"""Colour of each kind of ``defect_triangles`` and of hidden faces; later ones are drawn on top."""
 
-SMALL = ("open", "crossing", "turned", "crowded", "double", "degenerate")
+SMALL = ("open", "crossing", "turned", "non-manifold", "double", "degenerate")
 """Kinds whose triangles may be slivers, so that their edges are drawn too."""
 
 

@@ -13,7 +13,7 @@ from vtkmodules.vtkRenderingCore import vtkActor, vtkGlyph3DMapper
 
 from regolith_studio.dem.pile import Pile
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.geometry.directions import icosphere
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.scene import palette
 from regolith_studio.scene.palette import Surroundings
 

@@ -10,9 +10,9 @@ from vtkmodules.vtkCommonDataModel import vtkPlane
 from vtkmodules.vtkFiltersGeneral import vtkContourTriangulator
 
 from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.cross_section import CrossSection, plane_axes
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.oriented_box import OrientedBox
-from regolith_studio.geometry.plane_cut import PlaneCut, plane_axes
 from regolith_studio.scene import palette
 from regolith_studio.scene.extras import hide_named, show_named
 from regolith_studio.scene.palette import Surroundings
@@ -81,7 +81,7 @@ def reach_along(mesh: Mesh, normal: ArrayLike) -> tuple[float, float]:
     return float(heights.min()), float(heights.max())
 
 
-def show_cap(plotter: Any, cut: PlaneCut | None, colour: str, layer: str = "") -> None:
+def show_cap(plotter: Any, cut: CrossSection | None, colour: str, layer: str = "") -> None:
     """The cut, filled; holes stay holes."""
     name = layer + CAP
     if cut is None or not len(cut.segments):
@@ -95,7 +95,7 @@ def show_cap(plotter: Any, cut: PlaneCut | None, colour: str, layer: str = "") -
     actor.mapper.resolve = "polygon_offset"
 
 
-def show_cut(plotter: Any, shape: str, cut: PlaneCut | None, colour: str) -> None:
+def show_cut(plotter: Any, shape: str, cut: CrossSection | None, colour: str) -> None:
     """The outline of one body in the plane of the section."""
     if cut is None or not len(cut.segments):
         hide_named(plotter, CUT + shape)
@@ -114,7 +114,7 @@ def show_frame(plotter: Any, corners: FloatArray | None, surroundings: Surroundi
     actor.prop.lighting = False
 
 
-def _lines(cut: PlaneCut) -> pv.PolyData:
+def _lines(cut: CrossSection) -> pv.PolyData:
     pieces = np.column_stack([np.full(len(cut.segments), 2), cut.segments]).ravel()
     return pv.PolyData(np.array(cut.points), lines=pieces)
 

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from regolith_studio.coarsening.progress import CoarseningProgress
     from regolith_studio.coarsening.result import Coarsened
     from regolith_studio.descriptors.describe import Descriptors
-    from regolith_studio.geometry.health import MeshHealth
+    from regolith_studio.geometry.mesh_health import MeshHealth
     from regolith_studio.harmonics.fit import HarmonicFit
     from regolith_studio.harmonics.sight import Sight
     from regolith_studio.session.origins import Place

@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike
 
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats, locked_integers
-from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.icosphere_edges import icosphere_edges
 from regolith_studio.harmonics.surface import DEFAULT_LEVEL, reconstruct

@@ -6,7 +6,7 @@ from math import isqrt
 import numpy as np
 
 from regolith_studio.geometry.arrays import BoolArray, FloatArray
-from regolith_studio.geometry.directions import icosphere
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.legendre import harmonics
 from regolith_studio.shape_models.sphere_grid import enclosed_volumes, sphere_grid
 

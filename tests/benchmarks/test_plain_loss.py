@@ -11,9 +11,9 @@ from regolith_studio.coarsening.evaluation import LossFunction
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
-from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.sphere_points import icosphere
 
 pytestmark = pytest.mark.filterwarnings("default")  # the plain programs are full of them
 WAYS: list[dict[str, Any]] = [{}, {"lean": True}, {"exact": True}, {"lean": True, "exact": True}]

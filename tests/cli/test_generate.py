@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 import trimesh
 
-from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.io.stl import stl_bytes
 
 

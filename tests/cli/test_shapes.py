@@ -9,7 +9,7 @@ import tifffile
 import trimesh
 from PIL import Image
 
-from regolith_studio.geometry.directions import icosphere
+from regolith_studio.geometry.sphere_points import icosphere
 
 
 def test_that_a_fit_holds_the_mean_radius_of_a_ball(command, tmp_path: Path) -> None:

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from regolith_studio.coarsening.target import Target
-from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.sphere_points import icosphere
 
 
 def bumpy(seed: int, level: int = 3, roughness: float = 0.2) -> Mesh:

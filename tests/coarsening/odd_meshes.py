@@ -5,8 +5,8 @@ from collections.abc import Callable
 import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.sphere_points import icosphere
 
 NO_FACES = np.empty((0, 3), dtype=np.int64)
 

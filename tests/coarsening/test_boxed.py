@@ -11,9 +11,9 @@ from regolith_studio.coarsening.exact.course import start_planes
 from regolith_studio.coarsening.polyhedra import polyhedron_of
 from regolith_studio.coarsening.target import Target
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.sphere_points import icosphere
 
 KEPT = ("volume", "sphericity", "min_diameter", "max_diameter", "aspect_ratio")
 CUBE = np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])

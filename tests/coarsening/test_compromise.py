@@ -15,9 +15,9 @@ from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
-from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.sphere_points import icosphere
 
 REST = ("volume", "min_diameter", "max_diameter", "aspect_ratio")
 

@@ -15,8 +15,8 @@ from regolith_studio.coarsening.progress import CoarseningProgress
 from regolith_studio.coarsening.result import Coarsened
 from regolith_studio.coarsening.target import Target
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.geometry.directions import fibonacci_directions, icosphere
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.sphere_points import fibonacci_directions, icosphere
 
 
 def areas_by_scipy(normals: FloatArray, offsets: FloatArray) -> FloatArray:

@@ -15,9 +15,9 @@ from regolith_studio.coarsening.exact.growth import (
 )
 from regolith_studio.coarsening.result import Coarsened
 from regolith_studio.coarsening.target import Target
-from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.sphere_points import icosphere
 from tests.coarsening.conftest import bumpy
 
 CONDITIONS = ("volume", "sphericity", "min_diameter", "max_diameter", "aspect_ratio")

@@ -15,8 +15,8 @@ from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
 from regolith_studio.errors import GeometryError, InputError
-from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.sphere_points import icosphere
 
 EXACT = ("volume", "sphericity", "min_diameter", "max_diameter", "aspect_ratio")
 

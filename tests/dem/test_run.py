@@ -24,9 +24,9 @@ from regolith_studio.dem.host import EngineStopped
 from regolith_studio.dem.pile import read_pile
 from regolith_studio.dem.run_folder import find_runs, read_run, read_shapes, snapshot_files
 from regolith_studio.errors import FileError, InputError
-from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.jobs.coarsening import CoarseningOrder
 from regolith_studio.jobs.events import Partial, Progress
 from regolith_studio.jobs.repose import ReposeOrder, simulate_prepared, simulate_repose

@@ -6,7 +6,7 @@ from scipy.integrate import dblquad
 
 from regolith_studio.descriptors.catalogue import CATALOGUE, DEFAULT_KEYS, LOSS_KEYS, ShapeFacts
 from regolith_studio.geometry import Mesh
-from regolith_studio.geometry.directions import icosphere
+from regolith_studio.geometry.sphere_points import icosphere
 from tests.geometry.solids import cuboid, random_polyhedron, rotation, rough_stone
 
 SOLIDS = {

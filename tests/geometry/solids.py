@@ -6,7 +6,7 @@ from scipy.spatial.transform import Rotation
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry import ConvexPolyhedron, HalfSpaces, Mesh
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.geometry.directions import icosphere
+from regolith_studio.geometry.sphere_points import icosphere
 
 
 def cuboid(*edges: float) -> Mesh:

@@ -28,10 +28,10 @@ from regolith_studio.geometry.box_widths import (
     span_near,
     span_table,
 )
-from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.hull_graph import hull_graph
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.oriented_box import minimum_volume_box
+from regolith_studio.geometry.sphere_points import icosphere
 from tests.geometry.solids import random_polyhedron
 
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.directions import fibonacci_directions
 from regolith_studio.geometry.exits import BLOCK, exits
+from regolith_studio.geometry.sphere_points import fibonacci_directions
 
 
 def left(

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from regolith_studio.geometry.directions import fibonacci_directions
 from regolith_studio.geometry.feret import feret_max, feret_min
+from regolith_studio.geometry.sphere_points import fibonacci_directions
 from tests.geometry.solids import cuboid, random_polyhedron, rotation, rough_stone, tetrahedron
 
 

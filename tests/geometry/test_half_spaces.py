@@ -8,7 +8,7 @@ from scipy.spatial import HalfspaceIntersection
 
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry import HalfSpaces
-from regolith_studio.geometry.directions import fibonacci_directions
+from regolith_studio.geometry.sphere_points import fibonacci_directions
 
 CUBE = np.vstack([np.eye(3), -np.eye(3)])
 

@@ -5,8 +5,8 @@ import pytest
 from scipy.integrate import dblquad
 
 from regolith_studio.geometry import Mesh
-from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.mean_incidence import mean_incidence
+from regolith_studio.geometry.sphere_points import icosphere
 from tests.geometry.solids import cuboid, rotation, rough_stone
 
 

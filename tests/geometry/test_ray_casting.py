@@ -7,8 +7,8 @@ import pytest
 
 from regolith_studio.geometry import Mesh
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.directions import fibonacci_directions, icosphere
 from regolith_studio.geometry.ray_casting import RadialHits, radial_hits
+from regolith_studio.geometry.sphere_points import fibonacci_directions, icosphere
 from tests.geometry.solids import cuboid, folded_stone, random_polyhedron, rotation, rough_stone, tetrahedron
 
 

@@ -8,11 +8,11 @@ import pytest
 from scipy.ndimage import generate_binary_structure, label
 
 from regolith_studio.errors import GeometryError
-from regolith_studio.geometry.directions import icosphere
-from regolith_studio.geometry.holes import filled, least_area_triangles, rims
+from regolith_studio.geometry.hole_filling import fill_holes, hole_boundaries, least_area_triangles
+from regolith_studio.geometry.merge_vertices import merged_vertices
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.repair import repair
-from regolith_studio.geometry.welding import welded
+from regolith_studio.geometry.sphere_points import icosphere
 
 CORNERS = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=float)
 QUADS = np.array([[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]])
@@ -46,7 +46,7 @@ def without(mesh, *rows):
 def boxes(*places, weld=True):
     """Unit cubes at whole-numbered places, with common vertices and without the walls between them."""
     both = joined(*(CUBE.moved(shift=place) for place in places))
-    return Mesh(*welded(both.vertices, both.faces)) if weld else both
+    return Mesh(*merged_vertices(both.vertices, both.faces)) if weld else both
 
 
 BROKEN = {
@@ -144,7 +144,7 @@ def test_that_a_ring_of_boxes_that_closes_over_an_edge_stays_whole():
     result = repair(boxes(*places))
     assert result.mesh.volume == pytest.approx(5.0)
     assert result.mesh.surface_area == pytest.approx(22.0)
-    assert result.health_after.crowded_edges == 0
+    assert result.health_after.non_manifold_edges == 0
 
 
 VOXEL_SIDES = {
@@ -168,11 +168,11 @@ def test_that_of_random_voxels_the_largest_component_is_kept_to_the_voxel(seed):
         if not solid[tuple(place + step)]
     ]
     points = np.concatenate(corners).astype(float)
-    result = repair(Mesh(*welded(points, np.arange(len(points)).reshape(-1, 3))))
+    result = repair(Mesh(*merged_vertices(points, np.arange(len(points)).reshape(-1, 3))))
     labels, _ = label(solid)
     largest = labels == np.argmax(np.bincount(labels[solid]))
     void, _ = label(~largest, generate_binary_structure(3, 2))
-    assert result.health_before.crowded_edges > 50
+    assert result.health_before.non_manifold_edges > 50
     assert result.mesh.volume == pytest.approx(np.count_nonzero(void != void[0, 0, 0]))
 
 
@@ -355,5 +355,5 @@ def test_that_barred_chords_are_not_used():
 
 
 def test_that_each_hole_has_its_own_rim_even_where_two_touch():
-    assert sorted(len(rim) for rim in rims(without(CUBE, 0, 2).faces, 8)) == [3, 3]
-    assert filled(CORNERS, without(CUBE, 0, 2).faces).count == 2
+    assert sorted(len(rim) for rim in hole_boundaries(without(CUBE, 0, 2).faces, 8)) == [3, 3]
+    assert fill_holes(CORNERS, without(CUBE, 0, 2).faces).count == 2

@@ -8,7 +8,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from regolith_studio.errors import InputError
-from regolith_studio.geometry.directions import fibonacci_directions
+from regolith_studio.geometry.sphere_points import fibonacci_directions
 from regolith_studio.harmonics.coefficients import ShCoefficients, from_pyshtools, orders, to_pyshtools
 from regolith_studio.harmonics.legendre import harmonics
 from regolith_studio.harmonics.rotation import rotated

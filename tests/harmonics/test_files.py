@@ -9,7 +9,7 @@ import pytest
 from scipy.special import sph_harm_y
 
 from regolith_studio.errors import InputError
-from regolith_studio.geometry.directions import fibonacci_directions
+from regolith_studio.geometry.sphere_points import fibonacci_directions
 from regolith_studio.harmonics.coefficient_tables import (
     complex_rows,
     from_complex_rows,

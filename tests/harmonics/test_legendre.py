@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.special import sph_harm_y
 
-from regolith_studio.geometry.directions import fibonacci_directions
+from regolith_studio.geometry.sphere_points import fibonacci_directions
 from regolith_studio.harmonics.legendre import fill_basis, harmonics, legendre, legendre_slopes
 from regolith_studio.harmonics.transform import ray_grid
 

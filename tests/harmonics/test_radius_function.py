@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from regolith_studio.errors import GeometryError, InputError
-from regolith_studio.geometry.directions import fibonacci_directions, icosphere
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.sphere_points import fibonacci_directions, icosphere
 from regolith_studio.harmonics.closed_surface import checked_solid, is_closed
 from regolith_studio.harmonics.radius_function import RULES, _summed, sample_radius
 from regolith_studio.harmonics.star_point import (

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from regolith_studio.errors import GeometryError
-from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.fit import fit_harmonics
 from regolith_studio.harmonics.sight import sight
 

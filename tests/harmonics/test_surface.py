@@ -7,7 +7,7 @@ import pytest
 from scipy.special import elliprg
 
 from regolith_studio.errors import GeometryError, InputError
-from regolith_studio.geometry.directions import fibonacci_directions, icosphere
+from regolith_studio.geometry.sphere_points import fibonacci_directions, icosphere
 from regolith_studio.harmonics import synthesis
 from regolith_studio.harmonics.closed_surface import is_closed
 from regolith_studio.harmonics.coefficients import ShCoefficients

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from regolith_studio.errors import InputError
-from regolith_studio.geometry.directions import fibonacci_directions
+from regolith_studio.geometry.sphere_points import fibonacci_directions
 from regolith_studio.harmonics.legendre import harmonics
 from regolith_studio.harmonics.transform import (
     GRIDS,

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.imaging.coverage import _covered, coverage
 
 CORNERS = np.array(list(np.ndindex(2, 2, 2)), dtype=float)

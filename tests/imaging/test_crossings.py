@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.self_intersection import count_self_intersections
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.imaging.crossings import _doubtful, corner_normals, uncrossed
 from regolith_studio.imaging.mask_surface import mask_mesh
 

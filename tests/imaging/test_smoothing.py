@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.imaging.smoothing import LowPass, _filtered, _linked, _series, windowed_sinc
 
 SPHERE = icosphere(4)

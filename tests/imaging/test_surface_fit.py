@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.imaging.contour import contour
 from regolith_studio.imaging.coverage import coverage
 from regolith_studio.imaging.grey_surface import grey_mesh

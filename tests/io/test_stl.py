@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from regolith_studio.geometry.directions import icosphere
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.io.stl import RECORD, stl_bytes, stl_triangles
 
 

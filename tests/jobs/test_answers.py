@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from regolith_studio.errors import FileError
-from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.particle import Particle
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.jobs.answers import LARGEST, Answers, fingerprint
 
 GIVEN: dict[int, Any] = {

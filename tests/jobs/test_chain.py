@@ -8,9 +8,9 @@ import pytest
 from regolith_studio.coarsening.coarsen import DEFAULT_METHOD
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.errors import DatasetError, FileError
-from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.fit import fit_harmonics
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.jobs.building import DatasetOptions, build_dataset_folder

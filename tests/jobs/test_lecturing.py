@@ -6,7 +6,7 @@ import pytest
 from regolith_studio.coarsening.coarsen import coarsen
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.errors import InputError
-from regolith_studio.geometry.directions import icosphere
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.fit import fit_harmonics
 from regolith_studio.jobs.coarsening import CoarseningOrder
 from regolith_studio.jobs.events import Partial

@@ -9,9 +9,9 @@ import pytest
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.dataset.folder import read_dataset
 from regolith_studio.errors import DatasetError, InputError
-from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.jobs import building
 from regolith_studio.jobs.building import DatasetOptions, build_dataset_folder
 from regolith_studio.jobs.coarsening import CoarsenedParticle, CoarseningOrder

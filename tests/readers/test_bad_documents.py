@@ -17,8 +17,8 @@ import pytest
 
 from regolith_studio.dataset.reading import read_document
 from regolith_studio.errors import RegolithError
-from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.files import write_fits
 from regolith_studio.harmonics.fit import fit_harmonics
 from regolith_studio.readers.shape_files import read_shape_source

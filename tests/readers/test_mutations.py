@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from regolith_studio.errors import FileError, GeometryError
+from regolith_studio.geometry.merge_vertices import merged_vertices
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.repair import repair
-from regolith_studio.geometry.welding import welded
 from regolith_studio.readers.mesh_file import parse_mesh
 
 NAMES = [
@@ -128,7 +128,7 @@ def test_that_mutated_cubes_are_repaired_or_refused(name, cube):
         data = nudged(seeds(cube)[name], rng)
         try:
             parsed, _ = parse_mesh(data, Path(name))
-            result = repair(Mesh(*welded(parsed.vertices, parsed.faces)))
+            result = repair(Mesh(*merged_vertices(parsed.vertices, parsed.faces)))
         except (FileError, GeometryError):
             continue
         assert result.health_after.sound

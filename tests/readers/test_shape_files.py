@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from regolith_studio.errors import FileError, InputError
-from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.files import write_fits
 from regolith_studio.harmonics.fit import fit_harmonics
 from regolith_studio.harmonics.surface import radii

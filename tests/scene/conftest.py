@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from regolith_studio.geometry import ConvexPolyhedron, HalfSpaces
-from regolith_studio.geometry.directions import icosphere
+from regolith_studio.geometry.sphere_points import icosphere
 
 
 @pytest.fixture(scope="session")

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from regolith_studio.geometry.directions import icosphere
-from regolith_studio.geometry.plane_cut import plane_cut
+from regolith_studio.geometry.cross_section import cross_section
 from regolith_studio.geometry.ray_casting import radial_hits
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.scene import facets, sectioning, stage, surfaces
 from regolith_studio.scene.cameras import apply_pose, framing_pose, pose_of
 from regolith_studio.scene.comparing import OTHER, arrange, show_cuts, show_other
@@ -71,7 +71,7 @@ def test_that_a_section_is_as_large_as_the_cut_and_hides_the_half_before_it(plot
     surfaces.show_particle(plotter, ball)
     apply_pose(plotter, framing_pose(ball.vertices, "front"))
     plane = SectionPlane((0.0, -1.0, 0.0), 10.0)
-    cut = plane_cut(ball, plane.normal, plane.offset)
+    cut = cross_section(ball, plane.normal, plane.offset)
     show_cuts(plotter, PARTICLE, "", {PARTICLE: cut}, {PARTICLE: "#000000"})
     arrange(plotter, divider, wipe=False, overlay=False, section=plane)
     cap = plotter.actors[sectioning.CAP].mapper.dataset

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.oriented_box import OrientedBox
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.scene import extras, surfaces
 
 

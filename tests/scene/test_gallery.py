@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.scene import stage
 from regolith_studio.scene.cameras import apply_pose
 from regolith_studio.scene.gallery import gallery_pose, show_gallery

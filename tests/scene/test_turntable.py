@@ -6,7 +6,7 @@ import pyvista as pv
 from PIL import Image
 
 from regolith_studio.errors import InputError
-from regolith_studio.geometry.directions import icosphere
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.scene import stage, surfaces
 from regolith_studio.scene.cameras import apply_pose, framing_pose
 from regolith_studio.scene.figure import VIEW_SIZE, three_views

@@ -17,8 +17,8 @@ import pytest
 
 from regolith_studio.dataset.folder import validate_dataset
 from regolith_studio.errors import FileError, InputError
-from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.jobs.events import Progress, Started
 from regolith_studio.session.performing import Performed, perform

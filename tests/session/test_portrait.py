@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from regolith_studio.errors import InputError
-from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings
 from regolith_studio.imaging.segmentation.splitting import SplittingSettings
 from regolith_studio.io.stl import stl_bytes

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from regolith_studio.errors import FileError, InputError, RegolithError
-from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.fit import fit_harmonics
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.jobs.events import Progress, Started

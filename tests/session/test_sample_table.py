@@ -7,10 +7,10 @@ import pytest
 
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.errors import InputError
-from regolith_studio.geometry.directions import icosphere
-from regolith_studio.geometry.health import inspect
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.mesh_health import inspect
 from regolith_studio.geometry.particle import Particle
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import (
     EVERYTHING,

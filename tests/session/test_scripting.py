@@ -8,7 +8,7 @@ import pytest
 
 from regolith_studio.cli.entry import run
 from regolith_studio.coarsening.weights import LossWeights
-from regolith_studio.geometry.directions import icosphere
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.jobs.runners.inline import InlineRunner
 from regolith_studio.session.choices import Choices

@@ -12,8 +12,8 @@ import pytest
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.dataset.folder import read_dataset
 from regolith_studio.errors import InputError
-from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.jobs.building import DatasetOptions
 from regolith_studio.jobs.runners.inline import InlineRunner

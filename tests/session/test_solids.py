@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.jobs.coarsening import CoarseningOrder
 from regolith_studio.jobs.events import Partial, Progress, Steps
 from regolith_studio.session.choices import Choices

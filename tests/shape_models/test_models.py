@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from regolith_studio.errors import InputError
-from regolith_studio.geometry.health import inspect
+from regolith_studio.geometry.mesh_health import inspect
 from regolith_studio.readers.shape_files import read_shape_source
 from regolith_studio.shape_models.draws import virtual_mesh
 from regolith_studio.shape_models.files import write_model

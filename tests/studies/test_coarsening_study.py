@@ -11,9 +11,9 @@ import pytest
 
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.errors import InputError
-from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.studies.coarsening import (
     COLUMNS,
     CoarseningStudy,

@@ -13,9 +13,9 @@ from regolith_studio.descriptors.catalogue import LOSS_KEYS
 from regolith_studio.descriptors.comparison import rmsre
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.errors import InputError
-from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.fit import fit_harmonics
 from regolith_studio.harmonics.surface import reconstruct
 from regolith_studio.studies.lmax import (

@@ -7,7 +7,7 @@ from PySide6.QtGui import QMouseEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
-from regolith_studio.geometry.plane_cut import plane_cut
+from regolith_studio.geometry.cross_section import cross_section
 from regolith_studio.scene import facets, sectioning
 from regolith_studio.scene.comparing import OTHER
 from regolith_studio.scene.distance import signed_distances
@@ -91,7 +91,7 @@ def test_that_the_section_draws_and_measures_what_the_plane_cuts(window):
     assert plane.normal == (0.0, 0.0, 1.0)  # the eye is above: the upper half is taken away
     assert plane.offset == pytest.approx(middle + 5.0, abs=0.05)
     labels = [curve.label for curve in panel.plot.curves]
-    area = plane_cut(mesh, (0, 0, 1), plane.offset).area
+    area = cross_section(mesh, (0, 0, 1), plane.offset).area
     assert labels[0] == f"CT particle {grouped_number(area)} µm²"
     assert [label.split()[0] for label in labels] == ["CT", "Fit", "Polyhedron"]
     for name in ("particle", "fit", "polyhedron"):

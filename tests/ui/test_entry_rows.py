@@ -6,8 +6,8 @@ import pytest
 from PySide6.QtCore import QItemSelectionModel, Qt
 from PySide6.QtTest import QAbstractItemModelTester
 
-from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.particle import Particle
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.ui.widgets.entry_rows import UNSORTED, EntryRows
 

@@ -8,10 +8,10 @@ import pyvista as pv
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
-from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.repair import repair
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.jobs.examining import examine, find_faults
 from regolith_studio.scene.faults import COLOURS, show_faults
 from regolith_studio.session.results import ParticleEntry

@@ -9,8 +9,8 @@ from PySide6.QtCore import QPointF, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QWidget
 
-from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.particle import Particle
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.jobs.runners.inline import InlineRunner
 from regolith_studio.scene.moves import FACET_OLD, FRAME_NEW
 from regolith_studio.session.session import Session

@@ -12,9 +12,9 @@ from PySide6.QtWidgets import QAbstractButton, QAbstractSpinBox, QComboBox, QSli
 
 from regolith_studio.coarsening.weights import LossWeights, presets
 from regolith_studio.descriptors.describe import describe
-from regolith_studio.geometry.directions import icosphere
-from regolith_studio.geometry.health import inspect
+from regolith_studio.geometry.mesh_health import inspect
 from regolith_studio.geometry.particle import Particle
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.fit import AUTOMATIC
 from regolith_studio.harmonics.radius_function import RULES
 from regolith_studio.harmonics.reference import REFERENCES

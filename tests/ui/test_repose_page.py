@@ -13,9 +13,9 @@ from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinde
 from regolith_studio.dem.evaluation.profile import Discs
 from regolith_studio.dem.pile import Pile, pile_bytes
 from regolith_studio.dem.run_folder import read_run
-from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.jobs.runners.inline import InlineRunner
 from regolith_studio.session.session import Session
 from regolith_studio.studies.repose import runs_from

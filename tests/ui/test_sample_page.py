@@ -9,8 +9,8 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
 from regolith_studio.descriptors.describe import describe
-from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.particle import Particle
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.ui.app import open_window
 from regolith_studio.ui.pages.sample.scatter import ScatterPanel

@@ -9,7 +9,7 @@ from PySide6.QtGui import QGuiApplication, QWheelEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
-from regolith_studio.geometry.directions import icosphere
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.scene import surfaces
 from regolith_studio.scene.cameras import CameraPose, framing_pose
 from regolith_studio.scene.palette import DARK

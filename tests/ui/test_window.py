@@ -11,7 +11,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QLineEdit, QSlider, QWidget
 
 from regolith_studio.errors import EnvironmentProblem, InputError
-from regolith_studio.geometry.directions import icosphere
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.resources import resource
 from regolith_studio.ui.app import open_window, telling_hook
 from regolith_studio.ui.dialogs.export import ExportDialog

@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.directions import fibonacci_directions
 from regolith_studio.geometry.kernels import kernel, kernel_noalloc
+from regolith_studio.geometry.sphere_points import fibonacci_directions
 from regolith_studio.geometry.vectors import cross, dot, row
 
 RAYS_IN_CELL = 1.5

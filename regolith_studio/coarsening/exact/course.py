@@ -31,8 +31,8 @@ from regolith_studio.descriptors.describe import Descriptors, describe
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
-from regolith_studio.geometry.directions import fibonacci_directions
 from regolith_studio.geometry.half_spaces import HalfSpaces
+from regolith_studio.geometry.sphere_points import fibonacci_directions
 
 NOWHERE = Watched(np.empty((0, 3, 3)), np.empty((0, 13), dtype=np.int64), np.empty((0, 9, 3), dtype=np.int64))
 CUT_DEPTHS = (0.3, 0.3, 0.1, 0.03, 0.01)

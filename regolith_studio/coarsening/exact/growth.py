@@ -17,7 +17,7 @@ from regolith_studio.coarsening.exact.polish import measured
 from regolith_studio.coarsening.exact.problem import Problem
 from regolith_studio.coarsening.target import Target
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.geometry.directions import fibonacci_directions
+from regolith_studio.geometry.sphere_points import fibonacci_directions
 
 FEW_FACETS = (
     (0.15, (20, 12, 30, 50)),

@@ -6,9 +6,9 @@ import numpy as np
 from PySide6.QtCore import QObject, Signal
 
 from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.cross_section import CrossSection, cross_section
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.oriented_box import minimum_volume_box
-from regolith_studio.geometry.plane_cut import PlaneCut, plane_cut
 from regolith_studio.scene.sectioning import SectionPlane, frame_corners, normals_of, reach_along
 from regolith_studio.scene.shapes import PARTICLE, Shape
 
@@ -31,7 +31,7 @@ class Sections(QObject):
         self._share = 0.5
         self._eye = np.array([0.0, -1.0, 0.0])
         self._shapes: Mapping[str, Shape] = {}
-        self._cuts: dict[str, tuple[Shape, SectionPlane, PlaneCut]] = {}
+        self._cuts: dict[str, tuple[Shape, SectionPlane, CrossSection]] = {}
         self._normals: tuple[Mesh, dict[str, FloatArray]] | None = None
 
     def set_shown(self, shown: bool) -> None:
@@ -100,7 +100,7 @@ class Sections(QObject):
         plane = self.plane
         return None if plane is None else (plane, frame_corners(self._shapes[PARTICLE].mesh, plane))
 
-    def cuts(self) -> dict[str, PlaneCut]:
+    def cuts(self) -> dict[str, CrossSection]:
         """What the plane cuts out of each body; nothing while no section is shown."""
         plane = self.plane
         if plane is None:
@@ -108,7 +108,7 @@ class Sections(QObject):
         for name, shape in self._shapes.items():
             known = self._cuts.get(name)
             if known is None or known[0] is not shape or known[1] != plane:
-                self._cuts[name] = (shape, plane, plane_cut(shape.mesh, plane.normal, plane.offset))
+                self._cuts[name] = (shape, plane, cross_section(shape.mesh, plane.normal, plane.offset))
         return {name: self._cuts[name][2] for name in self._shapes}
 
     def _reach(self) -> tuple[float, float]:

@@ -16,10 +16,10 @@ from regolith_studio.coarsening.core.planes import gradient_of, levers_of, moved
 from regolith_studio.coarsening.core.rays import bundle_of, cast
 from regolith_studio.coarsening.target import Target
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.geometry.directions import fibonacci_directions, icosphere
 from regolith_studio.geometry.half_spaces import HalfSpaces
-from regolith_studio.geometry.overlap import jaccard_distance
+from regolith_studio.geometry.jaccard import jaccard_distance
 from regolith_studio.geometry.ray_casting import radial_hits
+from regolith_studio.geometry.sphere_points import fibonacci_directions, icosphere
 
 CUBE = np.vstack([np.eye(3), -np.eye(3)])
 

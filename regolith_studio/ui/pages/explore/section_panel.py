@@ -4,7 +4,7 @@ import numpy as np
 from PySide6.QtWidgets import QCheckBox, QHBoxLayout, QVBoxLayout, QWidget
 
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.geometry.plane_cut import PlaneCut
+from regolith_studio.geometry.cross_section import CrossSection
 from regolith_studio.scene.sectioning import DIRECTIONS
 from regolith_studio.scene.shapes import LABELS, NAMES, PARTICLE
 from regolith_studio.ui.theme import Theme, current_theme
@@ -73,7 +73,7 @@ class SectionPanel(QWidget):
             self.place.setValue(sections.place)
         self._draw(sections.cuts())
 
-    def _draw(self, cuts: dict[str, PlaneCut]) -> None:
+    def _draw(self, cuts: dict[str, CrossSection]) -> None:
         right, up = AXES.get(self._sections.direction, (tr("across"), tr("up")))
         mirrored = bool(cuts) and _mirrored(next(iter(cuts.values())), self._sections.direction)
         self.plot.set_labels(f"{'-' if mirrored else ''}{right} [µm]", f"{up} [µm]")
@@ -103,7 +103,7 @@ class SectionPanel(QWidget):
         column.addWidget(self.plot, 1)
 
 
-def _outline(cut: PlaneCut) -> tuple[FloatArray, FloatArray]:
+def _outline(cut: CrossSection) -> tuple[FloatArray, FloatArray]:
     """The loops one after the other, with a gap between them."""
     flat, gap = cut.flat(), np.full((1, 2), np.nan)
     pieces = [part for loop in cut.loops() for part in (flat[loop], gap)][:-1]
@@ -113,7 +113,7 @@ def _outline(cut: PlaneCut) -> tuple[FloatArray, FloatArray]:
     return whole[:, 0], whole[:, 1]
 
 
-def _mirrored(cut: PlaneCut, direction: str) -> bool:
+def _mirrored(cut: CrossSection, direction: str) -> bool:
     """Whether the axis of the drawing that runs to the right is the negative of its name."""
     if direction not in AXES:
         return False

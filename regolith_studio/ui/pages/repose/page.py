@@ -205,7 +205,7 @@ class ReposePage(PageWidget):
     @staticmethod
     def player_ball() -> Any:
         """A shape for particles of which only the size is known."""
-        from regolith_studio.geometry.directions import icosphere
+        from regolith_studio.geometry.sphere_points import icosphere
 
         return icosphere(1).vertices
 

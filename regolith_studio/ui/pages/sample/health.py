@@ -19,7 +19,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from regolith_studio.geometry.health import MeshHealth
+from regolith_studio.geometry.mesh_health import MeshHealth
 from regolith_studio.scene.faults import COLOURS
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import health_sentences
@@ -47,7 +47,7 @@ KINDS = {
     "crossing": mark("faces that cross"),
     "turned": mark("faces turned round"),
     "small bodies": mark("bodies left out"),
-    "crowded": mark("edges of more than two faces"),
+    "non-manifold": mark("edges of more than two faces"),
     "double": mark("faces there twice"),
     "degenerate": mark("faces without area"),
     "hidden": mark("hidden from the star point"),

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from regolith_studio.errors import GeometryError
-from regolith_studio.geometry.directions import icosphere
-from regolith_studio.geometry.enclosure import enclosure, solid_angles
+from regolith_studio.geometry.hole_filling import enclosure, solid_angles
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.repair import repair
+from regolith_studio.geometry.sphere_points import icosphere
 
 CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float)
 SQUARES = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]

@@ -7,20 +7,26 @@ from typing import Any
 import numpy as np
 
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
-from regolith_studio.geometry.connectivity import Connectivity
-from regolith_studio.geometry.edges import EdgeTable, pinched_corners
+from regolith_studio.geometry.merge_vertices import merged_vertices
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.geometry.self_intersection import count_self_intersections
+from regolith_studio.geometry.self_intersection import count_self_intersections, crossing_pairs
 from regolith_studio.geometry.star_shape import is_star_shaped
-from regolith_studio.geometry.welding import welded
+from regolith_studio.geometry.topology import (
+    Connectivity,
+    EdgeTable,
+    edge_table,
+    find_bodies,
+    neighbours,
+    pinched_corners,
+)
 
-MOST_FACES_SEARCHED = 200_000
+MAX_FACES_SEARCHED = 200_000
 """Meshes with more faces are not searched for self-intersections."""
 
-SMALLEST_SIZE = 1e-90
+MIN_SIZE = 1e-90
 """The cube of a smaller mesh's size, or of a larger one's than its inverse, is no number any more."""
 
-LEAST_VOLUME = 1e-12
+MIN_VOLUME = 1e-12
 """A mesh that encloses a smaller share of its bounding cube encloses nothing: its volume is rounding."""
 
 DEGENERATE_HEIGHT = 1e-9
@@ -47,7 +53,7 @@ class MeshHealth:
         Vertices - edges + faces: 2 for each closed body without handles.
     degenerate_faces, duplicate_faces
         Triangles without area, and triangles on the same three vertices as one before.
-    open_edges, crowded_edges
+    open_edges, non_manifold_edges
         Edges of one triangle, and edges of more than two (non-manifold).
     inverted_bodies
         Closed bodies whose triangles face inwards: cavities, nested shells, inside-out parts.
@@ -72,7 +78,7 @@ class MeshHealth:
     degenerate_faces: int
     duplicate_faces: int
     open_edges: int
-    crowded_edges: int
+    non_manifold_edges: int
     inverted_bodies: int
     seam_vertices: int
     self_intersections: int | None
@@ -119,7 +125,7 @@ def inspect(mesh: Mesh, *, self_intersections: bool = True) -> MeshHealth:
     table, used = links.table, links.vertices_used
     share = Mesh(vertices, faces).volume if len(faces) else 0.0
     crossing = None
-    if self_intersections and len(faces) <= MOST_FACES_SEARCHED:
+    if self_intersections and len(faces) <= MAX_FACES_SEARCHED:
         crossing = 0 if _surely_simple(mesh, links) else count_self_intersections(vertices, faces)
     euler_number = used - len(table.ends) + len(faces)
     odd = links.closed and euler_number != 2 * links.parts.count
@@ -129,13 +135,13 @@ def inspect(mesh: Mesh, *, self_intersections: bool = True) -> MeshHealth:
         bodies=links.parts.count,
         watertight=links.closed,
         consistent_winding=links.agrees,
-        volume=0.0 if abs(share) < LEAST_VOLUME else mesh.volume,
+        volume=0.0 if abs(share) < MIN_VOLUME else mesh.volume,
         euler_number=euler_number,
         degenerate_faces=int(np.count_nonzero(degenerate(vertices, faces))),
         duplicate_faces=links.duplicate_faces,
         open_edges=table.open_edges,
-        crowded_edges=table.crowded_edges,
-        inverted_bodies=int(share < -LEAST_VOLUME)
+        non_manifold_edges=table.non_manifold_edges,
+        inverted_bodies=int(share < -MIN_VOLUME)
         if links.closed and links.parts.count == 1
         else _inverted(vertices, faces, links.parts.body, table),
         seam_vertices=_seam_vertices(vertices, faces, used),
@@ -183,7 +189,7 @@ def _seam_vertices(vertices: FloatArray, faces: IntArray, used: int) -> int:
     along = vertices[:, 0] + np.sqrt(2.0) * vertices[:, 1] + np.sqrt(3.0) * vertices[:, 2]
     if used == len(vertices) == len(np.unique(along)):
         return 0
-    return used - len(welded(vertices, faces)[0])
+    return used - len(merged_vertices(vertices, faces)[0])
 
 
 def _surely_simple(mesh: Mesh, links: Connectivity) -> bool:
@@ -194,7 +200,7 @@ def _surely_simple(mesh: Mesh, links: Connectivity) -> bool:
     if not (links.closed and links.agrees and links.parts.count == 1):
         return False
     size = float(np.ptp(mesh.bounds, axis=0).max())
-    if not SMALLEST_SIZE < size < 1 / SMALLEST_SIZE:
+    if not MIN_SIZE < size < 1 / MIN_SIZE:
         return False
     return any(
         is_star_shaped((mesh.vertices - point) / size, mesh.faces, np.zeros(3))
@@ -207,7 +213,7 @@ def _inverted(vertices: FloatArray, faces: IntArray, body: IntArray, table: Edge
         return 0
     closed = np.ones(int(body.max()) + 1, dtype=np.bool_)
     closed[body[np.flatnonzero(table.uses[table.edge] == 1) // 3]] = False
-    return int(np.count_nonzero((body_volumes(vertices, faces, body) < -LEAST_VOLUME) & closed))
+    return int(np.count_nonzero((body_volumes(vertices, faces, body) < -MIN_VOLUME) & closed))
 
 
 def _sentences(found: MeshHealth, searched: bool) -> Sequence[str]:
@@ -223,8 +229,8 @@ def _sentences(found: MeshHealth, searched: bool) -> Sequence[str]:
         (found.bodies > 1, f"It consists of {found.bodies:,} separate bodies."),
         (found.open_edges > 0, f"It is not closed: {_edges(found.open_edges)} one face only."),
         (
-            found.crowded_edges > 0,
-            f"It is not a simple surface: {_edges(found.crowded_edges)} three faces or more.",
+            found.non_manifold_edges > 0,
+            f"It is not a simple surface: {_edges(found.non_manifold_edges)} three faces or more.",
         ),
         (not found.consistent_winding, "Its faces do not all look the same way: some are turned round."),
         (found.volume < 0.0, "It is inside out: its faces look inwards."),
@@ -263,3 +269,32 @@ def _edges(count: int) -> str:
 
 def _count(count: int, one: str, many: str) -> str:
     return f"{count:,} {one if count == 1 else many}"
+
+
+def locate_defects(mesh: Mesh) -> dict[str, IntArray]:
+    """Indices of the triangles at each kind of defect; kinds that do not occur are left out.
+
+    The keys are ``open`` and ``non-manifold`` (triangles at such edges), ``turned`` (the fewer of those
+    that disagree), ``degenerate``, ``double``, ``crossing``, and ``small bodies`` (all triangles of
+    all bodies but the one of the largest volume).
+    """
+    vertices, faces = unit_size(mesh)
+    if not len(faces):
+        return {}
+    table = edge_table(faces, len(vertices))
+    uses = table.uses[table.edge].reshape(-1, 3)
+    parts = find_bodies(neighbours(table), table.forward)
+    share = np.bincount(parts.body, parts.turned) / np.bincount(parts.body)
+    volumes = np.abs(body_volumes(vertices, faces, parts.body))
+    _, group, members = np.unique(np.sort(faces, axis=1), axis=0, return_inverse=True, return_counts=True)
+    crossing = crossing_pairs(vertices, faces) if len(faces) <= MAX_FACES_SEARCHED else None
+    spots = {
+        "open": (uses == 1).any(axis=1),
+        "non-manifold": (uses > 2).any(axis=1),
+        "turned": parts.turned ^ (share > 0.5)[parts.body],
+        "degenerate": degenerate(vertices, faces),
+        "double": members[group.ravel()] > 1,
+        "crossing": np.zeros(len(faces), dtype=np.bool_) if crossing is None else crossing[1],
+        "small bodies": parts.body != np.argmax(volumes),
+    }
+    return {kind: np.flatnonzero(marked) for kind, marked in spots.items() if marked.any()}

@@ -5,8 +5,8 @@ import pytest
 
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry import ConvexPolyhedron, HalfSpaces, Mesh
-from regolith_studio.geometry.directions import icosphere
-from regolith_studio.geometry.overlap import jaccard_distance
+from regolith_studio.geometry.jaccard import jaccard_distance
+from regolith_studio.geometry.sphere_points import icosphere
 from tests.geometry.solids import cuboid, folded_stone, rotation, winding_numbers
 
 CUBE = np.vstack([np.eye(3), -np.eye(3)])

@@ -1,6 +1,7 @@
-"""How the triangles of a mesh hang together: edges, neighbours across them, bodies, orientation."""
+"""Topology of a triangular mesh: edges, neighbours, connected bodies and orientation, from indices alone."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numba import int64
@@ -38,7 +39,7 @@ class EdgeTable:
         return int(np.count_nonzero(self.uses == 1))
 
     @property
-    def crowded_edges(self) -> int:
+    def non_manifold_edges(self) -> int:
         """Number of edges of three triangles or more (non-manifold)."""
         return int(np.count_nonzero(self.uses > 2))
 
@@ -63,13 +64,13 @@ def neighbours(table: EdgeTable) -> IntArray:
 
 
 @dataclass(frozen=True)
-class Bodies:
-    """Triangles that hang together across edges.
+class MeshBodies:
+    """Triangles connected across edges.
 
     Parameters
     ----------
     body
-        Number of each triangle's body, shape (m,), from 0.
+        Index of each triangle's body, shape (m,), from 0.
     turned
         Whether a triangle must be turned round to agree with the first of its body, shape (m,).
     conflicts
@@ -86,14 +87,14 @@ class Bodies:
         return int(self.body.max()) + 1 if len(self.body) else 0
 
 
-def bodies(across: IntArray, forward: BoolArray) -> Bodies:
+def find_bodies(across: IntArray, forward: BoolArray) -> MeshBodies:
     """Walk from triangle to triangle over the `across` of all half-edges."""
-    body, turned, conflicts = walk_bodies(across, forward)
-    return Bodies(body, turned, int(conflicts))
+    body, turned, conflicts = label_bodies(across, forward)
+    return MeshBodies(body, turned, int(conflicts))
 
 
 @kernel
-def walk_bodies(across: IntArray, forward: BoolArray) -> tuple[IntArray, BoolArray, int]:
+def label_bodies(across: IntArray, forward: BoolArray) -> tuple[IntArray, BoolArray, int]:
     """Body and turn of each triangle, and the number of contradictions: a flood fill with parity."""
     m = len(across) // 3
     body = np.full(m, -1, dtype=np.int64)
@@ -138,3 +139,69 @@ def pinched_corners(faces: IntArray, table: EdgeTable) -> int:
     links = (np.ones(len(joined), dtype=np.int8), (np.concatenate([here, stop[here]]), joined))
     fans = connected_components(coo_array(links, shape=(faces.size, faces.size)), directed=False)[0]
     return int(fans - len(np.unique(start)))
+
+
+MAX_CACHED_FACES = 100_000
+"""Larger meshes are not cached."""
+
+
+@dataclass(frozen=True, eq=False)
+class Connectivity:
+    """How m triangles are connected; its arrays are read-only, because it may be shared.
+
+    Parameters
+    ----------
+    table
+        Their edges.
+    across
+        For each half-edge the one across an edge of exactly two triangles, else -1; shape (3 m,).
+    parts
+        The bodies that they form.
+    vertices_used
+        Number of vertices that a face uses.
+    duplicate_faces
+        Triangles on the same three vertices as one before.
+    """
+
+    table: EdgeTable
+    across: IntArray
+    parts: MeshBodies
+    vertices_used: int
+    duplicate_faces: int
+
+    @classmethod
+    def of(cls, faces: IntArray, n_vertices: int) -> "Connectivity":
+        """Of triangles, shape (m, 3); the last results are cached.
+
+        Synthesised particles all have the faces of one sphere: only the first of them costs anything.
+        """
+        if len(faces) > MAX_CACHED_FACES:
+            return _compute(faces, n_vertices)
+        return _cached(np.ascontiguousarray(faces, dtype=np.int64).tobytes(), n_vertices)
+
+    @property
+    def closed(self) -> bool:
+        """Whether every edge belongs to exactly two triangles."""
+        return bool(len(self.table.uses)) and bool((self.table.uses == 2).all())
+
+    @property
+    def agrees(self) -> bool:
+        """Whether triangles run the opposite way along the edges that two of them share."""
+        paired = self.across >= 0
+        forward = self.table.forward
+        return bool(len(paired)) and not (forward[paired] == forward[self.across[paired]]).any()
+
+
+@lru_cache(maxsize=2)
+def _cached(content: bytes, n_vertices: int) -> Connectivity:
+    return _compute(np.frombuffer(content, dtype=np.int64).reshape(-1, 3), n_vertices)
+
+
+def _compute(faces: IntArray, n_vertices: int) -> Connectivity:
+    table = edge_table(faces, n_vertices)
+    across = neighbours(table)
+    parts = find_bodies(across, table.forward)
+    for array in (table.ends, table.uses, table.edge, table.forward, across, parts.body, parts.turned):
+        array.flags.writeable = False
+    duplicates = len(faces) - len(np.unique(np.sort(faces, axis=1), axis=0))
+    return Connectivity(table, across, parts, len(np.unique(faces)), duplicates)

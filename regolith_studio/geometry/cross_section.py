@@ -10,7 +10,7 @@ from regolith_studio.geometry.mesh import Mesh
 
 
 @dataclass(frozen=True, eq=False)
-class PlaneCut:
+class CrossSection:
     """The outline where a plane meets a closed surface; may have several loops, or none.
 
     Parameters
@@ -65,7 +65,7 @@ class PlaneCut:
         return loops
 
 
-def plane_cut(mesh: Mesh, normal: ArrayLike, offset: float) -> PlaneCut:
+def cross_section(mesh: Mesh, normal: ArrayLike, offset: float) -> CrossSection:
     """Cut a closed, outward oriented mesh by the plane <n, x> = `offset`; `normal` need not have length 1.
 
     A vertex on the plane counts as lying above it, so that every loop closes.
@@ -89,7 +89,7 @@ def plane_cut(mesh: Mesh, normal: ArrayLike, offset: float) -> PlaneCut:
     share = (low / (low - high))[:, None]
     points = (1.0 - share) * mesh.vertices[edges[:, 0]] + share * mesh.vertices[edges[:, 1]]
     segments = np.asarray(place, dtype=np.int64).reshape(2, len(faces)).T
-    return PlaneCut(unit, offset / length, points, segments)
+    return CrossSection(unit, offset / length, points, segments)
 
 
 def plane_axes(normal: FloatArray) -> tuple[FloatArray, FloatArray]:

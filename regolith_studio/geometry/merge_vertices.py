@@ -8,7 +8,9 @@ from scipy.spatial import cKDTree
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 
 
-def welded(vertices: FloatArray, faces: IntArray, tolerance: float = 0.0) -> tuple[FloatArray, IntArray]:
+def merged_vertices(
+    vertices: FloatArray, faces: IntArray, tolerance: float = 0.0
+) -> tuple[FloatArray, IntArray]:
     """Mesh data in which vertices no farther apart than `tolerance` are one.
 
     Chains of near vertices become one too; each group keeps the place of its first vertex.

@@ -1,4 +1,4 @@
-"""Arrays that follow from others: kept with their owner, but only those that were made last."""
+"""Cached properties that hold arrays, within a limit on the memory that all of them take."""
 
 from collections import deque
 from collections.abc import Callable
@@ -8,18 +8,18 @@ from weakref import ReferenceType, ref
 
 T = TypeVar("T")
 
-SMALL = 16_384
+ALWAYS_CACHED_BYTES = 16_384
 """Bytes up to which a value stays for as long as its owner does."""
-KEPT = 64_000_000
-"""Bytes that all values above :data:`SMALL` together may take, apart from those of the last owner."""
+MAX_CACHED_BYTES = 64_000_000
+"""Bytes that all larger values together may take, apart from those of the last owner."""
 
 
-class Derived(Generic[T]):
-    """A property that is computed when it is first asked for and then kept, like ``cached_property``.
+class CachedArray(Generic[T]):
+    """A property that is computed at its first access and then cached, like ``cached_property``.
 
-    What is large is forgotten again when :data:`KEPT` bytes have been made after it, by any owner, and
-    computed anew if somebody asks once more: hundreds of open particles do not hold what each was
-    measured by.
+    Large values are dropped again, oldest first, when all of them together take more than
+    :data:`MAX_CACHED_BYTES`, and recomputed at the next access: hundreds of open particles do not each hold
+    the arrays that they were measured by.
 
     Parameters
     ----------
@@ -32,39 +32,39 @@ class Derived(Generic[T]):
         self.__doc__ = compute.__doc__
 
     @overload
-    def __get__(self, owner: None, kind: type) -> "Derived[T]": ...
+    def __get__(self, owner: None, kind: type) -> "CachedArray[T]": ...
     @overload
     def __get__(self, owner: object, kind: type) -> T: ...
-    def __get__(self, owner: object | None, kind: type) -> "Derived[T] | T":
+    def __get__(self, owner: object | None, kind: type) -> "CachedArray[T] | T":
         if owner is None:
             return self
         value = self._compute(owner)
         owner.__dict__[self._name] = value
-        if (size := _bytes(value)) > SMALL:
-            _kept.add(owner, self._name, size)
+        if (size := _bytes(value)) > ALWAYS_CACHED_BYTES:
+            _ledger.add(owner, self._name, size)
         return value
 
 
-class _Kept:
-    """The large values in the order in which they were made."""
+class _CacheLedger:
+    """The large cached values, oldest first."""
 
     def __init__(self) -> None:
         self._lock = Lock()
-        self._line: deque[tuple[ReferenceType[object], str, int]] = deque()
+        self._entries: deque[tuple[ReferenceType[object], str, int]] = deque()
         self._size = 0
 
     def add(self, owner: object, name: str, size: int) -> None:
         with self._lock:
-            self._line.append((ref(owner), name, size))
+            self._entries.append((ref(owner), name, size))
             self._size += size
-            while self._size > KEPT and self._line[0][0]() is not owner:
-                oldest, name, size = self._line.popleft()
+            while self._size > MAX_CACHED_BYTES and self._entries[0][0]() is not owner:
+                oldest, name, size = self._entries.popleft()
                 self._size -= size
                 if (gone := oldest()) is not None:
                     gone.__dict__.pop(name, None)
 
 
-_kept = _Kept()
+_ledger = _CacheLedger()
 
 
 def _bytes(value: Any) -> int:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from regolith_studio.geometry.directions import fibonacci_directions, icosphere
+from regolith_studio.geometry.sphere_points import fibonacci_directions, icosphere
 
 
 @pytest.mark.parametrize("n", [1, 2, 37, 2000])

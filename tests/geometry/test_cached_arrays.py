@@ -7,16 +7,16 @@ import weakref
 import numpy as np
 import pytest
 
-from regolith_studio.geometry import derived
-from regolith_studio.geometry.directions import icosphere
+from regolith_studio.geometry import cached_arrays
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.sphere_points import icosphere
 
 
 @pytest.fixture
 def a_megabyte(monkeypatch):
     """Room for what two spheres of 1,280 triangles are measured by."""
-    monkeypatch.setattr(derived, "KEPT", 1_000_000)
-    monkeypatch.setattr(derived, "_kept", derived._Kept())
+    monkeypatch.setattr(cached_arrays, "MAX_CACHED_BYTES", 1_000_000)
+    monkeypatch.setattr(cached_arrays, "_ledger", cached_arrays._CacheLedger())
 
 
 def spheres(count):
@@ -52,7 +52,7 @@ def test_that_what_was_forgotten_is_the_same_when_it_is_asked_for_again():
 
 
 def test_that_one_mesh_larger_than_the_room_keeps_its_own(monkeypatch):
-    monkeypatch.setattr(derived, "KEPT", 1)
+    monkeypatch.setattr(cached_arrays, "MAX_CACHED_BYTES", 1)
     (sphere,) = spheres(1)
     assert sphere.face_area_vectors is sphere.face_area_vectors
     assert "triangles" in vars(sphere)

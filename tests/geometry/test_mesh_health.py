@@ -6,11 +6,11 @@ import time
 import numpy as np
 import pytest
 
-from regolith_studio.geometry.directions import icosphere
-from regolith_studio.geometry.edges import bodies, edge_table, neighbours, walk_bodies
-from regolith_studio.geometry.health import MeshHealth, inspect
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.mesh_health import MeshHealth, inspect
 from regolith_studio.geometry.self_intersection import count_self_intersections
+from regolith_studio.geometry.sphere_points import icosphere
+from regolith_studio.geometry.topology import edge_table, find_bodies, label_bodies, neighbours
 
 CORNERS = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=float)
 QUADS = np.array([[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]])
@@ -74,7 +74,7 @@ def test_that_a_cube_is_sound():
         degenerate_faces=0,
         duplicate_faces=0,
         open_edges=0,
-        crowded_edges=0,
+        non_manifold_edges=0,
         inverted_bodies=0,
         seam_vertices=0,
         self_intersections=0,
@@ -137,7 +137,7 @@ def test_that_double_faces_are_counted_whatever_their_winding():
     faces = np.concatenate([CUBE.faces, CUBE.faces[:2], CUBE.faces[2:3, ::-1]])
     health = inspect(Mesh(CUBE.vertices, faces))
     assert health.duplicate_faces == 3
-    assert health.crowded_edges > 0
+    assert health.non_manifold_edges > 0
 
 
 def test_that_a_seam_is_told_from_other_openings():
@@ -151,14 +151,14 @@ def test_that_two_cubes_on_one_edge_have_a_crowded_edge():
     both = joined(CUBE, CUBE.moved(shift=(1, 1, 0)))
     faces = np.where(both.faces == 8, 6, np.where(both.faces == 9, 7, both.faces))
     health = inspect(Mesh(both.vertices, faces))
-    assert (health.crowded_edges, health.watertight) == (1, False)
+    assert (health.non_manifold_edges, health.watertight) == (1, False)
     assert "It is not a simple surface: 1 edge belongs to three faces or more." in health.problems
 
 
 def test_that_a_moebius_strip_has_no_consistent_winding():
     mesh = moebius()
     table = edge_table(mesh.faces, len(mesh.vertices))
-    assert bodies(neighbours(table), table.forward).conflicts > 0
+    assert find_bodies(neighbours(table), table.forward).conflicts > 0
     assert not inspect(mesh).consistent_winding
 
 
@@ -196,7 +196,7 @@ def test_that_the_pure_python_walk_agrees_with_the_compiled_one():
     table = edge_table(faces, int(faces.max()) + 1)
     across = neighbours(table)
     for compiled, plain in zip(
-        walk_bodies(across, table.forward), walk_bodies.py_func(across, table.forward), strict=True
+        label_bodies(across, table.forward), label_bodies.py_func(across, table.forward), strict=True
     ):
         assert np.array_equal(compiled, plain)
 

@@ -4,10 +4,10 @@ import numpy as np
 
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
-from regolith_studio.geometry.directions import fibonacci_directions
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.ray_casting import radial_hits
+from regolith_studio.geometry.sphere_points import fibonacci_directions
 
 N_RAYS = 16_000
 

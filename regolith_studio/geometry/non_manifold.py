@@ -1,43 +1,34 @@
-"""Edges where more than two triangles meet, and how to take the surface apart there."""
-
-from dataclasses import dataclass
+"""Split non-manifold edges, where more than two triangles meet, so that each edge has two."""
 
 import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.edges import EdgeTable, edge_table, neighbours
+from regolith_studio.geometry.topology import EdgeTable, edge_table, neighbours
 
-MOST_ROUNDS = 100
-
-
-@dataclass(frozen=True)
-class TakenApart:
-    """Mesh data without crowded edges; the surface in space is the same."""
-
-    vertices: FloatArray
-    faces: IntArray
+MAX_ROUNDS = 100
 
 
-def without_crowded_edges(vertices: FloatArray, faces: IntArray) -> TakenApart:
-    """Give each pair of triangles at a crowded edge that bounds a wedge of the solid its own edge.
+def split_non_manifold_edges(vertices: FloatArray, faces: IntArray) -> tuple[FloatArray, IntArray]:
+    """Mesh data in which each pair of triangles at a non-manifold edge has an edge of its own.
 
+    The pairs are those that bound a wedge of the solid; the surface in space stays the same.
     Vertices are doubled where that parts the pairs; where the surface closes again about both ends
     of the edge, each pair gets its own vertex in the middle of it. The faces must run
     counter-clockwise seen from outside. A triangle that finds no partner is left with an open edge.
     """
-    vertices, faces = _with_parted_vertices(vertices, faces)
-    for _ in range(MOST_ROUNDS):
+    vertices, faces = _split_vertices(vertices, faces)
+    for _ in range(MAX_ROUNDS):
         table = edge_table(faces, len(vertices))
-        if not table.crowded_edges:
+        if not table.non_manifold_edges:
             break
-        vertices, faces = _with_middle_vertices(vertices, faces, table)
-    return TakenApart(vertices, faces)
+        vertices, faces = _insert_midpoints(vertices, faces, table)
+    return vertices, faces
 
 
 def wedge_neighbours(vertices: FloatArray, faces: IntArray, table: EdgeTable, across: IntArray) -> IntArray:
-    """`across` with the triangles at crowded edges paired so that each pair bounds a wedge of the solid.
+    """`across` with the triangles at non-manifold edges paired so that each pair bounds a wedge of the solid.
 
     The triangles must run counter-clockwise seen from outside. About an edge, in the order of their
     angle, a triangle that runs along the edge has the solid behind it, so its partner is the one
@@ -80,7 +71,7 @@ def _angles(axis: FloatArray, spokes: FloatArray) -> FloatArray:
     )
 
 
-def _with_parted_vertices(vertices: FloatArray, faces: IntArray) -> tuple[FloatArray, IntArray]:
+def _split_vertices(vertices: FloatArray, faces: IntArray) -> tuple[FloatArray, IntArray]:
     table = edge_table(faces, len(vertices))
     corner = _fans(faces, wedge_neighbours(vertices, faces, table, neighbours(table)))
     _, first, inverse = np.unique(corner, return_index=True, return_inverse=True)
@@ -100,10 +91,8 @@ def _fans(faces: IntArray, across: IntArray) -> IntArray:
     return np.asarray(connected_components(links, directed=False)[1], dtype=np.int64)
 
 
-def _with_middle_vertices(
-    vertices: FloatArray, faces: IntArray, table: EdgeTable
-) -> tuple[FloatArray, IntArray]:
-    """Halve the triangles at crowded edges, at most one edge of each triangle at a time."""
+def _insert_midpoints(vertices: FloatArray, faces: IntArray, table: EdgeTable) -> tuple[FloatArray, IntArray]:
+    """Halve the triangles at non-manifold edges, at most one edge of each triangle at a time."""
     across = wedge_neighbours(vertices, faces, table, neighbours(table))
     touched: set[int] = set()
     points: list[FloatArray] = []
@@ -121,12 +110,12 @@ def _with_middle_vertices(
             number[half] = number.get(int(across[half]), len(vertices) + len(points))
             if number[half] == len(vertices) + len(points):
                 points.append(middle)
-            halves += _halved(faces, half, number[half])
+            halves += _split_triangle(faces, half, number[half])
     kept = np.delete(faces, sorted(touched), axis=0)
     return np.concatenate([vertices, points]), np.concatenate([kept, np.array(halves, dtype=np.int64)])
 
 
-def _halved(faces: IntArray, half: int, middle: int) -> list[tuple[int, int, int]]:
+def _split_triangle(faces: IntArray, half: int, middle: int) -> list[tuple[int, int, int]]:
     """The two triangles of a face whose half-edge gets a vertex in its middle."""
     face = faces[half // 3].tolist()
     a, b, c = (face[(half + step) % 3] for step in range(3))

@@ -2,40 +2,40 @@
 
 import numpy as np
 
-from regolith_studio.geometry.directions import icosphere
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.geometry.particle import Particle
+from regolith_studio.geometry.mesh_health import locate_defects
+from regolith_studio.geometry.particle import Particle, defect_triangles
 from regolith_studio.geometry.repair import repair
-from regolith_studio.geometry.trouble_spots import fault_triangles, trouble_spots
+from regolith_studio.geometry.sphere_points import icosphere
 
 BALL = icosphere(2)
 
 
 def test_that_a_sound_mesh_has_no_trouble_spots():
-    assert trouble_spots(BALL) == {}
-    assert trouble_spots(Mesh(BALL.vertices, np.zeros((0, 3)))) == {}
+    assert locate_defects(BALL) == {}
+    assert locate_defects(Mesh(BALL.vertices, np.zeros((0, 3)))) == {}
 
 
 def test_that_turned_faces_are_found():
     faces = BALL.faces.copy()
     faces[[3, 50]] = faces[[3, 50], ::-1]
-    spots = trouble_spots(Mesh(BALL.vertices, faces))
+    spots = locate_defects(Mesh(BALL.vertices, faces))
     assert list(spots) == ["turned"]
     assert spots["turned"].tolist() == [3, 50]
 
 
 def test_that_the_faces_around_a_hole_are_found():
-    spots = trouble_spots(Mesh(BALL.vertices, BALL.faces[1:]))
+    spots = locate_defects(Mesh(BALL.vertices, BALL.faces[1:]))
     assert list(spots) == ["open"]
     assert len(spots["open"]) == 3
 
 
 def test_that_double_and_degenerate_faces_are_found():
     faces = np.concatenate([BALL.faces, BALL.faces[7:8], [[5, 5, 9]]])
-    spots = trouble_spots(Mesh(BALL.vertices, faces))
+    spots = locate_defects(Mesh(BALL.vertices, faces))
     assert spots["double"].tolist() == [7, len(faces) - 2]
     assert spots["degenerate"].tolist() == [len(faces) - 1]
-    assert 7 in spots["crowded"]
+    assert 7 in spots["non-manifold"]
 
 
 def test_that_small_and_crossing_bodies_are_found():
@@ -44,7 +44,7 @@ def test_that_small_and_crossing_bodies_are_found():
         np.concatenate([small.vertices, BALL.vertices]),
         np.concatenate([small.faces, BALL.faces + len(BALL.vertices)]),
     )
-    spots = trouble_spots(both)
+    spots = locate_defects(both)
     assert spots["small bodies"].tolist() == list(range(len(small.faces)))
     assert {bool(face < len(small.faces)) for face in spots["crossing"]} == {True, False}
 
@@ -52,7 +52,7 @@ def test_that_small_and_crossing_bodies_are_found():
 def test_that_a_mended_mesh_shows_its_rim_and_what_now_fills_it():
     """Of a ball that lacks one triangle three others lie at the rim; one fills it, where it was missing."""
     done = repair(Mesh(BALL.vertices, BALL.faces[1:]))
-    shown = fault_triangles(Particle("ball", done.mesh, repair=done))
+    shown = defect_triangles(Particle("ball", done.mesh, repair=done))
     assert set(shown) == {"open", "filled"}
     assert len(shown["open"]) == 3
     (filling,) = shown["filled"]
@@ -60,5 +60,5 @@ def test_that_a_mended_mesh_shows_its_rim_and_what_now_fills_it():
 
 
 def test_that_a_mesh_left_as_it_is_shows_its_own_faults():
-    shown = fault_triangles(Particle("ball", Mesh(BALL.vertices, BALL.faces[1:])))
+    shown = defect_triangles(Particle("ball", Mesh(BALL.vertices, BALL.faces[1:])))
     assert set(shown) == {"open"}
