@@ -6,7 +6,7 @@ from PySide6.QtCore import QEvent, QObject, QSize, Qt
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QScrollArea, QSizePolicy, QSplitter, QTabWidget, QVBoxLayout, QWidget
 
-from regolith_studio.ui.widgets.steady_texts import SteadyTexts
+from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
 
 CONTROLS_WIDTH = 290
 FOLDED = 32
@@ -95,12 +95,12 @@ class _Column(QScrollArea):
         if self.height() == self._shared or inside is None:
             return
         self._shared = self.height()
-        texts = inside.findChildren(SteadyTexts)
+        texts = inside.findChildren(FixedHeightText)
         for each in texts:
-            each.take_spare(0)
+            each.take_spare_lines(0)
         left = self.height() - inside.sizeHint().height() - FOLDED
         for each in texts:
-            left -= each.line * each.take_spare(left // each.line)
+            left -= each.line * each.take_spare_lines(left // each.line)
 
 
 def padded(part: QWidget, left: int, top: int, right: int, bottom: int) -> QWidget:

@@ -19,9 +19,9 @@ from PySide6.QtWidgets import (
 )
 
 from regolith_studio.ui.views.view_frame import ViewFrame
-from regolith_studio.ui.widgets.choice_box import letters_room
-from regolith_studio.ui.widgets.plot import Plot
-from regolith_studio.ui.widgets.plot_files import plain_text
+from regolith_studio.ui.widgets.combo_box import text_room
+from regolith_studio.ui.widgets.plots.base import Plot
+from regolith_studio.ui.widgets.plots.export import plain_text
 
 SAME_EVERYWHERE = re.compile(
     "|".join(
@@ -147,7 +147,7 @@ def cut_off(root):
                         found.append((name, text, "too low"))
             case QComboBox() if widget.currentText():
                 text = widget.currentText()
-                wanted = widget.fontMetrics().horizontalAdvance(text) + widget.width() - letters_room(widget)
+                wanted = widget.fontMetrics().horizontalAdvance(text) + widget.width() - text_room(widget)
             case QAbstractButton() if widget.text():
                 text = widget.text()
                 letters = widget.fontMetrics().horizontalAdvance(text.replace("&", "")) + 12

@@ -5,9 +5,9 @@ from PySide6.QtCore import QPointF
 from PySide6.QtGui import QFont, QFontMetricsF
 
 from regolith_studio.ui.theme import DARK, LIGHT
-from regolith_studio.ui.widgets.bar_plot import BarPlot, BarSeries
-from regolith_studio.ui.widgets.curve_plot import Curve, CurvePlot
 from regolith_studio.ui.widgets.labels import plain_symbol
+from regolith_studio.ui.widgets.plots.bars import BarPlot, BarSeries
+from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 
 NAMES = tuple(map(plain_symbol, ("V", "S", "D_min", "D_max", "AR", "CH", "J")))
 TINY = 6.5
@@ -17,7 +17,7 @@ TINY = 6.5
 @pytest.fixture
 def curve(shown):
     plot = CurvePlot("Step", "Relative error of each descriptor [%]", "nothing")
-    plot.set_curves([Curve("one", "#0072b2", (0.0, 1.0, 2.0), (0.2, 0.6, 0.4))])
+    plot.set_curves([PlotCurve("one", "#0072b2", (0.0, 1.0, 2.0), (0.2, 0.6, 0.4))])
     return shown(plot)
 
 
@@ -91,7 +91,7 @@ def test_that_an_axis_is_drawn_anew_when_its_range_changes(curve, app):
     app.processEvents()
     curve.grab()
     before = [axis.picture for axis in curve.axes.values()]
-    curve.set_curves([Curve("one", "#0072b2", (0.0, 100.0, 200.0), (20.0, 60.0, 40.0))])
+    curve.set_curves([PlotCurve("one", "#0072b2", (0.0, 100.0, 200.0), (20.0, 60.0, 40.0))])
     app.processEvents()
     curve.grab()
     for axis, old in zip(curve.axes.values(), before, strict=True):

@@ -2,13 +2,13 @@
 
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
-from regolith_studio.ui.widgets.labels import WholeLabel, with_subscripts
+from regolith_studio.ui.widgets.labels import WrappedLabel, with_subscripts
 
 WORDS = "In each step one plane is moved at random, and the move is taken or not. " * 3
 
 
 def test_that_a_whole_label_has_all_its_lines_where_there_is_no_room_for_them(app):
-    label, below = WholeLabel(WORDS), QWidget()
+    label, below = WrappedLabel(WORDS), QWidget()
     below.setMinimumHeight(40)
     around = QWidget()
     column = QVBoxLayout(around)

@@ -24,7 +24,7 @@ from regolith_studio.ui.pages.model import PAGE
 from regolith_studio.ui.pages.model.distributions import distance_words
 from regolith_studio.ui.pages.model.judgement import JudgementPanel
 from regolith_studio.ui.translation.sentences import retold
-from regolith_studio.ui.widgets.spectrum_editor import SpectrumEditor
+from regolith_studio.ui.widgets.plots.spectrum_editor import SpectrumEditor
 from regolith_studio.ui.widgets.toast import Toast
 from regolith_studio.ui.wiring import Wiring
 from tests.ui.reading import english_left

@@ -31,8 +31,8 @@ from regolith_studio.ui.panels.loss import LossPanel
 from regolith_studio.ui.panels.loss_curve import LossCurvePanel
 from regolith_studio.ui.panels.particle_list import ParticleListPanel
 from regolith_studio.ui.panels.tasks import IDLE, TasksPanel
-from regolith_studio.ui.widgets.bar_plot import BarPlot, BarSeries
-from regolith_studio.ui.widgets.settings_form import SettingsForm
+from regolith_studio.ui.widgets.forms import SettingsForm
+from regolith_studio.ui.widgets.plots.bars import BarPlot, BarSeries
 
 WEIGHTS = LossWeights.of(volume=0.5, sphericity=1.25, jaccard_distance=7.0)
 VALUES = {

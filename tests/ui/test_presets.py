@@ -11,9 +11,8 @@ from regolith_studio.errors import InputError
 from regolith_studio.session.own_presets import OwnPresets
 from regolith_studio.session.recipe import Recipe
 from regolith_studio.ui.panels.loss import LossPanel
-from regolith_studio.ui.widgets.choice_box import letters_room
-from regolith_studio.ui.widgets.preset_bar import PresetBar, PresetEntry
-from regolith_studio.ui.widgets.preset_form import PresetForm
+from regolith_studio.ui.widgets.combo_box import text_room
+from regolith_studio.ui.widgets.presets import PresetBar, PresetEntry, PresetForm
 
 MINE = LossWeights.of(volume=0.5, sphericity=1.25, jaccard_distance=7.0)
 
@@ -139,7 +138,7 @@ def test_that_the_buttons_of_a_narrow_list_of_presets_stand_below_it(shown, app)
         app.processEvents()
         beside = bar.reset.y() < bar.box.geometry().bottom()
         assert beside is (width == 600)
-        assert letters_room(bar.box) >= min(letters.horizontalAdvance("All descriptors and the overlap"), 200)
+        assert text_room(bar.box) >= min(letters.horizontalAdvance("All descriptors and the overlap"), 200)
         assert all(bar.rect().contains(each.geometry()) for each in (bar.box, bar.reset, bar.more))
 
 
@@ -151,7 +150,7 @@ def test_that_a_preset_with_little_room_still_shows_that_it_was_modified(shown, 
     bar.resize(200, 70)
     shown(bar)
     app.processEvents()
-    room = letters_room(bar.box)
+    room = text_room(bar.box)
     shortened = bar.box.fontMetrics().elidedText(bar.box.currentText(), Qt.TextElideMode.ElideMiddle, room)
     assert shortened.endswith("ified)")
     assert "…" in shortened

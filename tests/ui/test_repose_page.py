@@ -24,7 +24,7 @@ from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.repose import PAGE
 from regolith_studio.ui.pages.repose.section_plot import grain_words
-from regolith_studio.ui.widgets.parameter_form import ParameterForm
+from regolith_studio.ui.widgets.forms import ParameterForm
 from regolith_studio.ui.widgets.toast import Toast
 from regolith_studio.ui.wiring import Wiring
 from tests.dem.conftest import box_dataset

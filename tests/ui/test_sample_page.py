@@ -176,12 +176,12 @@ def test_that_statistics_undo_the_loss_at_the_border_only_where_there_was_one(sh
 
 
 def test_that_a_logarithmic_plot_cannot_be_dragged_to_where_numbers_end(shown):
-    from regolith_studio.ui.widgets.curve_plot import CurvePlot
-    from regolith_studio.ui.widgets.log_axes import DECADES
+    from regolith_studio.ui.widgets.plots.canvas import MAX_DECADES
+    from regolith_studio.ui.widgets.plots.curves import CurvePlot
 
     plot = shown(CurvePlot("degree", "amplitude", "nothing", log_y=True))
     plot.canvas.setYRange(-1e4, 1e4)
-    assert max(map(abs, plot.canvas.getAxis("left").range)) <= DECADES
+    assert max(map(abs, plot.canvas.getAxis("left").range)) <= MAX_DECADES
     plot.canvas.setXRange(0, 1e4)
     assert plot.canvas.getAxis("bottom").range[1] >= 1e4
     plot.set_theme(plot.theme)

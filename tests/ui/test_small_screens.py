@@ -14,8 +14,8 @@ from regolith_studio.ui.pages.explore.plot_area import LETTERS as LETTERS_OF_TWO
 from regolith_studio.ui.room import Room
 from regolith_studio.ui.sidebar import Sidebar
 from regolith_studio.ui.theme import LIGHT, choose_letters
-from regolith_studio.ui.widgets.choice_box import letters_room
-from regolith_studio.ui.widgets.plot_files import plain_text
+from regolith_studio.ui.widgets.combo_box import text_room
+from regolith_studio.ui.widgets.plots.export import plain_text
 
 SCREEN = QSize(960, 540)
 FRAME = 40
@@ -151,9 +151,7 @@ def test_that_boxes_and_legends_of_explore_are_whole(shown, preferences, settled
     page = window.page
     for box in (page.coarsening.target, page.coarsening.method):
         metrics = box.fontMetrics()
-        assert all(
-            metrics.horizontalAdvance(box.itemText(at)) <= letters_room(box) for at in range(box.count())
-        )
+        assert all(metrics.horizontalAdvance(box.itemText(at)) <= text_room(box) for at in range(box.count()))
     for panel in (page.plots.error_bars, page.plots.loss_curve):
         legend = panel.plot.legend
         panel.parentWidget().setCurrentWidget(panel)

@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QDialog, QDialogButtonBox, QFormLayout, QSpinBox, 
 from regolith_studio.ui.theme import LARGEST, SMALLEST, USUAL
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.translation.language import LANGUAGES, SETTING, SYSTEM
-from regolith_studio.ui.widgets.choice_box import ChoiceBox
+from regolith_studio.ui.widgets.combo_box import ChoiceBox
 from regolith_studio.ui.widgets.labels import remark
 
 LETTERS = "letters"

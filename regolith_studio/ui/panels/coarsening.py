@@ -20,12 +20,12 @@ from regolith_studio.ui.icons import icon
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.translation.sentences import retold
-from regolith_studio.ui.widgets.choice_box import ChoiceBox
 from regolith_studio.ui.widgets.collapsible import Collapsible
+from regolith_studio.ui.widgets.combo_box import ChoiceBox
+from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
+from regolith_studio.ui.widgets.forms import SettingsForm
 from regolith_studio.ui.widgets.labels import heading, remark
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
-from regolith_studio.ui.widgets.settings_form import SettingsForm
-from regolith_studio.ui.widgets.steady_texts import SteadyTexts
 
 STOPS = {"facets": mark("Facets n"), "triangles": mark("Triangles"), "error": mark("Error ≤")}
 FACES = NumberSpec(
@@ -179,7 +179,7 @@ class CoarseningPanel(QWidget):
         layout.addLayout(amount)
         layout.addLayout(form)
         layout.addWidget(self.more)
-        layout.addWidget(SteadyTexts((self.outcome,), LINES))
+        layout.addWidget(FixedHeightText((self.outcome,), LINES))
 
     def _connect(self) -> None:
         self.n_facets.valueChanged.connect(lambda n: self.valueChanged.emit({"n_facets": int(n)}))

@@ -18,7 +18,7 @@ from regolith_studio.session.results import Results
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.labels import plain_symbol
 from regolith_studio.ui.widgets.number_text import short_number
-from regolith_studio.ui.widgets.table import LetterRows
+from regolith_studio.ui.widgets.table import FontRowHeight
 
 _UNITS = {0: "", 1: " [µm]", 2: " [µm²]", 3: " [µm³]", 5: " [µm⁵]"}
 COLUMNS = (mark("Particle"), mark("Fit"), mark("Polyhedron"))
@@ -48,7 +48,7 @@ class DescriptorTablePanel(QWidget):
         header = self.table.horizontalHeader()
         header.setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
         header.setDefaultAlignment(_RIGHT)
-        LetterRows(self.table, 9)
+        FontRowHeight(self.table, 9)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(self.table)

@@ -10,8 +10,8 @@ from regolith_studio.session.choices import Choices
 from regolith_studio.session.results import Results
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr
-from regolith_studio.ui.widgets.bar_plot import BarPlot, BarSeries
 from regolith_studio.ui.widgets.labels import plain_symbol
+from regolith_studio.ui.widgets.plots.bars import BarPlot, BarSeries
 
 KEYS = (*LOSS_KEYS, JACCARD)
 

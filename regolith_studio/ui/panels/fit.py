@@ -11,11 +11,11 @@ from regolith_studio.harmonics.fit import AUTOMATIC
 from regolith_studio.session.choices import L_MAX_LIMIT
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.translation.sentences import retold
-from regolith_studio.ui.widgets.choice_box import ChoiceBox
 from regolith_studio.ui.widgets.collapsible import Collapsible
+from regolith_studio.ui.widgets.combo_box import ChoiceBox
+from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
 from regolith_studio.ui.widgets.labels import heading, remark, with_subscripts
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
-from regolith_studio.ui.widgets.steady_texts import SteadyTexts
 
 L_MAX = NumberSpec(
     "l<sub>max</sub>",
@@ -80,7 +80,11 @@ class FitPanel(QWidget):
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(heading(tr("Spherical-harmonics fit")))
-        for widget in (self.l_max, self.more, SteadyTexts((self.findings, self.warnings), LINES, MOST_LINES)):
+        for widget in (
+            self.l_max,
+            self.more,
+            FixedHeightText((self.findings, self.warnings), LINES, MOST_LINES),
+        ):
             layout.addWidget(widget)
         self.set_findings(None)
         self.l_max.valueChanged.connect(lambda degree: self.valueChanged.emit({"l_max": int(degree)}))

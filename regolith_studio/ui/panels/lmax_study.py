@@ -9,8 +9,8 @@ from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.scene.palette import DESCRIPTOR_COLOURS
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import mark, tr, tr_count
-from regolith_studio.ui.widgets.curve_plot import Curve, CurvePlot
 from regolith_studio.ui.widgets.labels import rich_symbol
+from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 from regolith_studio.ui.widgets.study_frame import StudyFrame
 
 WAITING = mark(
@@ -44,7 +44,7 @@ class LmaxStudyPanel(QWidget):
         values = 100.0 * np.asarray(study.rmsre())
         degrees = tuple(float(degree) for degree in study.degrees)
         curves = [
-            Curve(
+            PlotCurve(
                 rich_symbol(CATALOGUE[key].symbol),
                 DESCRIPTOR_COLOURS[number % len(DESCRIPTOR_COLOURS)],
                 degrees,

@@ -11,10 +11,10 @@ from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.errors import InputError
 from regolith_studio.session.own_presets import OwnPresets
 from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
 from regolith_studio.ui.widgets.labels import heading, remark, rich_symbol
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec, align_labels
-from regolith_studio.ui.widgets.preset_bar import PresetBar, PresetEntry
-from regolith_studio.ui.widgets.steady_texts import SteadyTexts
+from regolith_studio.ui.widgets.presets import PresetBar, PresetEntry
 
 OWN = "own:"
 """Begins the keys of own presets."""
@@ -152,7 +152,7 @@ class LossPanel(QWidget):
         layout.addWidget(heading(tr("Weights of the loss (Eq. 9)")))
         layout.addWidget(self.bar)
         layout.addLayout(grid)
-        layout.addWidget(SteadyTexts((self.origin,), LINES))
+        layout.addWidget(FixedHeightText((self.origin,), LINES))
 
     def _connect(self) -> None:
         self.bar.chosen.connect(self._take)

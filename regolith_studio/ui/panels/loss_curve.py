@@ -7,7 +7,7 @@ from PySide6.QtWidgets import QVBoxLayout, QWidget
 from regolith_studio.session.results import Results
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr
-from regolith_studio.ui.widgets.curve_plot import Curve, CurvePlot
+from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 
 
 class LossCurvePanel(QWidget):
@@ -35,8 +35,8 @@ class LossCurvePanel(QWidget):
         best = tuple(accumulate(losses, min))
         theme = self.plot.theme
         curves = [
-            Curve(tr("present"), theme.polyhedron, steps, losses, markers=len(steps) < 40),
-            Curve(tr("best so far"), theme.muted, steps, best, dash=True),
+            PlotCurve(tr("present"), theme.polyhedron, steps, losses, markers=len(steps) < 40),
+            PlotCurve(tr("best so far"), theme.muted, steps, best, dash=True),
         ]
         self.plot.set_curves(curves)
         progress = results.coarsening_progress

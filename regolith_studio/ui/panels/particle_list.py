@@ -12,10 +12,14 @@ from regolith_studio.session.sample_table import health_sentences, health_word
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.translation.sentences import retold
-from regolith_studio.ui.widgets.entry_rows import RIGHT, UNSORTED, EntryRows
-from regolith_studio.ui.widgets.health_icons import health_pixmaps
 from regolith_studio.ui.widgets.labels import heading, remark
 from regolith_studio.ui.widgets.number_text import short_number
+from regolith_studio.ui.widgets.particle_table_model import (
+    RIGHT,
+    UNSORTED,
+    ParticleTableModel,
+    health_pixmaps,
+)
 from regolith_studio.ui.widgets.table import ListTable
 
 WORDS = 2
@@ -70,7 +74,7 @@ COLUMNS = (
 )
 
 
-class _Model(EntryRows):
+class _Model(ParticleTableModel):
     def __init__(self, parent: QWidget) -> None:
         super().__init__(len(COLUMNS), parent)
         self.icons: dict[str, Any] = {}

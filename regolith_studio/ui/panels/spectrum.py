@@ -12,7 +12,7 @@ from regolith_studio.session.choices import Choices
 from regolith_studio.session.results import Results
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr
-from regolith_studio.ui.widgets.plot import Numbers, Plot
+from regolith_studio.ui.widgets.plots.base import Numbers, Plot
 
 DECADES = 6.5
 """Shown below the highest bar."""

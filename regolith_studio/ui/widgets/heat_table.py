@@ -17,7 +17,7 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
-from regolith_studio.ui.widgets.table import LetterRows
+from regolith_studio.ui.widgets.table import FontRowHeight
 
 _ROWS_SHARE, _ROWS_LEAST = 0.33, 0.2
 """Of the width, that the names of the rows take at most, and that they keep where columns need the rest."""
@@ -53,7 +53,7 @@ class HeatTable(QWidget):
         self._values: tuple[tuple[float, ...], ...] = ()
         self._bands: Bands | None = None
         self.table = numbers_table(tr("Table of errors"))
-        self._rows = LetterRows(self.table, SPARE)
+        self._rows = FontRowHeight(self.table, SPARE)
         self._stack = QStackedLayout(self)
         self._stack.addWidget(remark_in_the_middle(placeholder))
         self._stack.addWidget(self.table)

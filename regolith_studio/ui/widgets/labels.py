@@ -48,7 +48,7 @@ def remark(text: str = "", role: str = "remark") -> QLabel:
     return label
 
 
-class WholeLabel(QLabel):
+class WrappedLabel(QLabel):
     """Words that wrap, with all their lines however little room there is: what stands below gives way."""
 
     def __init__(self, text: str = "") -> None:

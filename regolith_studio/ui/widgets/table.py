@@ -11,7 +11,7 @@ _NAME = 18
 """Digits that the first column is granted, at most, before others stay; an icon has room in it."""
 
 
-class LetterRows(QObject):
+class FontRowHeight(QObject):
     """Keeps the rows of a table as high as its letters, whatever size these take.
 
     Parameters
@@ -72,7 +72,7 @@ class ListTable(QTableView):
         self.setWordWrap(False)
         self.setTextElideMode(Qt.TextElideMode.ElideMiddle)  # names of a sample differ at their end
         self.verticalHeader().hide()
-        LetterRows(self, 9)
+        FontRowHeight(self, 9)
         header = self.horizontalHeader()
         header.setHighlightSections(False)
         header.setResizeContentsPrecision(MEASURED)

@@ -13,9 +13,9 @@ from regolith_studio.errors import InputError
 from regolith_studio.jobs.representing import RepresentativesOrder
 from regolith_studio.session.recipe_dataset import Representatives
 from regolith_studio.ui.translation import mark, tr, tr_count
+from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
 from regolith_studio.ui.widgets.labels import heading, remark
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
-from regolith_studio.ui.widgets.steady_texts import SteadyTexts
 
 MOST = 200
 POPULATION_LINES, SIZES_LINES, ASKED_LINES, STATE_LINES = (1, 2), (1, 3), (3, 3), (2, 3)
@@ -67,7 +67,7 @@ class RepresentativesPanel(QWidget):
         layout.setContentsMargins(0, 0, 0, 0)
         for widget in (
             heading(tr("1  Representatives")),
-            SteadyTexts((self.population,), *POPULATION_LINES),
+            FixedHeightText((self.population,), *POPULATION_LINES),
             self.weighting,
             self.start,
             self.count,
@@ -138,7 +138,7 @@ class SizesPanel(QWidget):
         self.numbers.setAccessibleName(tr("Numbers of the size distribution"))
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        texts = SteadyTexts((self.hint, self.problem), *SIZES_LINES)
+        texts = FixedHeightText((self.hint, self.problem), *SIZES_LINES)
         for widget in (heading(tr("2  Sizes")), self.kind, self.numbers, texts):
             layout.addWidget(widget)
         self.kind.currentIndexChanged.connect(lambda _: self._show_kind())
@@ -210,7 +210,10 @@ class FolderPanel(QWidget):
         self.open.setObjectName("dataset_open")
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        asked, there = SteadyTexts((self.shapes,), *ASKED_LINES), SteadyTexts((self.state,), *STATE_LINES)
+        asked, there = (
+            FixedHeightText((self.shapes,), *ASKED_LINES),
+            FixedHeightText((self.state,), *STATE_LINES),
+        )
         for widget in (heading(tr("3  Dataset")), self.name, asked):
             layout.addWidget(widget)
         buttons = QHBoxLayout()

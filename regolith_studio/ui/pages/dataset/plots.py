@@ -8,7 +8,7 @@ from regolith_studio.dataset.build import ShapeClass
 from regolith_studio.dataset.quality import QualityCurve, QualityPoint
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import mark, tr
-from regolith_studio.ui.widgets.curve_plot import Curve, CurvePlot
+from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 
 NAMES = {
     "aspect_ratio": "AR",
@@ -67,11 +67,11 @@ class QualityPlot(CurvePlot):
     def _draw(self) -> None:
         counts = tuple(float(point.count) for point in self._points)
         curves = [
-            Curve(NAMES.get(key, key), colour, counts, self._column(key), markers=len(counts) < 40)
+            PlotCurve(NAMES.get(key, key), colour, counts, self._column(key), markers=len(counts) < 40)
             for key, colour in zip(NAMES, COLOURS, strict=True)
         ]
         curves.append(
-            Curve(
+            PlotCurve(
                 tr("mean"),
                 self.theme.text,
                 counts,
@@ -80,7 +80,9 @@ class QualityPlot(CurvePlot):
         )
         if self._noise is not None and counts:
             ends = (counts[0], counts[-1])
-            curves.append(Curve(tr("noise"), self.theme.muted, ends, (self._noise, self._noise), dash=True))
+            curves.append(
+                PlotCurve(tr("noise"), self.theme.muted, ends, (self._noise, self._noise), dash=True)
+            )
         self.set_curves(curves)
 
     def _column(self, key: str) -> tuple[float, ...]:
@@ -131,9 +133,9 @@ class SizesPlot(CurvePlot):
         rows = np.array([one.sizes.cdf(at) for one in self._classes])
         curves = []
         if len(self._classes) <= MOST_CLASSES:
-            curves = [Curve("", self.theme.border, tuple(at), tuple(100 * row)) for row in rows]
+            curves = [PlotCurve("", self.theme.border, tuple(at), tuple(100 * row)) for row in rows]
         mixture = 100 * (weights @ rows) / weights.sum()
         kinds = {one.sizes.weighting for one in self._classes}
         words = tr("all classes, by {kinds}", kinds=f" {tr('and')} ".join(tr(each) for each in sorted(kinds)))
-        curves.append(Curve(words, self.theme.accent, tuple(at), tuple(mixture)))
+        curves.append(PlotCurve(words, self.theme.accent, tuple(at), tuple(mixture)))
         self.set_curves(curves)

@@ -26,10 +26,10 @@ from regolith_studio.errors import InputError
 from regolith_studio.session.recipe_dataset import Exports
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.collapsible import Collapsible
+from regolith_studio.ui.widgets.forms import ParameterForm
 from regolith_studio.ui.widgets.labels import ElidedLabel, heading, remark
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
-from regolith_studio.ui.widgets.parameter_form import ParameterForm
-from regolith_studio.ui.widgets.preset_form import PresetForm
+from regolith_studio.ui.widgets.presets import PresetForm
 
 FIRST = ("rocky", "yade")
 NARROW = 84

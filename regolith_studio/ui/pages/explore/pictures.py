@@ -21,7 +21,7 @@ from regolith_studio.scene.figure import view_titles
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.views.triptych import Triptych
-from regolith_studio.ui.widgets.choice_box import ChoiceBox
+from regolith_studio.ui.widgets.combo_box import ChoiceBox
 
 LARGEST_SCALE = 6
 SEEN, FIGURE = "seen", "figure"

@@ -10,10 +10,10 @@ from regolith_studio.scene.shapes import LABELS, NAMES, PARTICLE
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.views.triptych import Triptych
-from regolith_studio.ui.widgets.choice_box import ChoiceBox
-from regolith_studio.ui.widgets.curve_plot import Curve, CurvePlot
+from regolith_studio.ui.widgets.combo_box import ChoiceBox
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
 from regolith_studio.ui.widgets.number_text import grouped_number
+from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 
 AXES = {"x": ("y", "z"), "y": ("x", "z"), "z": ("x", "y")}
 """What runs to the right and up in a drawing, by the direction of the cut."""
@@ -83,7 +83,7 @@ class SectionPanel(QWidget):
             if name in cuts:
                 x, y = _outline(cuts[name])
                 label = f"{tr(LABELS[name])} {_area_words(cuts[name].area, whole, name)}"
-                curves.append(Curve(label, getattr(self._theme, name), tuple(x), tuple(y)))
+                curves.append(PlotCurve(label, getattr(self._theme, name), tuple(x), tuple(y)))
         self.plot.set_curves(curves)
 
     def _place(self) -> None:

@@ -22,11 +22,11 @@ from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.views.camera_link import CameraLink
 from regolith_studio.ui.views.factory import make_view
 from regolith_studio.ui.views.view_frame import ViewFrame
-from regolith_studio.ui.widgets.bar_plot import BarPlot, BarSeries
-from regolith_studio.ui.widgets.curve_plot import Curve, CurvePlot
 from regolith_studio.ui.widgets.formula import FormulaLabel
-from regolith_studio.ui.widgets.labels import WholeLabel
-from regolith_studio.ui.widgets.plot import Plot
+from regolith_studio.ui.widgets.labels import WrappedLabel
+from regolith_studio.ui.widgets.plots.bars import BarPlot, BarSeries
+from regolith_studio.ui.widgets.plots.base import Plot
+from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 
 SEEN_THROUGH = 0.6
 """Opacity of a polyhedron with the edges of another one about it."""
@@ -59,7 +59,7 @@ class AnnealingView(QWidget):
             self.frames[name] = ViewFrame(make_view(self._kind, self._theme.surroundings), f"lecture_{name}")
             yield
         self.link = CameraLink([frame.view for frame in self.frames.values()])
-        self.sentence = WholeLabel(tr(WAIT))
+        self.sentence = WrappedLabel(tr(WAIT))
         self.sentence.setObjectName("annealing_sentence")
         self.loss_formula = FormulaLabel(tr("Eq. 9 with its numbers"))
         self.rule = FormulaLabel(tr("The proposal, T(k) and the decision with their numbers"))
@@ -202,12 +202,12 @@ class AnnealingView(QWidget):
             return
         seen = lesson.steps[: number + 1]
         k = tuple(float(step.number) for step in seen)
-        present = Curve(tr("present"), theme.polyhedron, k, tuple(step.evaluation.loss for step in seen))
+        present = PlotCurve(tr("present"), theme.polyhedron, k, tuple(step.evaluation.loss for step in seen))
         curves = [present, *self._proposals(seen)]
         if lesson.exact is not None:
             ends = (0.0, float(len(lesson.steps) - 1))
             curves.append(
-                Curve(tr("exact method"), theme.particle, ends, (lesson.exact.loss,) * 2, dash=True)
+                PlotCurve(tr("exact method"), theme.particle, ends, (lesson.exact.loss,) * 2, dash=True)
             )
         self.loss.set_curves(curves)
         self.loss.set_marker(float(number))
@@ -215,7 +215,7 @@ class AnnealingView(QWidget):
         self.loss.canvas.setXRange(0, len(lesson.steps) - 1, padding=0.01)
         self.loss.canvas.setYRange(0.0, 1.6 * highest, padding=0.0)
 
-    def _proposals(self, seen: tuple[AnnealingStep, ...]) -> list[Curve]:
+    def _proposals(self, seen: tuple[AnnealingStep, ...]) -> list[PlotCurve]:
         curves = []
         for mood, label, colour in (
             (words.ACCEPTED, tr("better"), self._theme.good),
@@ -228,7 +228,7 @@ class AnnealingView(QWidget):
                 if step.move is not None and step.move.proposed is not None and words.mood_of(step) == mood
             ]
             x, y = zip(*chosen, strict=True) if chosen else ((), ())
-            curves.append(Curve(label, colour, tuple(x), tuple(y), markers=True, line=False))
+            curves.append(PlotCurve(label, colour, tuple(x), tuple(y), markers=True, line=False))
         return curves
 
     def _plot_chance(self, number: int) -> None:
@@ -241,8 +241,8 @@ class AnnealingView(QWidget):
         x, y = zip(*drawn, strict=True) if drawn else ((), ())
         self.chance.set_curves(
             [
-                Curve("T(k)", theme.fit, tuple(map(float, k)), chance),
-                Curve(tr("drawn u"), theme.muted, tuple(x), tuple(y), markers=True, line=False),
+                PlotCurve("T(k)", theme.fit, tuple(map(float, k)), chance),
+                PlotCurve(tr("drawn u"), theme.muted, tuple(x), tuple(y), markers=True, line=False),
             ]
         )
         self.chance.set_marker(float(number))

@@ -17,9 +17,9 @@ from regolith_studio.ui.translation import mark, tr, tr_count
 from regolith_studio.ui.views.camera_link import CameraLink
 from regolith_studio.ui.views.factory import make_view
 from regolith_studio.ui.views.view_frame import ViewFrame
-from regolith_studio.ui.widgets.curve_plot import Curve, CurvePlot
 from regolith_studio.ui.widgets.formula import FormulaLabel
 from regolith_studio.ui.widgets.labels import remark
+from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 
 WAIT = mark("The particle is fitted …")
 
@@ -119,7 +119,7 @@ class DegreesView(QWidget):
         known = [step for step in self._steps[: self.transport.step + 1] if step.errors]
         x = tuple(float(step.l_max) for step in known)
         curves = [
-            Curve(
+            PlotCurve(
                 words.plain(key),
                 DESCRIPTOR_COLOURS[place],
                 x,
@@ -129,7 +129,7 @@ class DegreesView(QWidget):
             for place, key in enumerate(LOSS_KEYS)
         ]
         radial = tuple(max(100 * step.radial_error, 1e-4) for step in known)
-        curves.append(Curve(tr("radius (rms)"), self._theme.particle, x, radial, markers=True))
+        curves.append(PlotCurve(tr("radius (rms)"), self._theme.particle, x, radial, markers=True))
         self.errors.set_curves(curves)
         self.errors.canvas.setXRange(0, max(len(self._steps) - 1, 1), padding=0.02)
 

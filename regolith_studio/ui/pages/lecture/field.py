@@ -19,10 +19,10 @@ from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.camera_link import CameraLink
 from regolith_studio.ui.views.factory import make_view
 from regolith_studio.ui.views.view_frame import ViewFrame
-from regolith_studio.ui.widgets.choice_box import ChoiceBox, FoldingRow
+from regolith_studio.ui.widgets.combo_box import ChoiceBox, ComboBoxRow
 from regolith_studio.ui.widgets.formula import FormulaLabel
 from regolith_studio.ui.widgets.labels import remark
-from regolith_studio.ui.widgets.spectrum_editor import SpectrumEditor
+from regolith_studio.ui.widgets.plots.spectrum_editor import SpectrumEditor
 
 DEGREE = 10
 
@@ -149,7 +149,7 @@ class FieldView(QWidget):
         column = QVBoxLayout(said)
         column.setContentsMargins(10, 6, 6, 6)
         column.setSpacing(10)
-        column.addWidget(FoldingRow(self.material, (self.reset, self.another), spacing=10))
+        column.addWidget(ComboBoxRow(self.material, (self.reset, self.another), spacing=10))
         column.addWidget(self.sentence)
         column.addWidget(self.formula)
         column.addWidget(self.spectrum, 1)

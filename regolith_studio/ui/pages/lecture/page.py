@@ -19,7 +19,7 @@ from regolith_studio.ui.pages.lecture.field import FieldView
 from regolith_studio.ui.pages.lecture.transport import Transport
 from regolith_studio.ui.theme import Theme, current_theme, letters_share
 from regolith_studio.ui.translation import tr
-from regolith_studio.ui.widgets.choice_box import ChoiceBox
+from regolith_studio.ui.widgets.combo_box import ChoiceBox
 
 LETTERS = 1.35
 """Size of the letters against those of the other pages, at first."""

@@ -24,10 +24,10 @@ from regolith_studio.errors import InputError
 from regolith_studio.jobs.generating import CARD_MODEL, GenerateOrder
 from regolith_studio.shape_models.models import DEFAULT_MODEL, MODELS
 from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
+from regolith_studio.ui.widgets.forms import SettingsForm
 from regolith_studio.ui.widgets.labels import heading, remark
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
-from regolith_studio.ui.widgets.settings_form import SettingsForm
-from regolith_studio.ui.widgets.steady_texts import SteadyTexts
 
 L_MAX = NumberSpec(
     "l<sub>max</sub>",
@@ -160,10 +160,10 @@ class SourceControls(QWidget):
         row.addWidget(self.open)
         layout.addWidget(heading(tr("Sample or material")))
         layout.addLayout(row)
-        layout.addWidget(SteadyTexts((self.findings,), 3))
+        layout.addWidget(FixedHeightText((self.findings,), 3))
         layout.addSpacing(8)
         layout.addWidget(heading(tr("Model")))
-        summary = SteadyTexts((self.summary,), 3)
+        summary = FixedHeightText((self.summary,), 3)
         for widget in (self.model, summary, self.l_max, self._forms, self.half, self.fit):
             layout.addWidget(widget)
 
@@ -277,7 +277,7 @@ class DrawControls(QWidget):
         layout.addLayout(form)
         layout.addWidget(self.limited)
         layout.addLayout(sizes)
-        for widget in (self.draw, SteadyTexts((self.findings,), 2), self.adopt):
+        for widget in (self.draw, FixedHeightText((self.findings,), 2), self.adopt):
             layout.addWidget(widget)
         parts = QFormLayout()  # last, because only mixtures have them
         parts.addRow(self._names_label, self.names)

@@ -9,10 +9,10 @@ from regolith_studio.jobs.comparing import Compared
 from regolith_studio.studies.population import KEYS
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import mark, tr
-from regolith_studio.ui.widgets.choice_box import ChoiceBox
-from regolith_studio.ui.widgets.curve_plot import Curve, CurvePlot
+from regolith_studio.ui.widgets.combo_box import ChoiceBox
 from regolith_studio.ui.widgets.labels import ElidedLabel, rich_symbol
 from regolith_studio.ui.widgets.number_text import short_number
+from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 
 WEIGHTINGS = {
     "number": mark("Each particle counts the same"),
@@ -94,7 +94,7 @@ def distance_words(measured: Distribution | None, drawn: Distribution, unit: str
     )
 
 
-def _stairs(label: str, colour: str, spread: Distribution) -> Curve:
+def _stairs(label: str, colour: str, spread: Distribution) -> PlotCurve:
     x = np.repeat(spread.values, 2)
     y = np.concatenate([[0.0], np.repeat(np.cumsum(spread.weights), 2)[:-1]])
-    return Curve(label, colour, tuple(x), tuple(100.0 * y))
+    return PlotCurve(label, colour, tuple(x), tuple(100.0 * y))

@@ -3,7 +3,8 @@
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from PySide6.QtCore import Qt, Signal
+from PySide6.QtCore import QRectF, QSize, Qt, Signal
+from PySide6.QtGui import QPainter, QPaintEvent, QPixmap
 from PySide6.QtWidgets import (
     QAbstractItemView,
     QCheckBox,
@@ -11,6 +12,7 @@ from PySide6.QtWidgets import (
     QHeaderView,
     QLabel,
     QScrollArea,
+    QSizePolicy,
     QSpinBox,
     QStackedLayout,
     QTableWidget,
@@ -30,7 +32,6 @@ from regolith_studio.ui.pages.model.table_view import TableView
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.labels import remark, with_subscripts
-from regolith_studio.ui.widgets.picture_label import PictureLabel
 from regolith_studio.ui.widgets.study_frame import StudyFrame
 
 WAITING = mark(
@@ -71,6 +72,58 @@ TIPS = (
 NUMBERS = Qt.AlignmentFlag.AlignCenter
 LEGIBLE = 0.55
 """Scale of the figures below which their panels are scrolled instead of shrunk."""
+MIN_PICTURE_HEIGHT = 80
+"""Pixels."""
+
+
+class PictureLabel(QWidget):
+    """Displays PNG data scaled to the available size, or a placeholder text.
+
+    Parameters
+    ----------
+    placeholder
+        The sentence.
+    min_scale
+        Share of its own height below which a picture is not shrunk; for labels in a scroll area.
+    """
+
+    def __init__(self, placeholder: str, min_scale: float = 0.0) -> None:
+        super().__init__()
+        self._min_scale = min_scale
+        self._placeholder = placeholder
+        self._picture = QPixmap()
+        self.setAccessibleName(placeholder)
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
+        self.setMinimumSize(120, MIN_PICTURE_HEIGHT)
+
+    def set_picture(self, content: bytes | None) -> None:
+        """Show this PNG instead, or the sentence."""
+        self._picture = QPixmap()
+        if content:
+            self._picture.loadFromData(content)
+        self.setMinimumHeight(max(MIN_PICTURE_HEIGHT, int(self._min_scale * self._picture.height())))
+        self.update()
+
+    def is_empty(self) -> bool:
+        """Whether the sentence is shown."""
+        return self._picture.isNull()
+
+    def sizeHint(self) -> QSize:
+        return QSize(600, 360)
+
+    def paintEvent(self, event: QPaintEvent) -> None:  # noqa: ARG002
+        painter = QPainter(self)
+        if self._picture.isNull():
+            painter.setPen(self.palette().placeholderText().color())
+            flags = Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap
+            painter.drawText(self.rect().adjusted(20, 10, -20, -10), int(flags), self._placeholder)
+        else:
+            painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform)
+            size = self._picture.size().scaled(self.size(), Qt.AspectRatioMode.KeepAspectRatio)
+            left, top = (self.width() - size.width()) / 2, (self.height() - size.height()) / 2
+            place = QRectF(left, top, size.width(), size.height())
+            painter.drawPixmap(place, self._picture, QRectF(self._picture.rect()))
+        painter.end()
 
 
 class JudgementPanel(QWidget):

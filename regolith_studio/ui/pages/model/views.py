@@ -11,7 +11,7 @@ from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.views.protocol import SceneView
 from regolith_studio.ui.views.view_frame import ViewFrame
-from regolith_studio.ui.widgets.spectrum_editor import SpectrumEditor
+from regolith_studio.ui.widgets.plots.spectrum_editor import SpectrumEditor
 
 NO_MODEL = mark("The spectrum appears when a model is fitted.")
 

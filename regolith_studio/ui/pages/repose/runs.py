@@ -19,7 +19,7 @@ from PySide6.QtWidgets import (
 from regolith_studio.dem.run_folder import RunSummary
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import mark, tr
-from regolith_studio.ui.widgets.curve_plot import Curve, CurvePlot
+from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 
 AGAINST: Mapping[str, tuple[str, ...]] = {
     mark("Static friction"): ("case", "contact", "static_friction"),
@@ -125,7 +125,7 @@ class RunsPanel(QWidget):
         self.plot.set_labels(self.against.currentText(), tr("Angle [°]"))
         self.plot.set_curves(
             [
-                Curve(
+                PlotCurve(
                     tr(shapes),
                     colour,
                     tuple(x for x, _, kind in points if kind == shapes),

@@ -9,7 +9,7 @@ from regolith_studio.dem.evaluation.section import Section
 from regolith_studio.dem.pile import Pile
 from regolith_studio.studies.repose_figures import framed
 from regolith_studio.ui.translation import mark, tr
-from regolith_studio.ui.widgets.plot import Numbers, Plot
+from regolith_studio.ui.widgets.plots.base import Numbers, Plot
 
 MILLIMETRE = 1e3
 LEFT, RIGHT, BOTH = "#0072b2", "#e69f00", "#009e73"

@@ -22,12 +22,12 @@ from regolith_studio.dem.evaluation.settings import EvaluationSettings
 from regolith_studio.errors import InputError
 from regolith_studio.jobs.repose import ReposeOrder
 from regolith_studio.ui.translation import mark, tr
-from regolith_studio.ui.widgets.choice_box import ElidedBox
 from regolith_studio.ui.widgets.collapsible import Collapsible
+from regolith_studio.ui.widgets.combo_box import ElidedComboBox
+from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
+from regolith_studio.ui.widgets.forms import SettingsForm
 from regolith_studio.ui.widgets.labels import ElidedLabel, heading, remark
-from regolith_studio.ui.widgets.preset_form import PresetForm
-from regolith_studio.ui.widgets.settings_form import SettingsForm
-from regolith_studio.ui.widgets.steady_texts import SteadyTexts
+from regolith_studio.ui.widgets.presets import PresetForm
 
 PRESETS = {mark("Teaching"): 300, mark("Usual"): 1000, mark("Fine"): 5000}
 SHAPES = {mark("The dataset's polyhedra"): "polyhedra", mark("Spheres of the same volumes"): "spheres"}
@@ -209,7 +209,7 @@ class SetupPanel(QWidget):
         form.addRow(tr("Gravity of"), self.gravity)
         column.addLayout(form)
         column.addWidget(self.run)
-        column.addWidget(SteadyTexts((self.problem, self.told), LINES, MOST_LINES))
+        column.addWidget(FixedHeightText((self.problem, self.told), LINES, MOST_LINES))
         column.addWidget(Collapsible(tr("Test (Table 2)"), self.test))
         column.addWidget(Collapsible(tr("Contact (Table 1)"), self.contact))
         column.addWidget(Collapsible(tr("Evaluation (section 3.3)"), self.evaluation))
@@ -268,7 +268,7 @@ def _button(text: str, name: str, tip: str) -> QPushButton:
 
 
 def _choice(entries: Mapping[str, str], name: str, spoken: str) -> QComboBox:
-    box = ElidedBox()
+    box = ElidedComboBox()
     box.setObjectName(name)
     box.setAccessibleName(spoken)
     box.setMinimumContentsLength(10)

@@ -25,8 +25,8 @@ from regolith_studio.jobs.repose_study import SHAPE_KEYS, values_in
 from regolith_studio.studies.repose import ReposeStudy, ReposeStudyRun
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import mark, tr
-from regolith_studio.ui.widgets.curve_plot import Curve, CurvePlot
 from regolith_studio.ui.widgets.labels import remark
+from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 
 VARIED: Mapping[str, tuple[str, str]] = {
     "static_friction": (mark("Static friction"), "0.2, 0.4, 0.8"),
@@ -157,8 +157,8 @@ class StudyPanel(QWidget):
         theme = self.plot.theme
         self.plot.set_curves(
             [
-                Curve(tr("mean"), theme.fit, *_columns(means), line=numeric),
-                Curve("run", theme.polyhedron, *_columns(found), markers=True, line=False),
+                PlotCurve(tr("mean"), theme.fit, *_columns(means), line=numeric),
+                PlotCurve("run", theme.polyhedron, *_columns(found), markers=True, line=False),
             ]
             if found
             else []

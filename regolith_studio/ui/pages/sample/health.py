@@ -25,9 +25,9 @@ from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import health_sentences
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.translation.sentences import retold
-from regolith_studio.ui.widgets.labels import WholeLabel
+from regolith_studio.ui.widgets.labels import WrappedLabel
 from regolith_studio.ui.widgets.number_text import short_number
-from regolith_studio.ui.widgets.table import LetterRows
+from regolith_studio.ui.widgets.table import FontRowHeight
 
 FINDINGS = (
     ("bodies", mark("Bodies"), mark("Parts that hang together; a particle has one")),
@@ -73,7 +73,7 @@ class HealthPanel(QWidget):
         super().__init__()
         self.setObjectName("health_report")
         self.table = self._make_table()
-        self.words = WholeLabel()
+        self.words = WrappedLabel()
         self.words.setObjectName("health_words")
         self.words.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
         self.where = QCheckBox(tr("Show where"))
@@ -123,7 +123,7 @@ class HealthPanel(QWidget):
         table.setSelectionMode(QAbstractItemView.SelectionMode.NoSelection)
         table.setShowGrid(False)
         table.verticalHeader().hide()
-        LetterRows(table, 5)
+        FontRowHeight(table, 5)
         header = table.horizontalHeader()
         header.setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
         header.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)

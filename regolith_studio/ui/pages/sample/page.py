@@ -28,8 +28,8 @@ from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.camera_link import CameraLink
 from regolith_studio.ui.views.factory import make_view
 from regolith_studio.ui.views.view_frame import ViewFrame
+from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
 from regolith_studio.ui.widgets.labels import heading, remark
-from regolith_studio.ui.widgets.steady_texts import SteadyTexts
 
 
 class SamplePage(PageWidget):
@@ -131,7 +131,7 @@ class SamplePage(PageWidget):
         left = QWidget()
         column = QVBoxLayout(left)
         column.setContentsMargins(10, 10, 2, 8)
-        for widget in (self.title, self.filter, SteadyTexts((self.verdict,), 1)):
+        for widget in (self.title, self.filter, FixedHeightText((self.verdict,), 1)):
             column.addWidget(widget)
         self.reports = tabs(
             "sample_tabs", [(self.health, tr("Health of the mesh")), (self.statistics, tr("Statistics"))]

@@ -16,9 +16,8 @@ from regolith_studio.session.results import ParticleEntry
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import mark, tr, tr_count
 from regolith_studio.ui.widgets.labels import rich_symbol
-from regolith_studio.ui.widgets.log_axes import set_log_mode
-from regolith_studio.ui.widgets.plot import Plot
-from regolith_studio.ui.widgets.two_parts import TwoParts
+from regolith_studio.ui.widgets.plots.base import Plot
+from regolith_studio.ui.widgets.wrapping_row import WrappingRow
 
 ZINGG = ("flatness", "elongation")
 SYMBOLS = ("o", "s", "t", "d", "star", "p", "h", "+")
@@ -78,7 +77,7 @@ class ScatterPanel(QWidget):
 
     def _arrange(self) -> None:
         against = QLabel(tr("against"))
-        row = TwoParts((self.up, against, self.across), (self.log, self.zingg), margins=(8, 6, 8, 0))
+        row = WrappingRow((self.up, against, self.across), (self.log, self.zingg), margins=(8, 6, 8, 0))
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(row)
@@ -99,7 +98,7 @@ class ScatterPanel(QWidget):
         x, y = self.axes()
         self.plot.set_labels(_axis_label(x), _axis_label(y))
         logarithmic = self.log.isChecked()
-        set_log_mode(canvas, x=logarithmic, y=logarithmic)
+        canvas.setLogMode(x=logarithmic, y=logarithmic)
         if (x, y) == ZINGG:
             self._draw_zingg()
         groups = list(dict.fromkeys(entry.particle.group for entry in self._entries))

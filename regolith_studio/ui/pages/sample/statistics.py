@@ -23,7 +23,7 @@ from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import UNITS, has_weights, statistics_table
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.number_text import short_number
-from regolith_studio.ui.widgets.table import LetterRows
+from regolith_studio.ui.widgets.table import FontRowHeight
 
 _WEIGHTING_LABELS = {"number": mark("each counts once"), "volume": mark("weighted by volume")}
 _SHORT = {
@@ -71,7 +71,7 @@ class StatisticsPanel(QWidget):
         self.table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
         self.table.setShowGrid(False)
         self.table.verticalHeader().hide()
-        LetterRows(self.table, 8)
+        FontRowHeight(self.table, 8)
         self.table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
         row_ = QHBoxLayout()
         row_.addWidget(QLabel(tr("Statistics of")))

@@ -14,10 +14,14 @@ from regolith_studio.session.sample_table import Filter, form_of, has_weights, h
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.translation.sentences import retold
-from regolith_studio.ui.widgets.entry_rows import RIGHT, UNSORTED, EntryRows
-from regolith_studio.ui.widgets.health_icons import health_pixmaps
 from regolith_studio.ui.widgets.labels import plain_symbol
 from regolith_studio.ui.widgets.number_text import short_number
+from regolith_studio.ui.widgets.particle_table_model import (
+    RIGHT,
+    UNSORTED,
+    ParticleTableModel,
+    health_pixmaps,
+)
 from regolith_studio.ui.widgets.table import ListTable
 
 _UNITS = {0: "", 1: " [µm]", 2: " [µm²]", 3: " [µm³]", 5: " [µm⁵]"}
@@ -93,7 +97,7 @@ class _Formatted(_Number):
         return short_number(entry.descriptors[self._key])
 
 
-class SampleModel(EntryRows):
+class SampleModel(ParticleTableModel):
     """The entries as Qt asks for them."""
 
     def __init__(self, parent: QWidget) -> None:

@@ -9,8 +9,7 @@ from PySide6.QtCore import QPointF, Signal
 from regolith_studio.imaging.segmentation.thresholding import Histogram
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr
-from regolith_studio.ui.widgets.log_axes import set_log_mode
-from regolith_studio.ui.widgets.plot import Numbers, Plot
+from regolith_studio.ui.widgets.plots.base import Numbers, Plot
 
 
 class HistogramPlot(Plot):
@@ -31,7 +30,7 @@ class HistogramPlot(Plot):
             tr("Voxels [%]"),
             tr("Open a volume of grey values to see its histogram."),
         )
-        set_log_mode(self.canvas, x=False, y=True)
+        self.canvas.setLogMode(x=False, y=True)
         self.canvas.getAxis("left").logTickStrings = _plain_powers
         self.canvas.addItem(self.line, ignoreBounds=True)
         self.canvas.setAccessibleName(tr("Histogram of grey values with the threshold"))

@@ -7,8 +7,8 @@ from regolith_studio.imaging.segmentation.segment import Segmentation
 from regolith_studio.jobs.scanning import Scan
 from regolith_studio.ui.translation import tr, tr_count
 from regolith_studio.ui.translation.sentences import retold
-from regolith_studio.ui.widgets.labels import WholeLabel, heading
-from regolith_studio.ui.widgets.steady_texts import SteadyTexts
+from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
+from regolith_studio.ui.widgets.labels import WrappedLabel, heading
 
 _DENSEST, _LARGEST = 0.7, 0.4
 """Shares of the voxels that the grains of no packing have, and that no single grain has."""
@@ -55,7 +55,7 @@ class StepsPanel(QWidget):
             for button in buttons:
                 row.addWidget(button)
             layout.addLayout(row)
-            layout.addWidget(SteadyTexts((words,), lines, most))
+            layout.addWidget(FixedHeightText((words,), lines, most))
         self.browse.clicked.connect(self.openRequested)
         self.sample.clicked.connect(self.sampleRequested)
         self.search.clicked.connect(self.findRequested)
@@ -145,9 +145,9 @@ def _about(scan: Scan | None) -> str:
     )
 
 
-def _words() -> WholeLabel:
+def _words() -> WrappedLabel:
     """What a step has come to; all its lines are seen, however low the window is."""
-    label = WholeLabel()
+    label = WrappedLabel()
     label.setProperty("role", "remark")
     return label
 

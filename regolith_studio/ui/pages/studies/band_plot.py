@@ -8,9 +8,9 @@ import pyqtgraph as pg
 from PySide6.QtCore import QPointF
 
 from regolith_studio.ui.translation import tr
-from regolith_studio.ui.widgets.curve_plot import REACH, Curve, CurvePlot
-from regolith_studio.ui.widgets.plot import Numbers
-from regolith_studio.ui.widgets.plot_files import plain_text
+from regolith_studio.ui.widgets.plots.base import Numbers
+from regolith_studio.ui.widgets.plots.curves import HOVER_DISTANCE, CurvePlot, PlotCurve
+from regolith_studio.ui.widgets.plots.export import plain_text
 
 Values = tuple[float, ...]
 
@@ -57,10 +57,10 @@ class BandPlot(CurvePlot):
         """What is drawn."""
         return self._series
 
-    def set_series(self, series: Sequence[Series], behind: Sequence[Curve] = ()) -> None:
+    def set_series(self, series: Sequence[Series], behind: Sequence[PlotCurve] = ()) -> None:
         """Draw these instead, and other curves behind them."""
         self._series = tuple(series)
-        points = [Curve(s.label, s.colour, s.x, s.y, markers=True, line=s.line) for s in self._series]
+        points = [PlotCurve(s.label, s.colour, s.x, s.y, markers=True, line=s.line) for s in self._series]
         self.set_curves([*behind, *points])
 
     def numbers(self) -> Numbers:
@@ -85,7 +85,7 @@ class BandPlot(CurvePlot):
 
     def value_at(self, place: QPointF) -> str:
         """The nearest point, its values and their intervals, in words; empty if it is far."""
-        best, words = REACH, ""
+        best, words = HOVER_DISTANCE, ""
         for s in self._series:
             for number, (x, y) in enumerate(zip(s.x, s.y, strict=True)):
                 seen = self.scene_place(x, y)

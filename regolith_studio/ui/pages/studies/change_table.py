@@ -11,7 +11,7 @@ from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.heat_table import keep_legible, numbers_table, remark_in_the_middle
-from regolith_studio.ui.widgets.table import LetterRows
+from regolith_studio.ui.widgets.table import FontRowHeight
 
 
 class ChangeTable(QWidget):
@@ -24,7 +24,7 @@ class ChangeTable(QWidget):
         self.table = numbers_table(tr("Changes of errors in percentage points"))
         self.table.setTextElideMode(Qt.TextElideMode.ElideNone)
         self.table.setWordWrap(False)
-        LetterRows(self.table, 10)
+        FontRowHeight(self.table, 10)
         self._stack = QStackedLayout(self)
         self._stack.addWidget(remark_in_the_middle(placeholder))
         self._stack.addWidget(self.table)

@@ -12,7 +12,7 @@ from regolith_studio.session.variations import loss_names
 from regolith_studio.studies.loss_rows import ALONE, PAPER_ROWS
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.translation.sentences import retold
-from regolith_studio.ui.widgets.choice_box import ChoiceBox
+from regolith_studio.ui.widgets.combo_box import ChoiceBox
 
 ARROW = "  ▾"
 BOXES = {"exact": mark("exact minimum volume"), "trimesh": mark("trimesh's heuristic (paper)")}

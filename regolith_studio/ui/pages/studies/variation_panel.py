@@ -16,8 +16,8 @@ from regolith_studio.ui.pages.studies.change_table import ChangeTable
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import mark, tr, tr_count
 from regolith_studio.ui.translation.sentences import retold
-from regolith_studio.ui.widgets.curve_plot import Curve
 from regolith_studio.ui.widgets.labels import plain_symbol, rich_symbol
+from regolith_studio.ui.widgets.plots.curves import PlotCurve
 from regolith_studio.ui.widgets.study_frame import StudyFrame
 
 OVERLAP = "Jaccard"
@@ -85,7 +85,7 @@ class TradeoffPlot(BandPlot):
         y = 100 * descriptor_error(study.rmsre)
         low, high = 100 * study.band_of(descriptor_error(study.resampled))
         front = list(efficient(study))
-        line = Curve(
+        line = PlotCurve(
             tr("none is better in both"), self.theme.muted, tuple(x[front]), tuple(y[front]), dash=True
         )
         series = [

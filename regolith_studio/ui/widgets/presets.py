@@ -1,16 +1,22 @@
-"""A list of presets with a mark where values have moved since, a way back, and own presets."""
+"""Presets: a list that marks modified values, resets them and saves own ones, and a form with such a list."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from PySide6.QtCore import QEvent, QSignalBlocker, Qt, Signal
 from PySide6.QtGui import QAction
-from PySide6.QtWidgets import QInputDialog, QMenu, QPushButton, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFormLayout, QInputDialog, QMenu, QPushButton, QToolButton, QVBoxLayout, QWidget
 
+from regolith_studio.errors import InputError
+from regolith_studio.session.own_presets import OwnPresets
 from regolith_studio.ui.translation import mark, tr
-from regolith_studio.ui.widgets.choice_box import ElidedBox, FoldingRow
+from regolith_studio.ui.widgets.combo_box import ComboBoxRow, ElidedComboBox
+from regolith_studio.ui.widgets.forms import ParameterForm
 
 MODIFIED = mark("{preset} (modified)")
+SHIPPED = "paper"
+"""Key of the preset with the values of the paper."""
 
 
 @dataclass(frozen=True)
@@ -20,7 +26,7 @@ class PresetEntry:
     Parameters
     ----------
     key
-        That is told; `label` is shown, `tip` when the mouse rests.
+        Identifies the preset in signals; `label` is displayed, `tip` is its tool tip.
     own
         Whether the user has saved it, and may delete it.
     """
@@ -32,7 +38,7 @@ class PresetEntry:
 
 
 class PresetBar(QWidget):
-    """Tells what is asked for; its owner keeps values and presets.
+    """Shows presets and emits what the user requests; its owner keeps values and presets.
 
     Parameters
     ----------
@@ -50,7 +56,7 @@ class PresetBar(QWidget):
     def __init__(self, name: str, accessible: str) -> None:
         super().__init__()
         self._entries: tuple[PresetEntry, ...] = ()
-        self.box = ElidedBox(Qt.TextElideMode.ElideMiddle)  # the mark at the end must be seen
+        self.box = ElidedComboBox(Qt.TextElideMode.ElideMiddle)  # the mark at the end must be seen
         self.box.setObjectName(name)
         self.box.setAccessibleName(accessible)
         self.reset = QPushButton(tr("Reset"))
@@ -63,7 +69,7 @@ class PresetBar(QWidget):
         self.more.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
         self.more.setMenu(self._menu())
         self._make_room()
-        self._row = FoldingRow(self.box, (self.reset, self.more))
+        self._row = ComboBoxRow(self.box, (self.reset, self.more))
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(self._row)
@@ -128,3 +134,94 @@ class PresetBar(QWidget):
         self.delete.triggered.connect(lambda: self.deleteRequested.emit(self.current()))
         menu.addActions([self.save, self.delete])
         return menu
+
+
+class PresetForm(ParameterForm):
+    """A :class:`ParameterForm` with a :class:`PresetBar`; forms of one dataclass share their presets.
+
+    Parameters
+    ----------
+    kind
+        The dataclass; its defaults are the shipped preset.
+    name
+        Begins the object names of the editors.
+    label
+        Of the shipped preset.
+    """
+
+    def __init__(self, kind: type[Any], name: str, label: str) -> None:
+        self._own = OwnPresets(kind.__name__.lower())
+        self._chosen = SHIPPED
+        self._known: dict[str, dict[str, Any]] = {SHIPPED: {}}
+        self._label = label
+        self.bar = PresetBar(f"{name}_preset", tr("Preset of {label}", label=label))
+        self.bar.reset.setObjectName(f"{name}_preset_reset")
+        super().__init__(kind, name)
+        layout = self.layout()
+        assert isinstance(layout, QFormLayout), "the form is one"
+        layout.insertRow(0, self.bar)
+        self.bar.chosen.connect(self._take)
+        self.bar.resetRequested.connect(lambda: self._take(self._chosen))
+        self.bar.saveRequested.connect(self.save_as)
+        self.bar.deleteRequested.connect(self.delete)
+        self.valueChanged.connect(self._show_mark)
+        self._list()
+
+    def setValue(self, value: Any) -> None:
+        """Show these values; announces nothing."""
+        super().setValue(value)
+        self._show_mark()
+
+    def is_modified(self) -> bool:
+        """Whether the values are no longer those of the preset."""
+        return self.changes() != self._known[self._chosen]
+
+    def save_as(self, name: str) -> None:
+        """Keep the present values as an own preset.
+
+        Raises
+        ------
+        RegolithError
+            If the name cannot be taken or the file cannot be written.
+        """
+        self._own.save(name, self.changes())
+        self._list()
+        self._chosen = f"own:{name}"
+        self._show_mark()
+
+    def delete(self, key: str) -> None:
+        """Forget an own preset; the values stay as they are."""
+        self._own.remove(key.removeprefix("own:"))
+        self._chosen = SHIPPED
+        self._list()
+
+    def _list(self) -> None:
+        kept = {f"own:{name}": values for name, values in self._own.all().items()}
+        self._known = {SHIPPED: {}} | {
+            key: dict(values) for key, values in kept.items() if self._fits(values)
+        }
+        tip = tr("As the paper gives them; a star where it gives none")
+        entries = [PresetEntry(SHIPPED, self._label, tip)]
+        entries += [
+            PresetEntry(key, key.removeprefix("own:"), tr("Own preset"), own=True)
+            for key in self._known
+            if key != SHIPPED
+        ]
+        self.bar.set_entries(entries)
+        self._show_mark()
+
+    def _fits(self, values: Mapping[str, Any]) -> bool:
+        """Whether this version knows and allows every value."""
+        try:
+            self._kind(**{name: float(value) for name, value in values.items()})
+        except (InputError, TypeError, ValueError):
+            return False
+        return True
+
+    def _take(self, key: str) -> None:
+        self._chosen = key
+        self.restore(self._known[key])
+        self.valueChanged.emit()
+
+    def _show_mark(self) -> None:
+        self.bar.show_state(self._chosen, self.is_modified())

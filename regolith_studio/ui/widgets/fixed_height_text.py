@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QLabel, QScrollArea, QSizePolicy, QVBoxLayout, QWi
 from regolith_studio.ui.translation import tr
 
 
-class SteadyTexts(QScrollArea):
+class FixedHeightText(QScrollArea):
     """Texts in the room of so many lines, whatever they say: no control moves when they change.
 
     More lines than that are scrolled to, by the mouse or, with the focus, by the arrow keys.
@@ -50,7 +50,7 @@ class SteadyTexts(QScrollArea):
         """Height of one line."""
         return self.fontMetrics().lineSpacing()
 
-    def take_spare(self, lines: int) -> int:
+    def take_spare_lines(self, lines: int) -> int:
         """Show more lines than usual, if that many are of use; returns how many are taken."""
         taken = max(0, min(lines, self._most - self._lines))
         if taken != self._spare:

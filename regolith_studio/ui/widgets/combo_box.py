@@ -20,7 +20,7 @@ MARGIN = 2
 """Pixels that styles leave free before a label."""
 
 
-class ElidedBox(QComboBox):
+class ElidedComboBox(QComboBox):
     """May be narrower than its labels: dots stand for what has no room, in the middle or at the end."""
 
     def __init__(self, elide: Qt.TextElideMode = Qt.TextElideMode.ElideRight) -> None:
@@ -32,16 +32,14 @@ class ElidedBox(QComboBox):
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: ARG002
         option = QStyleOptionComboBox()
         self.initStyleOption(option)
-        option.currentText = self.fontMetrics().elidedText(
-            self.currentText(), self._elide, letters_room(self)
-        )
+        option.currentText = self.fontMetrics().elidedText(self.currentText(), self._elide, text_room(self))
         painter = QStylePainter(self)
         painter.drawComplexControl(QStyle.ComplexControl.CC_ComboBox, option)
         painter.drawControl(QStyle.ControlElement.CE_ComboBoxLabel, option)
         painter.end()
 
 
-class ChoiceBox(ElidedBox):
+class ChoiceBox(ElidedComboBox):
     """One of `entries`, which map keys to labels that are translated; may be narrower than the longest."""
 
     def __init__(self, name: str, accessible: str, entries: Mapping[str, str]) -> None:
@@ -56,7 +54,7 @@ class ChoiceBox(ElidedBox):
         """Pixels in which no label ends in dots."""
         labels = (self.itemText(row) for row in range(self.count()))
         widest = max(map(self.fontMetrics().horizontalAdvance, labels), default=0)
-        return widest + self.width() - letters_room(self)
+        return widest + self.width() - text_room(self)
 
     def value(self) -> str:
         """The key that is chosen."""
@@ -69,7 +67,7 @@ class ChoiceBox(ElidedBox):
             self.setCurrentIndex(self.findData(key))
 
 
-class FoldingRow(QWidget):
+class ComboBoxRow(QWidget):
     """A box with buttons behind it; they stand below it where the box would have no room for its labels.
 
     Parameters
@@ -100,7 +98,7 @@ class FoldingRow(QWidget):
         widest = max(map(metrics.horizontalAdvance, labels), default=0)
         wide = (min(button.sizeHint().width(), button.maximumWidth()) for button in self._buttons)
         behind = sum(wide) + len(self._buttons) * self._grid.spacing()
-        self._needed = widest + self._box.width() - letters_room(self._box) + behind
+        self._needed = widest + self._box.width() - text_room(self._box) + behind
         self._place()
 
     def resizeEvent(self, event: QResizeEvent) -> None:
@@ -122,7 +120,7 @@ class FoldingRow(QWidget):
                 self._grid.addWidget(button, int(folded), column)
 
 
-def letters_room(box: QComboBox) -> int:
+def text_room(box: QComboBox) -> int:
     """Pixels that a box has for its label."""
     option = QStyleOptionComboBox()
     box.initStyleOption(option)

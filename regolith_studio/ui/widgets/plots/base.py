@@ -21,10 +21,9 @@ from PySide6.QtWidgets import (
 from regolith_studio.errors import RegolithError
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
-from regolith_studio.ui.widgets.axes import CountAxis, FittedAxis
-from regolith_studio.ui.widgets.canvas import PlotCanvas
 from regolith_studio.ui.widgets.labels import unbroken
-from regolith_studio.ui.widgets.plot_files import DRAWN, plain_text, save_figure, save_numbers
+from regolith_studio.ui.widgets.plots.canvas import CountAxis, FittedAxis, PlotCanvas
+from regolith_studio.ui.widgets.plots.export import DRAWN, plain_text, save_figure, save_numbers
 
 Numbers = tuple[tuple[str, ...], list[tuple[str | float, ...]]]
 """Names of columns, and rows."""
@@ -135,7 +134,7 @@ class Plot(QWidget):
         font = QFont(self.font())
         font.setPointSizeF(font.pointSizeF() - 0.5)
         for side, text in zip(("bottom", "left"), self._labels, strict=True):
-            self.axes[side].name_it(text, self.theme.muted, font)
+            self.axes[side].set_label_text(text, self.theme.muted, font)
 
     def small_font(self) -> QFont:
         """Of the numbers at the axes."""
@@ -167,7 +166,7 @@ class Plot(QWidget):
         self._letters = self.font().pointSizeF()
         small = self.small_font()
         for axis in self.axes.values():
-            axis.set_tick_letters(small)
+            axis.set_tick_font(small)
         metrics = QFontMetrics(small)
         self.axes["left"].setWidth(metrics.horizontalAdvance("00.0000") + metrics.height())
         self.set_labels(*self._labels)

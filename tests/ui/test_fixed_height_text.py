@@ -20,7 +20,7 @@ from regolith_studio.session.plan import Kind
 from regolith_studio.session.session import Session
 from regolith_studio.ui.layout import scrolled_column
 from regolith_studio.ui.main_window import MainWindow
-from regolith_studio.ui.widgets.steady_texts import SteadyTexts
+from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
 
 KINDS = (QAbstractButton, QAbstractSpinBox, QComboBox, QLineEdit, QSlider)
 SECONDS = 170.0
@@ -170,7 +170,7 @@ def test_that_no_control_of_the_lecture_moves_with_its_sentences(window, watched
 def test_that_long_texts_are_scrolled_by_keys_and_short_ones_are_passed_by(shown, app):
     label = QLabel("short")
     label.setWordWrap(True)
-    texts = SteadyTexts((label,), 3)
+    texts = FixedHeightText((label,), 3)
     texts.resize(200, texts.sizeHint().height())
     shown(texts)
     assert texts.focusPolicy() == Qt.FocusPolicy.NoFocus
@@ -189,7 +189,7 @@ def test_that_long_texts_are_scrolled_by_keys_and_short_ones_are_passed_by(shown
 
 def test_that_a_high_column_shows_more_lines_and_a_low_one_no_fewer_than_usual(shown, app):
     label = QLabel("one\ntwo")
-    texts = SteadyTexts((label,), 2, 5)
+    texts = FixedHeightText((label,), 2, 5)
     column = scrolled_column([texts])
     shown(column)
     line = texts.fontMetrics().lineSpacing()

@@ -9,13 +9,13 @@ from PySide6.QtTest import QAbstractItemModelTester
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.session.results import ParticleEntry
-from regolith_studio.ui.widgets.entry_rows import UNSORTED, EntryRows
+from regolith_studio.ui.widgets.particle_table_model import UNSORTED, ParticleTableModel
 
 FALLING = Qt.SortOrder.DescendingOrder
 MESH = icosphere(1)
 
 
-class Rows(EntryRows):
+class Rows(ParticleTableModel):
     def cell(self, entry, column, role):
         return str(self.value(entry, column)) if role == Qt.ItemDataRole.DisplayRole else None
 

@@ -10,7 +10,7 @@ from PySide6.QtCore import QPointF
 from PySide6.QtGui import QColor, QFont, QFontMetrics, QResizeEvent
 
 from regolith_studio.ui.translation import tr
-from regolith_studio.ui.widgets.plot import Numbers, Plot
+from regolith_studio.ui.widgets.plots.base import Numbers, Plot
 
 GAP = 3
 """Pixels between the names of two categories."""

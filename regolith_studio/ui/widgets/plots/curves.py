@@ -1,4 +1,4 @@
-"""Curves over a common axis."""
+"""Line plots: curves with symbols over common axes, with a tool tip at each point."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -6,20 +6,83 @@ from dataclasses import dataclass
 import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QPointF
+from PySide6.QtGui import QColor
 from PySide6.QtWidgets import QWidget
 
+from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.ui.translation import tr
-from regolith_studio.ui.widgets.curve_items import CurveItems
-from regolith_studio.ui.widgets.log_axes import set_log_mode
-from regolith_studio.ui.widgets.plot import Numbers, Plot
-from regolith_studio.ui.widgets.plot_files import plain_text
+from regolith_studio.ui.widgets.plots.base import Numbers, Plot
+from regolith_studio.ui.widgets.plots.canvas import PlotCanvas
+from regolith_studio.ui.widgets.plots.export import plain_text
 
-REACH = 24.0
-"""Pixels from a point at which its values are still told."""
+SYMBOL = 5
+"""Diameter of a symbol in pixels."""
+HOVER_DISTANCE = 24.0
+"""Pixels from a point within which the tool tip shows its values."""
+
+
+class CurveItems:
+    """Graphics items of a curve: a line, and a scatter item only for curves with symbols.
+
+    :class:`pyqtgraph.PlotDataItem` always creates both, at several times the cost.
+
+    Parameters
+    ----------
+    log_y
+        Whether heights are drawn as their logarithms.
+    """
+
+    def __init__(self, canvas: PlotCanvas, log_y: bool) -> None:
+        self._canvas, self._log_y = canvas, log_y
+        self.line = pg.PlotCurveItem(antialias=True, connect="finite")
+        self.points: pg.ScatterPlotItem | None = None
+        canvas.addItem(self.line)
+
+    def draw(self, x: Sequence[float], y: Sequence[float], pen: object, symbols: str = "") -> None:
+        """Draw these points instead.
+
+        Parameters
+        ----------
+        x, y
+            A line is broken where one of them is not finite, or has no place on the axes.
+        pen
+            Of the line; ``None`` for no line.
+        symbols
+            Their colour; none where it is empty.
+        """
+        across, up = self._places(x, y)
+        self.line.setData(across, up, pen=pen)
+        self.line.setVisible(pen is not None)
+        if not symbols:
+            self._forget_points()
+            return
+        if self.points is None:
+            self.points = pg.ScatterPlotItem(size=SYMBOL, pen=None, antialias=True)
+            self._canvas.addItem(self.points)
+        seen = np.isfinite(across) & np.isfinite(up)
+        self.points.setData(across[seen], up[seen], brush=QColor(symbols))
+
+    def remove(self) -> None:
+        """Draw the curve no longer."""
+        self._canvas.removeItem(self.line)
+        self._forget_points()
+
+    def _forget_points(self) -> None:
+        if self.points is not None:
+            self._canvas.removeItem(self.points)
+            self.points = None
+
+    def _places(self, x: Sequence[float], y: Sequence[float]) -> tuple[FloatArray, FloatArray]:
+        """On the axes; none at all where no point has one: an axis would follow nothing."""
+        across, up = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
+        if self._log_y:
+            up = np.log10(np.where(up > 0.0, up, np.nan))
+        some = bool((np.isfinite(across) & np.isfinite(up)).any())
+        return (across, up) if some else (across[:0], up[:0])
 
 
 @dataclass(frozen=True)
-class Curve:
+class PlotCurve:
     """One line through points.
 
     Parameters
@@ -64,21 +127,21 @@ class CurvePlot(Plot):
     def __init__(
         self, x: str, y: str, placeholder: str, log_y: bool = False, parent: QWidget | None = None
     ) -> None:
-        self._curves: tuple[Curve, ...] = ()
-        self._drawn: list[tuple[Curve, CurveItems]] = []
+        self._curves: tuple[PlotCurve, ...] = ()
+        self._drawn: list[tuple[PlotCurve, CurveItems]] = []
         self._marker: float | None = None
         self._line: pg.InfiniteLine | None = None
         self._log_y = log_y
         super().__init__(x, y, placeholder, parent)
-        set_log_mode(self.canvas, x=False, y=log_y)
+        self.canvas.setLogMode(x=False, y=log_y)
         self.canvas.getAxis("left").logTickStrings = _plain_decades
 
     @property
-    def curves(self) -> tuple[Curve, ...]:
+    def curves(self) -> tuple[PlotCurve, ...]:
         """What is drawn."""
         return self._curves
 
-    def set_curves(self, curves: Sequence[Curve]) -> None:
+    def set_curves(self, curves: Sequence[PlotCurve]) -> None:
         """Draw these instead."""
         self._curves = tuple(curves)
         self.set_empty(not any(curve.x for curve in curves))
@@ -117,7 +180,7 @@ class CurvePlot(Plot):
     def value_at(self, place: QPointF) -> str:
         """The nearest point of a curve, in words; empty if it is far."""
         view = self.canvas.getViewBox()
-        best, words = REACH, ""
+        best, words = HOVER_DISTANCE, ""
         for curve in self._curves:
             x, y = np.asarray(curve.x, dtype=float), np.asarray(curve.y, dtype=float)
             if not len(x):

@@ -1,35 +1,46 @@
-"""Particles as rows of a table, some of them and in some order."""
+"""Item model with a row per particle, filtered and sorted, and the icons of its column of health."""
 
 from collections.abc import Callable, Sequence
 from typing import Any
 
 from PySide6.QtCore import QAbstractTableModel, QModelIndex, QObject, QPersistentModelIndex, Qt
+from PySide6.QtGui import QPixmap
 
 from regolith_studio.session.results import ParticleEntry
+from regolith_studio.ui.icons import pixmap
+from regolith_studio.ui.theme import Theme
 
 Index = QModelIndex | QPersistentModelIndex
 NOWHERE = QModelIndex()
 UNSORTED = -1
 RIGHT = int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
-_TOLD = frozenset(
-    map(
-        int,
-        (
-            Qt.ItemDataRole.DisplayRole,
-            Qt.ItemDataRole.DecorationRole,
-            Qt.ItemDataRole.ToolTipRole,
-            Qt.ItemDataRole.TextAlignmentRole,
-        ),
+HEALTH_ICONS = {
+    "sound": "sound",
+    "coarse": "doubtful",
+    "mended": "doubtful",
+    "doubtful": "doubtful",
+    "unsound": "unsound",
+    "unknown": "unknown",
+}
+"""Icon name for each value of :func:`regolith_studio.session.sample_table.health_word`."""
+ICON_SIZE = 15
+_ROLES = frozenset(
+    int(role)
+    for role in (
+        Qt.ItemDataRole.DisplayRole,
+        Qt.ItemDataRole.DecorationRole,
+        Qt.ItemDataRole.ToolTipRole,
+        Qt.ItemDataRole.TextAlignmentRole,
     )
 )
-"""What tables tell of a cell; they are asked for four more things at each paint."""
+"""Roles that have data; views ask for four more at each paint."""
 
 
-class EntryRows(QAbstractTableModel):
-    """Sorts and filters by itself; subclasses say what the columns are.
+class ParticleTableModel(QAbstractTableModel):
+    """Particles as rows, sorted and filtered; subclasses define the columns.
 
-    A proxy of Qt's before a model in Python asks three of its functions for each of the seven things that it
-    wants to know of a cell, at each paint, and sorts by asking for two values at a time.
+    Sorting and filtering is done here because a QSortFilterProxyModel calls three methods of a Python model
+    for each of seven roles of a cell at each paint, and two for each comparison.
     """
 
     def __init__(self, n_columns: int, parent: QObject) -> None:
@@ -67,16 +78,16 @@ class EntryRows(QAbstractTableModel):
         self._move(self._arranged())
 
     def data(self, index: Index, role: int = Qt.ItemDataRole.DisplayRole) -> Any:
-        if role not in _TOLD:
+        if role not in _ROLES:
             return None
         return self.cell(self.rows[index.row()], index.column(), role)
 
     def cell(self, entry: ParticleEntry, column: int, role: int) -> Any:
-        """What is told of a cell: its words, picture, alignment or tool tip; nothing where there is none."""
+        """Text, icon, alignment or tool tip of a cell, by role; ``None`` where it has none."""
         raise NotImplementedError
 
     def index(self, row: int, column: int, parent: Index = NOWHERE) -> QModelIndex:
-        """Qt's own asks how many rows and columns there are, for each cell that is painted or measured."""
+        """As Qt's, which calls `rowCount` and `columnCount` for each cell that is painted or measured."""
         there = 0 <= row < len(self.rows) and 0 <= column < self._n_columns and not parent.isValid()
         return self.createIndex(row, column) if there else QModelIndex()
 
@@ -99,7 +110,7 @@ class EntryRows(QAbstractTableModel):
         self.endResetModel()
 
     def _move(self, rows: tuple[ParticleEntry, ...]) -> None:
-        """The same particles in another order; what is chosen stays chosen."""
+        """List the same particles in another order; the selection is kept."""
         before = [entry.id for entry in self.rows]
         places = {entry.id: row for row, entry in enumerate(rows)}
         if before == list(places):
@@ -111,3 +122,14 @@ class EntryRows(QAbstractTableModel):
         new = [self.index(places[before[index.row()]], index.column()) for index in old]
         self.changePersistentIndexList(old, new)
         self.layoutChanged.emit()
+
+
+def health_pixmaps(theme: Theme) -> dict[str, QPixmap]:
+    """The icons in the colours of a theme, by value of health."""
+    colours = {
+        "sound": theme.good,
+        "doubtful": theme.doubtful,
+        "unsound": theme.bad,
+        "unknown": theme.muted,
+    }
+    return {word: pixmap(name, colours[name], ICON_SIZE) for word, name in HEALTH_ICONS.items()}

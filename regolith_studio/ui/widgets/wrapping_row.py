@@ -7,7 +7,7 @@ from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QBoxLayout, QComboBox, QHBoxLayout, QWidget
 
 
-class TwoParts(QWidget):
+class WrappingRow(QWidget):
     """Controls in a row, of which the last ones stand below the first ones where there is no room.
 
     Parameters

@@ -1,22 +1,36 @@
-"""What a plot is drawn on: a view box between two axes, without the menus that pyqtgraph's plots carry."""
+"""Canvas and axes of plots: a pyqtgraph view box without menus, labels that fit, logarithmic limits."""
 
+import html
 from collections.abc import Mapping
 from typing import Any
 
 import pyqtgraph as pg
 from PySide6.QtCore import Qt
+from PySide6.QtGui import QFont, QFontMetricsF, QResizeEvent
 from PySide6.QtWidgets import QGraphicsGridLayout, QSizePolicy
 
-MARGIN = 1.0
+from regolith_studio.ui.widgets.plots.export import plain_text
+
+CANVAS_MARGIN = 1.0
 """Pixels around box and axes."""
+MIN_LABEL_SCALE = 0.5
+"""An axis label shrinks to this share of its font size; a longer one is elided."""
+FONT_STEP = 0.5
+"""Points between two font sizes that are tried."""
+AXIS_LABEL_MARGIN = 8.0
+"""Pixels around the text of an axis label, both sides together; pyqtgraph adds a blank behind it."""
+DENSE_TICKS_HEIGHT = 14.0
+"""Font height in pixels up to which ticks have the density that pyqtgraph chooses."""
+MAX_DECADES = 300.0
+"""Limit of a logarithmic axis in powers of ten: pyqtgraph computes ten to the power of its ends."""
 _PLACES = {"bottom": (1, 1), "left": (0, 0)}
 _BOX = (0, 1)
 
 
 class PlotCanvas(pg.GraphicsView):  # type: ignore[misc]
-    """Items in a box with an axis at the left and one below; nothing answers to the mouse by itself.
+    """Items in a view box with an axis at the left and one below, without mouse interaction or menus.
 
-    Does what :class:`pyqtgraph.PlotWidget` would do, without the form of options that it makes for each plot.
+    Replaces :class:`pyqtgraph.PlotWidget`, which builds a form of options for each plot.
 
     Parameters
     ----------
@@ -41,7 +55,7 @@ class PlotCanvas(pg.GraphicsView):  # type: ignore[misc]
 
     def _arrange(self) -> None:
         grid = QGraphicsGridLayout()
-        grid.setContentsMargins(MARGIN, MARGIN, MARGIN, MARGIN)
+        grid.setContentsMargins(CANVAS_MARGIN, CANVAS_MARGIN, CANVAS_MARGIN, CANVAS_MARGIN)
         grid.setSpacing(0)
         grid.addItem(self._box, *_BOX)
         for side, place in _PLACES.items():
@@ -82,7 +96,10 @@ class PlotCanvas(pg.GraphicsView):  # type: ignore[misc]
         return curve
 
     def setLogMode(self, x: bool, y: bool) -> None:
-        """Make the axes logarithmic or linear, with all items that are there or come later."""
+        """Make the axes logarithmic or linear, with all present and later items.
+
+        A logarithmic axis cannot be dragged to where numbers overflow.
+        """
         if (x, y) == self._log:
             return
         self._log = (x, y)
@@ -91,6 +108,8 @@ class PlotCanvas(pg.GraphicsView):  # type: ignore[misc]
                 item.setLogMode(x, y)
         for axis in self._axes.values():
             axis.setLogMode(x, y)
+        right, top = MAX_DECADES if x else None, MAX_DECADES if y else None
+        self._box.setLimits(xMin=right and -right, xMax=right, yMin=top and -top, yMax=top)
         self._box.enableAutoRange()
 
     def setRange(self, *ranges: Any, **options: Any) -> None:
@@ -121,3 +140,70 @@ class PlotCanvas(pg.GraphicsView):  # type: ignore[misc]
     def setAspectLocked(self, locked: bool) -> None:
         """Whether lengths along x and y are drawn alike."""
         self._box.setAspectLocked(locked)
+
+
+class FittedAxis(pg.AxisItem):  # type: ignore[misc]
+    """An axis whose label fits its length: with a smaller font or elided where the axis is short."""
+
+    _label = ("", "", QFont())
+    _shown: tuple[str, float] | None = None
+
+    def __init__(self, orientation: str) -> None:
+        super().__init__(orientation)
+        self.autoSIPrefix = False
+
+    def set_label_text(self, text: str, colour: str, font: QFont) -> None:
+        """Label the axis with rich text in a colour, in this font where there is room."""
+        self._label, self._shown = (text, colour, font), None
+        self._fit()
+
+    def set_tick_font(self, font: QFont) -> None:
+        """Font of the tick labels; there are fewer of them if it is large."""
+        self.setTickFont(font)
+        self.setTickDensity(min(1.0, DENSE_TICKS_HEIGHT / QFontMetricsF(font).height()))
+
+    def resizeEvent(self, event: QResizeEvent | None = None) -> None:
+        self._fit()
+        super().resizeEvent(event)
+
+    def updateAutoSIPrefix(self) -> None:
+        """Disabled: pyqtgraph multiplies numbers below one by a thousand even if `autoSIPrefix` is off."""
+
+    def _fit(self) -> None:
+        text, colour, font = self._label
+        if not text:
+            return
+        rich, points = fit_text(text, font, self._length() - AXIS_LABEL_MARGIN)
+        if (rich, points) != self._shown:
+            self._shown = (rich, points)
+            self.setLabel(rich, color=colour, **{"font-size": f"{points:.1f}pt"})
+
+    def _length(self) -> float:
+        size = self.size()
+        return float(size.height() if self.orientation in ("left", "right") else size.width())
+
+
+class CountAxis(FittedAxis):
+    """An axis whose ticks lie at whole numbers while :attr:`whole` is set, and anywhere otherwise."""
+
+    whole = False
+
+    def tickSpacing(self, low: float, high: float, length: float) -> list[tuple[float, float]]:
+        """Spacings and offsets of major and minor ticks, none below one where only whole numbers exist."""
+        levels: list[tuple[float, float]] = super().tickSpacing(low, high, length)
+        if not (self.whole and levels):
+            return levels
+        return [level for level in levels if level[0] >= 1.0] or [(1.0, 0.0)]
+
+
+def fit_text(text: str, font: QFont, width: float) -> tuple[str, float]:
+    """Rich text and its size in points, so that it is at most `width` pixels wide if possible."""
+    plain, size = plain_text(text), font.pointSizeF()
+    smaller = QFont(font)
+    while (letters := QFontMetricsF(smaller)).horizontalAdvance(plain + " ") > width:
+        if smaller.pointSizeF() - FONT_STEP < MIN_LABEL_SCALE * size:
+            left = max(width - letters.horizontalAdvance(" "), 0.0)
+            dotted = letters.elidedText(plain, Qt.TextElideMode.ElideRight, left)
+            return html.escape(dotted), smaller.pointSizeF()
+        smaller.setPointSizeF(smaller.pointSizeF() - FONT_STEP)
+    return text, smaller.pointSizeF()

@@ -9,16 +9,16 @@ from PySide6.QtCore import QPointF
 from PySide6.QtWidgets import QApplication
 
 from regolith_studio.errors import FileError, InputError
-from regolith_studio.ui.widgets.bar_plot import BarPlot, BarSeries
-from regolith_studio.ui.widgets.curve_plot import Curve, CurvePlot
-from regolith_studio.ui.widgets.plot import Plot
+from regolith_studio.ui.widgets.plots.bars import BarPlot, BarSeries
+from regolith_studio.ui.widgets.plots.base import Plot
+from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 
 
 @pytest.fixture
 def curves(shown):
     plot = CurvePlot("Degree l<sub>max</sub>", "RMSRE [%]", "Nothing yet.")
-    small = Curve("D<sub>min</sub>", "#0072b2", (1.0, 2.0), (0.5, 0.25))
-    plot.set_curves([small, Curve("V", "#000000", (1.0,), (3.0,))])
+    small = PlotCurve("D<sub>min</sub>", "#0072b2", (1.0, 2.0), (0.5, 0.25))
+    plot.set_curves([small, PlotCurve("V", "#000000", (1.0,), (3.0,))])
     plot.resize(400, 260)
     return shown(plot)
 
@@ -94,7 +94,7 @@ def test_that_a_point_of_a_curve_tells_its_values_when_pointed_at(curves):
 
 def test_that_a_curve_on_a_logarithmic_axis_tells_its_values_too(shown):
     plot = CurvePlot("x", "y", "Nothing yet.", log_y=True)
-    plot.set_curves([Curve("f", "#0072b2", (1.0, 2.0, 3.0), (1.0, 100.0, 10.0))])
+    plot.set_curves([PlotCurve("f", "#0072b2", (1.0, 2.0, 3.0), (1.0, 100.0, 10.0))])
     plot.resize(400, 260)
     shown(plot)
     QApplication.processEvents()

@@ -8,21 +8,20 @@ import pytest
 from PySide6.QtGui import QColor
 
 from regolith_studio.ui.theme import DARK
-from regolith_studio.ui.widgets.curve_items import CurveItems
-from regolith_studio.ui.widgets.curve_plot import Curve, CurvePlot
+from regolith_studio.ui.widgets.plots.curves import CurveItems, CurvePlot, PlotCurve
 
 
 @pytest.mark.parametrize(("log_y", "values"), [(True, (0.0, 0.0)), (False, (math.nan, math.nan))])
 def test_that_points_without_a_place_on_the_axes_leave_the_others_in_sight(shown, app, log_y, values):
     plot = shown(CurvePlot("Step", "Loss", "Nothing yet.", log_y=log_y))
-    seen = Curve("seen", "#0072b2", (1.0, 2.0), (0.5, 0.25), markers=True)
-    plot.set_curves([Curve("nowhere", "#000000", (1.0, 2.0), values, markers=True), seen])
+    seen = PlotCurve("seen", "#0072b2", (1.0, 2.0), (0.5, 0.25), markers=True)
+    plot.set_curves([PlotCurve("nowhere", "#000000", (1.0, 2.0), values, markers=True), seen])
     app.processEvents()
     (left, right), _ = plot.canvas.viewRange()
     assert left <= 1.0
     assert right >= 2.0
     assert [items.points.getData()[0].size for _, items in plot._drawn] == [0, 2]
-    plot.set_curves([Curve("nowhere", "#000000", (1.0, 2.0), values, markers=True)])
+    plot.set_curves([PlotCurve("nowhere", "#000000", (1.0, 2.0), values, markers=True)])
     app.processEvents()
     assert plot.numbers()[1][0][1] == 1.0
 
@@ -30,7 +29,7 @@ def test_that_points_without_a_place_on_the_axes_leave_the_others_in_sight(shown
 @pytest.mark.parametrize(("x", "between"), [((0.0, 1.0, 2.0), False), ((0.0, 0.5, 2.0), True)])
 def test_that_no_tick_lies_between_steps_that_are_counted(shown, app, x, between):
     plot = shown(CurvePlot("Step", "Loss", "Nothing yet."))
-    plot.set_curves([Curve("loss", "#0072b2", x, (0.3, 0.2, 0.1))])
+    plot.set_curves([PlotCurve("loss", "#0072b2", x, (0.3, 0.2, 0.1))])
     app.processEvents()
     axis = plot.canvas.getAxis("bottom")
     (left, right), _ = plot.canvas.viewRange()
@@ -40,8 +39,8 @@ def test_that_no_tick_lies_between_steps_that_are_counted(shown, app, x, between
 
 def test_that_a_curve_is_drawn_when_it_has_changed_and_not_again_before(shown, monkeypatch):
     plot = shown(CurvePlot("Step", "Loss", "Nothing yet."))
-    kept = Curve("kept", "#0072b2", (0.0, 1.0), (1.0, 1.0))
-    falling = Curve("falls", "#d55e00", (0.0,), (2.0,))
+    kept = PlotCurve("kept", "#0072b2", (0.0, 1.0), (1.0, 1.0))
+    falling = PlotCurve("falls", "#d55e00", (0.0,), (2.0,))
     plot.set_curves([kept, falling])
     drawn, usual = [], CurveItems.draw
 
@@ -50,7 +49,7 @@ def test_that_a_curve_is_drawn_when_it_has_changed_and_not_again_before(shown, m
         usual(items, *given)
 
     monkeypatch.setattr(CurveItems, "draw", watched)
-    plot.set_curves([kept, Curve("falls", "#d55e00", (0.0, 1.0), (2.0, 0.5), markers=True, line=False)])
+    plot.set_curves([kept, PlotCurve("falls", "#d55e00", (0.0, 1.0), (2.0, 0.5), markers=True, line=False)])
     assert drawn == [((0.0, 1.0), (2.0, 0.5), None, "#d55e00")]
     items = plot._drawn[1][1]
     assert items.points.getData()[1].tolist() == [2.0, 0.5]
@@ -59,7 +58,7 @@ def test_that_a_curve_is_drawn_when_it_has_changed_and_not_again_before(shown, m
     plot.set_theme(DARK)
     plot.set_curves([kept])
     assert len(drawn) == 1
-    plot.set_curves([kept, falling, Curve("empty", "#000000", (), ())])
+    plot.set_curves([kept, falling, PlotCurve("empty", "#000000", (), ())])
     assert [each.line.getData()[1].tolist() for _, each in plot._drawn] == [[1.0, 1.0], [2.0]]
     assert all(each.points is None for _, each in plot._drawn)
     assert len(plot.curves) == 3
@@ -68,7 +67,7 @@ def test_that_a_curve_is_drawn_when_it_has_changed_and_not_again_before(shown, m
 def test_that_lines_and_points_stand_at_the_logarithm_and_have_gaps_where_there_is_none(shown, app):
     plot = shown(CurvePlot("Step", "Loss", "Nothing yet.", log_y=True))
     values = (100.0, 0.0, math.nan, 1e-3, 10.0)
-    plot.set_curves([Curve("loss", "#0072b2", tuple(range(5)), values, markers=True)])
+    plot.set_curves([PlotCurve("loss", "#0072b2", tuple(range(5)), values, markers=True)])
     app.processEvents()
     items = plot._drawn[0][1]
     assert items.points.getData()[0].tolist() == [0.0, 3.0, 4.0]

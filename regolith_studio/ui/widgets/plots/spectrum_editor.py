@@ -9,7 +9,7 @@ from PySide6.QtCore import QEvent, QObject, QPointF, Qt, QTimer, Signal
 from PySide6.QtGui import QColor, QKeyEvent, QMouseEvent
 
 from regolith_studio.ui.translation import tr
-from regolith_studio.ui.widgets.plot import Numbers, Plot
+from regolith_studio.ui.widgets.plots.base import Numbers, Plot
 
 THROTTLE = 30
 """Milliseconds between two announcements while a bar is dragged; the last is always made."""

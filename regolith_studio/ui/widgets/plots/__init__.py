@@ -1,0 +1,1 @@
+"""Plots on pyqtgraph: canvas and axes, curves, bars, and their files."""
