@@ -34,7 +34,7 @@ def read_inputs(paths: Sequence[Path], unit: str, repair: bool = True) -> "Loade
 
 def start_reader() -> None:
     """Let the process that reads files start while this one is still importing what it computes with."""
-    from regolith_studio.readers.guard import shared_guard
+    from regolith_studio.readers.sandbox.parent import shared_guard
 
     def start() -> None:
         with contextlib.suppress(RegolithError, OSError):  # whoever reads first will hear of it

@@ -77,13 +77,13 @@ def _plugin_problems() -> tuple[str, ...]:
     from regolith_studio.coarsening.methods import METHODS
     from regolith_studio.dataset.exporters import EXPORTERS
     from regolith_studio.dem.engines import ENGINES
-    from regolith_studio.readers.formats import mesh_formats
-    from regolith_studio.readers.position_formats import position_formats
-    from regolith_studio.readers.volume_formats import volume_formats
+    from regolith_studio.readers.formats import MESH_FORMATS
+    from regolith_studio.readers.position_formats import POSITION_FORMATS
+    from regolith_studio.readers.volume_formats import VOLUME_FORMATS
     from regolith_studio.registry import plugin_problems
     from regolith_studio.shape_models.models import MODELS
 
-    for kinds in (METHODS, EXPORTERS, ENGINES, MODELS, mesh_formats(), position_formats(), volume_formats()):
+    for kinds in (METHODS, EXPORTERS, ENGINES, MODELS, MESH_FORMATS, POSITION_FORMATS, VOLUME_FORMATS):
         len(kinds)
     return plugin_problems()
 

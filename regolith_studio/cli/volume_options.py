@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from regolith_studio.imaging.volume import VolumeKind
     from regolith_studio.jobs.extracting import VolumeInput
     from regolith_studio.jobs.grain_recipe import GrainRecipe
-    from regolith_studio.readers.volume_header import RawLayout
+    from regolith_studio.readers.volumes.header import RawLayout
 
 
 @dataclass(frozen=True)
@@ -197,7 +197,7 @@ def _edges(text: str) -> tuple[float, ...] | None:
 
 
 def _raw_layout(shape: str, dtype: str, byte_order: str, offset: int) -> "RawLayout | None":
-    from regolith_studio.readers.volume_header import RawLayout
+    from regolith_studio.readers.volumes.header import RawLayout
 
     if not shape:
         return None

@@ -29,11 +29,11 @@ from regolith_studio.jobs.events import Job, Progress, Started, Step, Steps
 from regolith_studio.jobs.examining import Examined, examine_one
 from regolith_studio.jobs.executor import Executor, open_executor, value_of
 from regolith_studio.jobs.grain_recipe import GrainRecipe
-from regolith_studio.readers.hashing import sha256_of
-from regolith_studio.readers.volume_files import slice_names
-from regolith_studio.readers.volume_header import RawLayout
-from regolith_studio.readers.volumes import SlabSource as FileSource
-from regolith_studio.readers.volumes import open_slabs
+from regolith_studio.readers.file_bytes import sha256_of
+from regolith_studio.readers.volumes.files import slice_names
+from regolith_studio.readers.volumes.header import RawLayout
+from regolith_studio.readers.volumes.read import SlabSource as FileSource
+from regolith_studio.readers.volumes.read import open_slabs
 
 IN_MEMORY = 2**30
 """Bytes of working arrays beyond which they lie in temporary files."""

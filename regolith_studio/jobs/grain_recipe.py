@@ -14,7 +14,7 @@ from regolith_studio.imaging.segmentation.segment import SegmentationSettings
 from regolith_studio.imaging.segmentation.splitting import SplittingSettings
 from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
 from regolith_studio.imaging.segmentation.tiles import TileSettings
-from regolith_studio.readers.npz import read_bytes
+from regolith_studio.readers.file_bytes import read_bytes
 
 S = TypeVar("S")
 _LARGEST = 64 * 2**20

@@ -20,8 +20,8 @@ from regolith_studio.imaging.slabs import Scratch, slab_ranges
 from regolith_studio.imaging.volume import Volume
 from regolith_studio.jobs.events import Progress, Started, Step, Steps
 from regolith_studio.jobs.extracting import VolumeInput, segment_volume
-from regolith_studio.readers.volumes import SlabSource as FileSource
-from regolith_studio.readers.volumes import describe_volume, read_volume
+from regolith_studio.readers.volumes.read import SlabSource as FileSource
+from regolith_studio.readers.volumes.read import describe_volume, read_volume
 
 IN_MEMORY = 2**30
 """Bytes of a volume, or of what is computed from it, beyond which it stays on the disk."""

@@ -6,13 +6,13 @@ from typing import Literal
 
 import numpy as np
 
-from regolith_studio.errors import FileError, InputError
-from regolith_studio.geometry.particle import Source
+from regolith_studio.errors import FileError, GeometryError, InputError
+from regolith_studio.geometry.particle import Particle, Source
 from regolith_studio.harmonics.coefficient_tables import from_complex_rows, from_shtools_rows
 from regolith_studio.harmonics.coefficients import ShCoefficients
-from regolith_studio.readers.guard import Guard, shared_guard
-from regolith_studio.readers.hashing import sha256_of
-from regolith_studio.readers.sentences import counted, sentence_about
+from regolith_studio.readers.error_messages import counted, sentence_about
+from regolith_studio.readers.file_bytes import sha256_of
+from regolith_studio.readers.sandbox.parent import Guard, shared_guard
 from regolith_studio.readers.units import unit_factor
 
 __all__ = ["CoefficientFile", "TableConvention", "read_coefficients"]
@@ -119,3 +119,36 @@ def _as_predicate(sentence: str) -> str:
     if sentence.startswith(("has ", "does ", "cannot ")):
         return sentence
     return f"is no proper table of coefficients: {sentence[0].lower()}{sentence[1:]}"
+
+
+TABLE_SUFFIXES = (".anm", ".sh", ".shc")
+"""What is a table of coefficients wherever it lies."""
+
+TEXT_SUFFIXES = (".txt", ".dat", ".tab", ".csv")
+"""What may be one where it is named itself; in a folder it is passed over."""
+
+_FINE_DEGREE = 16
+"""Above it 2,562 vertices would not show what the coefficients hold."""
+
+
+def particle_of_table(path: Path, unit: str, group: str = "", guard: Guard | None = None) -> Particle:
+    """The particle that a table of coefficients describes, about its star point.
+
+    Its mesh has 5,120 faces, or 20,480 where the degree is above 16, and the volume of the smooth surface.
+
+    Raises
+    ------
+    FileError
+        With one sentence if the file is no such table.
+    GeometryError
+        With one sentence if its surface passes through its centre.
+    """
+    from regolith_studio.harmonics.surface import reconstruct
+
+    table = read_coefficients(path, unit, guard=guard)
+    try:
+        mesh = reconstruct(table.coefficients, level=5 if table.coefficients.l_max > _FINE_DEGREE else 4)
+    except GeometryError as error:
+        sentence = f"holds no particle: {str(error)[0].lower()}{str(error)[1:]}"
+        raise GeometryError(sentence_about(path, sentence)) from None
+    return Particle(table.name, mesh, group, table.source, table.notes)

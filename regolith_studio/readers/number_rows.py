@@ -1,5 +1,6 @@
 """Rows of numbers in text, however they are separated; runs in the guarded child process only."""
 
+import math
 import re
 from dataclasses import dataclass
 
@@ -7,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
-from regolith_studio.readers.sentences import printable
+from regolith_studio.readers.error_messages import printable
 from regolith_studio.readers.units import unit_named
 
 COMMENTS = (b"#", b"%", b"!", b"//")
@@ -138,3 +139,11 @@ def _names(line: bytes, width: int) -> tuple[str, ...]:
 
 def _shown(word: bytes) -> str:
     return printable(word[:24].decode("utf-8", "replace"))
+
+
+def float_or_nan(word: str | bytes) -> float:
+    """The number that a word is, or not a number."""
+    try:
+        return float(word)
+    except ValueError:
+        return math.nan

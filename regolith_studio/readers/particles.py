@@ -15,10 +15,10 @@ from regolith_studio.geometry.merge_vertices import merged_vertices
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.mesh_health import inspect
 from regolith_studio.geometry.particle import Particle, Source
+from regolith_studio.readers.coefficient_tables import TABLE_SUFFIXES, TEXT_SUFFIXES, particle_of_table
+from regolith_studio.readers.error_messages import counted, sentence_about, shown_name
 from regolith_studio.readers.formats import mesh_suffixes
-from regolith_studio.readers.guard import Guard, shared_guard
-from regolith_studio.readers.sentences import counted, sentence_about, shown_name
-from regolith_studio.readers.table_particles import TABLE_SUFFIXES, TEXT_SUFFIXES, particle_of_table
+from regolith_studio.readers.sandbox.parent import Guard, shared_guard
 from regolith_studio.readers.units import unit_factor
 from regolith_studio.resources import resource
 

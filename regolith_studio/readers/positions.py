@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, locked_floats
-from regolith_studio.readers.guard import Guard, shared_guard
+from regolith_studio.readers.sandbox.parent import Guard, shared_guard
 from regolith_studio.readers.units import UNITS, unit_factor
 
 __all__ = ["ParticlePositions", "read_positions"]

@@ -6,8 +6,8 @@ from enum import StrEnum
 from pathlib import Path
 
 from regolith_studio.errors import InputError
+from regolith_studio.readers.coefficient_tables import TABLE_SUFFIXES, TEXT_SUFFIXES
 from regolith_studio.readers.formats import mesh_suffixes
-from regolith_studio.readers.table_particles import TABLE_SUFFIXES, TEXT_SUFFIXES
 from regolith_studio.session.project import SUFFIX
 
 _SNIFFED = 200_000

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from regolith_studio.geometry.particle import Particle
+from regolith_studio.readers.coefficient_tables import TABLE_SUFFIXES, TEXT_SUFFIXES
 from regolith_studio.readers.formats import mesh_suffixes
 from regolith_studio.readers.particles import find_files, sample_particles
-from regolith_studio.readers.table_particles import TABLE_SUFFIXES, TEXT_SUFFIXES
 from regolith_studio.session.recipe_inputs import Population, VolumeEntry
 
 if TYPE_CHECKING:  # what draws shapes takes a third of a second to import: the window begins without it

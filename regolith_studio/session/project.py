@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from regolith_studio.errors import FileError, of_the_entry
 from regolith_studio.io.atomic import write_bytes
-from regolith_studio.readers.npz import read_bytes
+from regolith_studio.readers.file_bytes import read_bytes
 from regolith_studio.session.portrait import Portrait
 from regolith_studio.session.recipe import LARGEST, SAMPLE, Recipe
 from regolith_studio.session.session import Session

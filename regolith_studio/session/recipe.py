@@ -10,7 +10,7 @@ from regolith_studio.coarsening.coarsen import DEFAULT_METHOD, DEFAULT_PRESET
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.errors import FileError, InputError, of_the_entry
 from regolith_studio.harmonics.fit import DEFAULT_FIT_OPTIONS
-from regolith_studio.readers.npz import read_bytes
+from regolith_studio.readers.file_bytes import read_bytes
 from regolith_studio.session.choices import Choices, Scalar
 from regolith_studio.session.recipe_dataset import Exports, Representatives
 from regolith_studio.session.recipe_inputs import Chosen, FilesEntry, Population, Strict, VolumeEntry

@@ -24,7 +24,7 @@ from regolith_studio.jobs.extracting import (
     segment_volume,
 )
 from regolith_studio.jobs.grain_recipe import GrainRecipe, read_grain_recipe
-from regolith_studio.readers.hashing import sha256_of
+from regolith_studio.readers.file_bytes import sha256_of
 from regolith_studio.resources import resource
 
 GREY = resource("samples", "ct", "synthetic-grey.tif")

@@ -11,7 +11,7 @@ from regolith_studio.dataset.exporting import Exporter
 from regolith_studio.dem.engine import Found
 from regolith_studio.dem.engines.yade import YadeEngine
 from regolith_studio.errors import FileError
-from regolith_studio.readers.mesh_format import MeshFormat, ParsedMesh
+from regolith_studio.readers.formats import MeshFormat, ParsedMesh
 from regolith_studio.shape_models.models.gaussian_field import GaussianFieldModel
 
 

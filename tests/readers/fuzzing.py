@@ -24,12 +24,12 @@ import regolith_studio.shape_models.models  # noqa: F401 (numba must not see ins
 
 with atheris.instrument_imports(include=["regolith_studio.readers", "zipfile", "tifffile"]):
     from regolith_studio.errors import RegolithError
-    from regolith_studio.readers.formats import mesh_formats
-    from regolith_studio.readers.mesh_file import parse_mesh
-    from regolith_studio.readers.position_formats import position_formats
-    from regolith_studio.readers.volume_formats import volume_formats
+    from regolith_studio.readers.formats import MESH_FORMATS
+    from regolith_studio.readers.position_formats import POSITION_FORMATS
+    from regolith_studio.readers.sandbox.tasks import parse_mesh
+    from regolith_studio.readers.volume_formats import VOLUME_FORMATS
 
-    mesh_formats(), volume_formats(), position_formats()
+    len(MESH_FORMATS), len(VOLUME_FORMATS), len(POSITION_FORMATS)
 
 JARGON = re.compile(r"Error\b|NoneType|Traceback|invalid literal|could not convert|object has no|<class")
 LONGEST_WORK = 1.0

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from regolith_studio.errors import FileError
-from regolith_studio.readers.volumes import describe_volume, open_slabs, read_volume
+from regolith_studio.readers.volumes.read import describe_volume, open_slabs, read_volume
 
 VOXELS = np.arange(5 * 6 * 7, dtype=np.uint16).reshape(5, 6, 7)
 """Indexed [x, y, z]."""

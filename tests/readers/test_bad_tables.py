@@ -12,8 +12,8 @@ import pytest
 
 from regolith_studio.errors import FileError
 from regolith_studio.readers.coefficient_tables import read_coefficients
-from regolith_studio.readers.position_task import parse_positions
 from regolith_studio.readers.positions import read_positions
+from regolith_studio.readers.sandbox.tasks import parse_positions
 
 Bad = tuple[str, bytes | str, str]
 WORDS = ("one", "1,5x", "0x1F", "--1", "1e", "1.2.3", "∞", "\x1b[31m", "None", "1 e5", "$1", "#")

@@ -14,7 +14,7 @@ import pytest
 import tifffile
 
 from regolith_studio.errors import FileError
-from regolith_studio.readers.volumes import describe_volume, read_volume
+from regolith_studio.readers.volumes.read import describe_volume, read_volume
 
 SLICES = np.arange(90, dtype="<u2").reshape(3, 5, 6)
 Bad = tuple[str, bytes, str]

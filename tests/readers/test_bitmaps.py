@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from regolith_studio.errors import FileError
-from regolith_studio.readers.volumes import read_volume
+from regolith_studio.readers.volumes.read import read_volume
 
 VOXELS = np.random.default_rng(3).integers(0, 255, (3, 6, 7)).astype(np.uint8)
 

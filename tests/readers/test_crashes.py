@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 from regolith_studio.errors import FileError, GeometryError
-from regolith_studio.readers.guard import Guard
 from regolith_studio.readers.particles import read_mesh
-from regolith_studio.readers.volumes import describe_volume, open_slabs
+from regolith_studio.readers.sandbox.parent import Guard
+from regolith_studio.readers.volumes.read import describe_volume, open_slabs
 
 HERE = Path(__file__).parent
 MESHES = {

@@ -15,9 +15,9 @@ import psutil
 import pytest
 
 from regolith_studio.errors import FileError
-from regolith_studio.readers.guard import Guard, shared_guard
 from regolith_studio.readers.particles import read_mesh
-from regolith_studio.readers.protocol import Message, receive, send
+from regolith_studio.readers.sandbox.messages import Message, receive, send
+from regolith_studio.readers.sandbox.parent import Guard, shared_guard
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 
@@ -168,7 +168,7 @@ def test_that_workers_of_a_process_pool_have_children_of_their_own(start, stl):
 SCRIPT = """
 import os, sys, threading, time
 from pathlib import Path
-from regolith_studio.readers.guard import Guard, shared_guard
+from regolith_studio.readers.sandbox.parent import Guard, shared_guard
 guard = GUARD
 guard.request("mesh", Path(sys.argv[1]))
 print(guard._process.pid, flush=True)
@@ -217,7 +217,7 @@ def _wait_until_gone(pid):
 
 
 def test_that_the_child_imports_nothing_heavier_than_numpy():
-    script = "import sys, regolith_studio.readers.child; print(*sys.modules)"
+    script = "import sys, regolith_studio.readers.sandbox.child; print(*sys.modules)"
     done = subprocess.run(
         [sys.executable, "-c", script], capture_output=True, text=True, cwd=REPOSITORY, check=True
     )

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from regolith_studio.errors import FileError
-from regolith_studio.readers.chunk_layers import ChunkLayers
 from regolith_studio.readers.volume_formats.hdf5 import open_hdf5
-from regolith_studio.readers.volumes import datasets_in, describe_volume, open_slabs, read_volume
+from regolith_studio.readers.volumes.read import datasets_in, describe_volume, open_slabs, read_volume
+from regolith_studio.readers.voxels.hdf5 import ChunkLayers
 
 SLICES = np.random.default_rng(8).integers(0, 60_000, (9, 11, 13)).astype(np.uint16)
 
@@ -177,7 +177,7 @@ def test_that_chunks_too_large_for_the_memory_are_refused(path) -> None:
 
 def test_that_slabs_end_where_chunks_do(path, monkeypatch) -> None:
     """A chunk is unpacked once if no slab ends inside it."""
-    from regolith_studio.readers import slabs
+    from regolith_studio.readers.volumes import slabs
 
     with h5py.File(path, "w") as file:
         file.create_dataset("data", data=SLICES, chunks=(4, 11, 13), compression="gzip")

@@ -17,7 +17,7 @@ from regolith_studio.imaging.extraction import extract_particles
 from regolith_studio.imaging.segmentation.denoising import DenoiseSettings
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings, segment
 from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
-from regolith_studio.readers.volumes import datasets_in, describe_volume, read_volume
+from regolith_studio.readers.volumes.read import datasets_in, describe_volume, read_volume
 
 RADII = (9.0, 8.0, 7.0, 9.5)
 CENTRES = ((13, 14, 15), (14, 36, 40), (35, 15, 38), (36, 38, 14))

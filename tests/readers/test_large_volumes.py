@@ -11,8 +11,7 @@ import pytest
 import tifffile
 
 from regolith_studio.errors import FileError
-from regolith_studio.readers import volumes
-from regolith_studio.readers.volumes import open_slabs, read_volume
+from regolith_studio.readers.volumes.read import open_slabs, read_volume
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 EDGE = 1024
@@ -22,12 +21,12 @@ ALLOWED = 900 * 1024**2
 SCRIPT = f"""
 import os, resource, sys
 resource.setrlimit(resource.RLIMIT_AS, ({ALLOWED}, {ALLOWED}))
-from regolith_studio.readers.volumes import open_slabs
+from regolith_studio.readers.volumes.read import open_slabs
 total = count = 0
 for z0, slab in open_slabs(sys.argv[1], voxel_size=1.0, kind="labels").slabs(64):
     total += int(slab.sum(dtype="u8")) * (z0 // 64 + 1)
     count += slab.size
-from regolith_studio.readers.guard import volume_guard
+from regolith_studio.readers.sandbox.parent import volume_guard
 volume_guard().close()
 own = next(line.split()[1] for line in open("/proc/self/status") if line.startswith("VmHWM"))
 print(total, count, own, resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)
@@ -90,7 +89,7 @@ def test_that_a_volume_of_more_than_half_the_memory_is_left_to_slabs(tmp_path, m
     with h5py.File(path, "w") as file:
         file.create_dataset("a", (EDGE,) * 3, "u1", chunks=(16, 64, 64), compression="gzip")
     assert path.stat().st_size < 10_000
-    monkeypatch.setattr(volumes, "_memory", lambda: 512 * 1024**2)
+    monkeypatch.setattr("regolith_studio.readers.volumes.read._memory", lambda: 512 * 1024**2)
     with pytest.raises(FileError, match=r"has 1 GiB of voxels, more than half of this machine's memory"):
         read_volume(path, voxel_size=1.0, kind="grey")
     part = read_volume(path, voxel_size=1.0, kind="grey", bounds=((0, 8), (0, 8), (1000, 1008)))

@@ -11,7 +11,7 @@ from regolith_studio.errors import FileError, GeometryError
 from regolith_studio.geometry.merge_vertices import merged_vertices
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.repair import repair
-from regolith_studio.readers.mesh_file import parse_mesh
+from regolith_studio.readers.sandbox.tasks import parse_mesh
 
 NAMES = [
     "binary.stl",

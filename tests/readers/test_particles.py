@@ -5,8 +5,8 @@ import hashlib
 import pytest
 
 from regolith_studio.errors import FileError, GeometryError, InputError
-from regolith_studio.readers.formats import mesh_formats, mesh_suffixes
-from regolith_studio.readers.hashing import sha256_of
+from regolith_studio.readers.file_bytes import sha256_of
+from regolith_studio.readers.formats import MESH_FORMATS, mesh_suffixes
 from regolith_studio.readers.particles import read_mesh, read_particles, sample_particles
 from regolith_studio.readers.units import UNITS, unit_factor
 
@@ -26,7 +26,7 @@ def tree(tmp_path, cube):
 
 
 def test_that_all_formats_announce_themselves():
-    assert set(mesh_formats()) == {"stl", "ply", "obj", "off", "gltf", "3mf"}
+    assert set(MESH_FORMATS) == {"stl", "ply", "obj", "off", "gltf", "3mf"}
     assert {".stl", ".ply", ".obj", ".off", ".glb", ".gltf", ".3mf"} <= mesh_suffixes()
 
 

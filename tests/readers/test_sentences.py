@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from regolith_studio.readers.sentences import sentence_about, shown_name
+from regolith_studio.readers.error_messages import sentence_about, shown_name
 
 
 @pytest.mark.parametrize("name", ["a\nb.stl", "\udcff.stl", "x" * 240 + ".stl", "\x1b[31mred.stl"])

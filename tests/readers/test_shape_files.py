@@ -15,7 +15,7 @@ from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.files import write_fits
 from regolith_studio.harmonics.fit import fit_harmonics
 from regolith_studio.harmonics.surface import radii
-from regolith_studio.readers.npz import read_npz
+from regolith_studio.readers.file_bytes import read_npz
 from regolith_studio.readers.shape_files import is_shape_source, radius_of, read_shape_source
 from regolith_studio.shape_models.files import write_model
 from regolith_studio.shape_models.materials import MaterialCard, materials, write_card

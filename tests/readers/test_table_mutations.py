@@ -23,10 +23,10 @@ from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.files import write_fits
 from regolith_studio.harmonics.fit import fit_harmonics
 from regolith_studio.readers.coefficient_tables import read_coefficients
-from regolith_studio.readers.npz import read_npz
-from regolith_studio.readers.position_task import read_number_rows
+from regolith_studio.readers.file_bytes import read_npz
+from regolith_studio.readers.sandbox.tasks import read_number_rows
+from regolith_studio.readers.sandbox.volume_tasks import checked_slices, opened_volume
 from regolith_studio.readers.shape_files import read_shape_source
-from regolith_studio.readers.volume_task import checked_slices, opened_volume
 from regolith_studio.session.project import Project, read_project
 from regolith_studio.session.recipe import Recipe, read_recipe
 from regolith_studio.shape_models.files import write_model

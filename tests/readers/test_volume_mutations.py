@@ -18,9 +18,9 @@ import pytest
 import tifffile
 
 from regolith_studio.errors import FileError
-from regolith_studio.readers.guard import Guard
-from regolith_studio.readers.volume_task import checked_slices, opened_volume
-from regolith_studio.readers.volumes import describe_volume, open_slabs
+from regolith_studio.readers.sandbox.parent import Guard
+from regolith_studio.readers.sandbox.volume_tasks import checked_slices, opened_volume
+from regolith_studio.readers.volumes.read import describe_volume, open_slabs
 
 SLICES = np.random.default_rng(1).integers(0, 9, (4, 5, 6)).astype(np.uint16)
 FOREIGN = Path(__file__).with_name("foreign_volumes")

@@ -10,8 +10,8 @@ import tifffile
 
 from regolith_studio.errors import FileError, InputError
 from regolith_studio.readers.particles import read_mesh
-from regolith_studio.readers.raw_names import layout_from_name
-from regolith_studio.readers.volumes import (
+from regolith_studio.readers.volumes.header import layout_from_name
+from regolith_studio.readers.volumes.read import (
     RawLayout,
     datasets_in,
     describe_volume,

@@ -15,7 +15,7 @@ from regolith_studio.jobs import scanning
 from regolith_studio.jobs.extracting import VolumeInput
 from regolith_studio.jobs.grain_recipe import GrainRecipe, read_grain_recipe
 from regolith_studio.jobs.runners.thread import ThreadRunner
-from regolith_studio.readers.volume_header import RawLayout
+from regolith_studio.readers.volumes.header import RawLayout
 from regolith_studio.session.session import Session
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.page import PageContext

@@ -15,7 +15,7 @@ from PySide6.QtGui import QKeySequence
 from PySide6.QtWidgets import QDialogButtonBox, QMenu, QMessageBox, QScrollArea
 
 from regolith_studio.imaging.extraction import Extraction
-from regolith_studio.readers.volume_header import DatasetEntry, VolumeHeader
+from regolith_studio.readers.volumes.header import DatasetEntry, VolumeHeader
 from regolith_studio.session.choices import Choices
 from regolith_studio.ui.app import open_window
 from regolith_studio.ui.dialogs.batch import BatchDialog

@@ -1,16 +1,66 @@
 """The mesh formats: every module of this folder announces one as ``FORMAT``."""
 
-from regolith_studio.readers.mesh_format import MeshFormat
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
 from regolith_studio.registry import Registry
 
-_FORMATS: Registry[MeshFormat] = Registry(__name__, "FORMAT", "readers")
+
+@dataclass(frozen=True)
+class ParsedMesh:
+    """Triangles as a file states them, unchecked.
+
+    Parameters
+    ----------
+    vertices
+        Shape (n, 3), float64; may hold values that are not finite.
+    faces
+        Shape (m, 3), int64; may point outside the vertices.
+    notes
+        One sentence for each thing in the file that was passed over.
+    """
+
+    vertices: NDArray[np.float64]
+    faces: NDArray[np.int64]
+    notes: tuple[str, ...] = ()
 
 
-def mesh_formats() -> Registry[MeshFormat]:
-    """The formats by key, in the order of their modules' names; those of other packages last."""
-    return _FORMATS
+@dataclass(frozen=True)
+class MeshFormat:
+    """One row of the table of mesh formats; each file of ``readers.formats`` announces one as ``FORMAT``.
+
+    Parameters
+    ----------
+    key
+        Short name, ``stl``.
+    label
+        As a sentence names it, ``STL``.
+    suffixes
+        Lower case, with the dot.
+    recognises
+        Whether the first 1,024 bytes can only be this format.
+    parse
+        Bytes and path to triangles; the path serves to find files that belong to this one. Raises
+        ``FileError`` with the second half of a sentence that begins with the file's name.
+    shares_vertices
+        False where each triangle brings its own three vertices, to be joined after reading.
+    """
+
+    key: str
+    label: str
+    suffixes: tuple[str, ...]
+    recognises: Callable[[bytes], bool]
+    parse: Callable[[bytes, Path], ParsedMesh]
+    shares_vertices: bool = True
+
+
+MESH_FORMATS: Registry[MeshFormat] = Registry(__name__, "FORMAT", "readers")
 
 
 def mesh_suffixes() -> frozenset[str]:
     """The suffixes of all mesh formats, lower case, with the dot."""
-    return frozenset(suffix for row in mesh_formats().values() for suffix in row.suffixes)
+    return frozenset(suffix for row in MESH_FORMATS.values() for suffix in row.suffixes)

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from regolith_studio.errors import FileError
-from regolith_studio.readers.mesh_format import MeshFormat, ParsedMesh
+from regolith_studio.readers.formats import MeshFormat, ParsedMesh
 from regolith_studio.readers.polygons import triangulated
 
 _FREE_FORM = frozenset((b"curv", b"curv2", b"surf", b"cstype", b"deg", b"bzp", b"bsp"))

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from regolith_studio.errors import FileError
-from regolith_studio.readers.mesh_format import MeshFormat, ParsedMesh
+from regolith_studio.readers.formats import MeshFormat, ParsedMesh
 from regolith_studio.readers.polygons import triangulated
 
 _KEYWORD = re.compile(rb"\s*((?:ST)?C?N?4?n?OFF)(?![A-Za-z])", re.ASCII)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
-from regolith_studio.readers.mesh_format import MeshFormat, ParsedMesh
+from regolith_studio.readers.formats import MeshFormat, ParsedMesh
 from regolith_studio.readers.ply_header import Header, read_header
 from regolith_studio.readers.ply_rows import Columns, ascii_columns, binary_columns, trimmed_rows
 from regolith_studio.readers.polygons import triangulated

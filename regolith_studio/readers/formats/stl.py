@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
 from regolith_studio.io.stl import RECORD
-from regolith_studio.readers.mesh_format import MeshFormat, ParsedMesh
+from regolith_studio.readers.formats import MeshFormat, ParsedMesh
 
 HEADER = 84
 _FACET = (b"facet", b"normal", None, None, None, b"outer", b"loop") + (

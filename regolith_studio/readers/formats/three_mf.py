@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
-from regolith_studio.readers.mesh_format import MeshFormat, ParsedMesh
-from regolith_studio.readers.sentences import printable
+from regolith_studio.readers.error_messages import printable
+from regolith_studio.readers.formats import MeshFormat, ParsedMesh
 
 LARGEST_PART = 1 << 29
 """Bytes of one unpacked part; a part that unpacks to more is refused."""

@@ -5,9 +5,9 @@ import re
 import numpy as np
 
 from regolith_studio.errors import FileError
-from regolith_studio.readers.header_words import float_or_nan
-from regolith_studio.readers.position_format import ParsedPositions, PositionFormat, named_columns, sized
-from regolith_studio.readers.sentences import printable
+from regolith_studio.readers.error_messages import printable
+from regolith_studio.readers.number_rows import float_or_nan
+from regolith_studio.readers.position_formats import ParsedPositions, PositionFormat, named_columns, sized
 
 _ITEM = b"ITEM:"
 _SCALED = ({"xs": "x", "ys": "y", "zs": "z"}, {"xsu": "x", "ysu": "y", "zsu": "z"})

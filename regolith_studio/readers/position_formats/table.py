@@ -1,9 +1,9 @@
 """Tables of text: CSV with or without column names, or numbers between spaces."""
 
 from regolith_studio.errors import FileError
+from regolith_studio.readers.error_messages import counted
 from regolith_studio.readers.number_rows import number_rows
-from regolith_studio.readers.position_format import ParsedPositions, PositionFormat, named_columns, sized
-from regolith_studio.readers.sentences import counted
+from regolith_studio.readers.position_formats import ParsedPositions, PositionFormat, named_columns, sized
 
 _FOURTH = "The fourth column has no name; it was taken for the diameter."
 

@@ -5,8 +5,8 @@ import re
 import numpy as np
 
 from regolith_studio.errors import FileError
-from regolith_studio.readers.position_format import ParsedPositions, PositionFormat
-from regolith_studio.readers.sentences import printable
+from regolith_studio.readers.error_messages import printable
+from regolith_studio.readers.position_formats import ParsedPositions, PositionFormat
 
 _TYPES = {
     "char": "i1", "unsigned_char": "u1", "short": "i2", "unsigned_short": "u2", "int": "i4",

@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from regolith_studio.errors import FileError
-from regolith_studio.readers.position_format import ParsedPositions, PositionFormat
+from regolith_studio.readers.position_formats import ParsedPositions, PositionFormat
 
 _TYPES = {
     "Int8": "i1", "UInt8": "u1", "Int16": "i2", "UInt16": "u2", "Int32": "i4", "UInt32": "u4",

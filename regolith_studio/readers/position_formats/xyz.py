@@ -5,9 +5,9 @@ import re
 import numpy as np
 
 from regolith_studio.errors import FileError
+from regolith_studio.readers.error_messages import counted, printable
 from regolith_studio.readers.number_rows import number_rows
-from regolith_studio.readers.position_format import NamedColumns, ParsedPositions, PositionFormat, sized
-from regolith_studio.readers.sentences import counted, printable
+from regolith_studio.readers.position_formats import NamedColumns, ParsedPositions, PositionFormat, sized
 
 _PROPERTIES = re.compile(r'Properties="?([\w:]+)')
 _SIZES = {"radius": True, "diameter": False, "rad": True, "size": False}

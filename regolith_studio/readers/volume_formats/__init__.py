@@ -1,16 +1,49 @@
 """The volume formats: every module of this folder announces one as ``FORMAT``."""
 
-from regolith_studio.readers.volume_format import VolumeFormat
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from regolith_studio.readers.voxels.header import OpenVolume
 from regolith_studio.registry import Registry
 
-_FORMATS: Registry[VolumeFormat] = Registry(__name__, "FORMAT", "volume_readers")
+
+@dataclass(frozen=True)
+class VolumeFormat:
+    """One row of the table of volume formats; each file of ``readers.volume_formats`` announces one.
+
+    Parameters
+    ----------
+    key
+        Short name, ``tiff``.
+    label
+        As a sentence names it, ``a TIFF stack``.
+    suffixes
+        Lower case, with the dot.
+    recognises
+        Whether the first 1,024 bytes can only be this format.
+    prepare
+        Import what opening needs; takes long the first time.
+    open
+        Path and options of the request to an opened volume. Raises ``FileError`` with the second
+        half of a sentence that begins with the file's name.
+    """
+
+    key: str
+    label: str
+    suffixes: tuple[str, ...]
+    recognises: Callable[[bytes], bool]
+    open: Callable[[Path, Mapping[str, Any]], OpenVolume]
+    prepare: Callable[[], None] = lambda: None
 
 
-def volume_formats() -> Registry[VolumeFormat]:
-    """The formats by key, in the order of their modules' names; those of other packages last."""
-    return _FORMATS
+VOLUME_FORMATS: Registry[VolumeFormat] = Registry(__name__, "FORMAT", "volume_readers")
+
+WITH_AXES = ("npy", "hdf5")
+"""Formats whose axes a user may state: they hold arrays and need not say which index is which."""
 
 
 def volume_suffixes() -> frozenset[str]:
     """The suffixes of all volume formats, lower case, with the dot."""
-    return frozenset(suffix for row in volume_formats().values() for suffix in row.suffixes)
+    return frozenset(suffix for row in VOLUME_FORMATS.values() for suffix in row.suffixes)

@@ -10,18 +10,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
-from regolith_studio.readers.chunk_layers import ChunkLayers
-from regolith_studio.readers.hdf5_contents import (
+from regolith_studio.readers.error_messages import printable
+from regolith_studio.readers.volume_formats import VolumeFormat
+from regolith_studio.readers.voxels.hdf5 import (
     Candidate,
+    ChunkLayers,
     candidates_in,
     check_storage,
     element_size,
     shown_names,
 )
-from regolith_studio.readers.sentences import printable
-from regolith_studio.readers.volume_format import (
+from regolith_studio.readers.voxels.header import (
     DatasetEntry,
-    VolumeFormat,
     VoxelHeader,
     stated_axes,
     three_dimensions,

@@ -10,17 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
-from regolith_studio.readers.deflated_voxels import DeflatedVoxels, InflatedStream
-from regolith_studio.readers.plain_voxels import PlainVoxels
-from regolith_studio.readers.volume_format import (
+from regolith_studio.readers.volume_formats import VolumeFormat
+from regolith_studio.readers.voxels.header import (
     Kind,
     OpenVolume,
-    VolumeFormat,
     VoxelHeader,
     sizes_or_none,
     three_dimensions,
     voxel_type,
 )
+from regolith_studio.readers.voxels.stored import DeflatedVoxels, InflatedStream, PlainVoxels
 
 _GZIP = b"\x1f\x8b"
 _LENGTHS = {348: 1, 540: 2}

@@ -10,14 +10,9 @@ import numpy as np
 from numpy.lib import format as npy
 
 from regolith_studio.errors import FileError
-from regolith_studio.readers.plain_voxels import PlainVoxels, TurnedVoxels
-from regolith_studio.readers.volume_format import (
-    VolumeFormat,
-    VoxelHeader,
-    stated_axes,
-    three_dimensions,
-    voxel_type,
-)
+from regolith_studio.readers.volume_formats import VolumeFormat
+from regolith_studio.readers.voxels.header import VoxelHeader, stated_axes, three_dimensions, voxel_type
+from regolith_studio.readers.voxels.stored import PlainVoxels, TurnedVoxels
 
 LONGEST_HEADER = 10_000
 _NONSENSE = (ValueError, TypeError, SyntaxError, KeyError, EOFError, RecursionError, MemoryError, TokenError)

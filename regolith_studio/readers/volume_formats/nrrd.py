@@ -9,21 +9,19 @@ from typing import Any
 import numpy as np
 
 from regolith_studio.errors import FileError
-from regolith_studio.readers.deflated_voxels import DeflatedVoxels
-from regolith_studio.readers.detached import beside
-from regolith_studio.readers.header_words import float_or_nan, start_before_end
-from regolith_studio.readers.plain_voxels import PlainVoxels
-from regolith_studio.readers.sentences import printable
+from regolith_studio.readers.error_messages import printable
+from regolith_studio.readers.number_rows import float_or_nan
 from regolith_studio.readers.units import unit_named
-from regolith_studio.readers.volume_format import (
+from regolith_studio.readers.volume_formats import VolumeFormat
+from regolith_studio.readers.voxels.header import (
     OpenVolume,
     Sizes,
-    VolumeFormat,
     VoxelHeader,
     sizes_or_none,
     three_dimensions,
     voxel_type,
 )
+from regolith_studio.readers.voxels.stored import DeflatedVoxels, PlainVoxels, beside, start_before_end
 
 LONGEST_HEADER = 1 << 16
 _TYPES = {

@@ -8,14 +8,9 @@ from typing import Any
 import numpy as np
 
 from regolith_studio.errors import FileError
-from regolith_studio.readers.plain_voxels import PlainVoxels
-from regolith_studio.readers.volume_format import (
-    VolumeFormat,
-    VoxelHeader,
-    shown_shape,
-    three_dimensions,
-    voxel_type,
-)
+from regolith_studio.readers.volume_formats import VolumeFormat
+from regolith_studio.readers.voxels.header import VoxelHeader, shown_shape, three_dimensions, voxel_type
+from regolith_studio.readers.voxels.stored import PlainVoxels
 
 SUFFIXES = (".raw", ".vol", ".bin", ".dat")
 

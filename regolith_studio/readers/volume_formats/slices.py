@@ -9,16 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
-from regolith_studio.readers.sentences import shown_name
-from regolith_studio.readers.tiff_structure import check_tiff
-from regolith_studio.readers.tiff_voxel_size import stated_size
-from regolith_studio.readers.volume_format import (
-    LARGEST_SLICE,
-    VolumeFormat,
-    VoxelHeader,
-    shown_shape,
-    voxel_type,
-)
+from regolith_studio.readers.error_messages import shown_name
+from regolith_studio.readers.volume_formats import VolumeFormat
+from regolith_studio.readers.voxels.header import LARGEST_SLICE, VoxelHeader, shown_shape, voxel_type
+from regolith_studio.readers.voxels.tiff import check_tiff, stated_size
 
 SLICE_SUFFIXES = (".tif", ".tiff", ".png", ".bmp")
 _BMP = struct.Struct("<10xIIiiHHIIxxxxxxxxI")

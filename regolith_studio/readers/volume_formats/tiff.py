@@ -9,17 +9,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
-from regolith_studio.readers.plain_voxels import PlainVoxels
-from regolith_studio.readers.tiff_structure import check_tiff
-from regolith_studio.readers.tiff_voxel_size import stated_size
-from regolith_studio.readers.volume_format import (
+from regolith_studio.readers.volume_formats import VolumeFormat
+from regolith_studio.readers.voxels.header import (
     OpenVolume,
-    VolumeFormat,
     VoxelHeader,
     shown_shape,
     three_dimensions,
     voxel_type,
 )
+from regolith_studio.readers.voxels.stored import PlainVoxels
+from regolith_studio.readers.voxels.tiff import check_tiff, stated_size
 
 MOST_CHANNELS = 8
 _CHANNELS = re.compile(r"<Pixels\b[^>]*\bSize[CT]=\"(?!1\")(\d+)\"")

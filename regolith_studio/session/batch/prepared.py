@@ -28,10 +28,10 @@ from regolith_studio.jobs.extracting import VolumeInput, extract_each, fingerpri
 from regolith_studio.jobs.generating import GenerateOrder, expansion_of, fit_model, sample_of_meshes
 from regolith_studio.jobs.grain_recipe import GrainRecipe, read_grain_recipe
 from regolith_studio.jobs.loading import load_particles
-from regolith_studio.readers.hashing import sha256_of
+from regolith_studio.readers.file_bytes import sha256_of
 from regolith_studio.readers.particles import FileProblem, find_files
 from regolith_studio.readers.shape_files import is_shape_source, read_shape_source
-from regolith_studio.readers.volume_header import RawLayout
+from regolith_studio.readers.volumes.header import RawLayout
 from regolith_studio.session.outputs.extraction import RECIPE, recipe_document
 from regolith_studio.session.recipe import Recipe
 from regolith_studio.session.recipe_inputs import Population, RawVolume, VolumeEntry

@@ -28,8 +28,7 @@ from regolith_studio.jobs.scanning import (
     read_sample_scan,
     read_scan,
 )
-from regolith_studio.readers.raw_names import layout_from_name
-from regolith_studio.readers.volume_header import VolumeHeader
+from regolith_studio.readers.volumes.header import VolumeHeader, layout_from_name
 from regolith_studio.session.batch.prepared import entry_of
 from regolith_studio.session.origins import Grains
 from regolith_studio.session.recipe_inputs import VolumeEntry

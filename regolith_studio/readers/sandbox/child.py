@@ -1,79 +1,39 @@
-"""The child process that parses untrusted files: ``python -m regolith_studio.readers.child``.
+"""The child process that parses untrusted files: ``python -m regolith_studio.readers.sandbox.child``.
 
 It takes one request at a time on its standard input and answers on its standard output, until the
 input ends. It kills itself when a request takes too long, so that it cannot outlive its parent.
 """
 
 import contextlib
-import hashlib
-import importlib
 import logging
 import os
 import signal
 import sys
-import time
 import warnings
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 from regolith_studio.errors import RegolithError, reason_of
-from regolith_studio.readers.formats import mesh_formats
-from regolith_studio.readers.mesh_file import parse_mesh
-from regolith_studio.readers.protocol import Message, receive, send
-from regolith_studio.readers.sentences import sentence_about
+from regolith_studio.readers.error_messages import sentence_about
+from regolith_studio.readers.formats import MESH_FORMATS
+from regolith_studio.readers.sandbox import tasks, volume_tasks
+from regolith_studio.readers.sandbox.messages import Message, receive, send
 
 Task = Callable[[dict[str, Any]], Message]
 
 
-def read_mesh_file(request: dict[str, Any]) -> Message:
-    """Vertices and faces of the file at ``request["path"]``."""
-    path = Path(request["path"])
-    data = path.read_bytes()
-    parsed, row = parse_mesh(data, path)
-    header = {
-        "notes": parsed.notes,
-        "format": row.key,
-        "shares_vertices": row.shares_vertices,
-        "sha256": hashlib.sha256(data).hexdigest(),
-    }
-    return Message(header, (parsed.vertices.astype("<f8"), parsed.faces.astype("<i8")))
-
-
-def spin(_request: dict[str, Any]) -> Message:
-    """Work for ever, as a parser does on a file made to that end; the tests ask for it."""
-    while True:
-        pass
-
-
-def sleep(_request: dict[str, Any]) -> Message:
-    """Hang, as a parser does on a file made to that end; the tests ask for it."""
-    time.sleep(3600.0)
-    return Message({})
-
-
-def later(module: str, name: str) -> Task:
-    """A function of a module of this package, imported when it is first asked for."""
-
-    def run(request: dict[str, Any]) -> Message:
-        logging.disable(logging.CRITICAL)
-        tasks = importlib.import_module(f"regolith_studio.readers.{module}")
-        return cast(Task, getattr(tasks, name))(request)
-
-    return run
-
-
 TASKS: dict[str, Task] = {
-    "mesh": read_mesh_file,
-    "volume-prepare": later("volume_task", "prepare_volume"),
-    "volume-open": later("volume_task", "open_volume"),
-    "volume-slices": later("volume_task", "read_slices"),
-    "positions": later("position_task", "read_positions_file"),
-    "numbers": later("position_task", "read_number_rows"),
-    "sleep": sleep,
-    "spin": spin,
+    "mesh": tasks.read_mesh_file,
+    "volume-prepare": volume_tasks.prepare_volume,
+    "volume-open": volume_tasks.open_volume,
+    "volume-slices": volume_tasks.read_slices,
+    "positions": tasks.read_positions_file,
+    "numbers": tasks.read_number_rows,
+    "sleep": tasks.sleep,
+    "spin": tasks.spin,
 }
-"""What the child can be asked for; another kind of file is another row."""
+"""What the child can do, by the name in a request."""
 
 
 def answer(request: dict[str, Any]) -> Message:
@@ -100,8 +60,9 @@ def main() -> None:
     limit = int(sys.argv[1]) if len(sys.argv) > 1 else 0
     _limit_memory(limit)
     warnings.simplefilter("ignore")
+    logging.disable(logging.CRITICAL)
     send(sink, Message({"status": "ready", "pid": os.getpid()}))
-    mesh_formats()  # while the parent is busy with what to ask
+    len(MESH_FORMATS)  # imports them while the parent is busy with what to ask
     with contextlib.suppress(EOFError, OSError, KeyboardInterrupt):
         while True:
             request = receive(source).header

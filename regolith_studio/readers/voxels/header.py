@@ -4,16 +4,14 @@ Inside the readers a volume is indexed [z, y, x], slices first, as nearly all fi
 public door (``readers.volumes``) turns it to the [x, y, z] of ``imaging.Volume``.
 """
 
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
-from regolith_studio.readers.sentences import printable
+from regolith_studio.readers.error_messages import printable
 
 Shape = tuple[int, int, int]
 Sizes = tuple[float, float, float]
@@ -93,35 +91,6 @@ class OpenVolume(Protocol):
 
     def close(self) -> None:
         """Let go of the file."""
-
-
-@dataclass(frozen=True)
-class VolumeFormat:
-    """One row of the table of volume formats; each file of ``readers.volume_formats`` announces one.
-
-    Parameters
-    ----------
-    key
-        Short name, ``tiff``.
-    label
-        As a sentence names it, ``a TIFF stack``.
-    suffixes
-        Lower case, with the dot.
-    recognises
-        Whether the first 1,024 bytes can only be this format.
-    prepare
-        Import what opening needs; takes long the first time.
-    open
-        Path and options of the request to an opened volume. Raises ``FileError`` with the second
-        half of a sentence that begins with the file's name.
-    """
-
-    key: str
-    label: str
-    suffixes: tuple[str, ...]
-    recognises: Callable[[bytes], bool]
-    open: Callable[[Path, Mapping[str, Any]], OpenVolume]
-    prepare: Callable[[], None] = lambda: None
 
 
 def three_dimensions(shape: tuple[int, ...], named: str = "shape") -> Shape:

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError, reason_of
-from regolith_studio.readers.guard import (
+from regolith_studio.readers.error_messages import sentence_about
+from regolith_studio.readers.sandbox.parent import (
     BASE_SECONDS,
     START_SECONDS,
     WORKING_SECONDS,
@@ -17,11 +18,10 @@ from regolith_studio.readers.guard import (
     checked_size,
     volume_guard,
 )
-from regolith_studio.readers.plain_voxels import PlainVoxels, plain_voxels
-from regolith_studio.readers.sentences import sentence_about
-from regolith_studio.readers.volume_files import slice_names, slices_stamp
-from regolith_studio.readers.volume_format import KEPT_BYTES, DatasetEntry, VoxelHeader
-from regolith_studio.readers.volume_header import RawLayout
+from regolith_studio.readers.volumes.files import slice_names, slices_stamp
+from regolith_studio.readers.volumes.header import RawLayout
+from regolith_studio.readers.voxels.header import KEPT_BYTES, DatasetEntry, VoxelHeader
+from regolith_studio.readers.voxels.stored import PlainVoxels, plain_voxels
 
 SLAB = 64 * 1024**2
 """Bytes that the child hands over at a time, or one slice where that has more."""

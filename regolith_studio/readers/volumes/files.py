@@ -5,9 +5,9 @@ import re
 from pathlib import Path
 
 from regolith_studio.errors import FileError
-from regolith_studio.readers.guard import checked_size
-from regolith_studio.readers.sentences import shown_name
-from regolith_studio.readers.volume_formats import volume_formats, volume_suffixes
+from regolith_studio.readers.error_messages import shown_name
+from regolith_studio.readers.sandbox.parent import checked_size
+from regolith_studio.readers.volume_formats import VOLUME_FORMATS, volume_suffixes
 
 SLICE_SUFFIXES = (".tif", ".tiff", ".png", ".bmp")
 LEAST_SLICES = 3
@@ -33,7 +33,7 @@ def volume_files(path: str | Path) -> tuple[Path, ...]:
         return (path,)
     if slice_names(path):
         return (path,)
-    suffixes = tuple(sorted(volume_suffixes() - set(volume_formats()["raw"].suffixes)))
+    suffixes = tuple(sorted(volume_suffixes() - set(VOLUME_FORMATS["raw"].suffixes)))
     found = [file for file in _visible(path) if file.lower().endswith(suffixes)]
     if not found:
         raise FileError(

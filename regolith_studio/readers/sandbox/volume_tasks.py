@@ -8,22 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
+from regolith_studio.readers.error_messages import printable, sentence_about
 from regolith_studio.readers.formats import mesh_suffixes
-from regolith_studio.readers.plain_voxels import PlainVoxels
-from regolith_studio.readers.protocol import Message
-from regolith_studio.readers.sentences import printable, sentence_about
+from regolith_studio.readers.sandbox.messages import Message
 from regolith_studio.readers.units import UNITS
-from regolith_studio.readers.volume_format import (
-    OpenVolume,
-    Sizes,
-    VolumeFormat,
-    VoxelHeader,
-    checked_header,
-)
-from regolith_studio.readers.volume_formats import volume_formats, volume_suffixes
+from regolith_studio.readers.volume_formats import VOLUME_FORMATS, WITH_AXES, VolumeFormat, volume_suffixes
+from regolith_studio.readers.voxels.header import OpenVolume, Sizes, VoxelHeader, checked_header
+from regolith_studio.readers.voxels.stored import PlainVoxels
 
-WITH_AXES = ("npy", "hdf5")
-"""Formats whose axes may be stated: they keep arrays and need not say which index is which."""
 SMALLEST_EDGE, LARGEST_EDGE, MOST_SLENDER = 1e-5, 1e6, 1e4
 """Micrometres that the edge of a voxel can have, from atoms to a metre, and how far two may differ."""
 _HEAD = 1024
@@ -106,7 +98,7 @@ def volume_format_of(path: Path) -> tuple[VolumeFormat, tuple[str, ...]]:
     FileError
         If it is no volume format.
     """
-    rows = volume_formats()
+    rows = VOLUME_FORMATS
     if path.is_dir():
         return rows["slices"], ()
     with path.open("rb") as file:

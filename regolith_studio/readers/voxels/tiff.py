@@ -4,12 +4,15 @@ TIFF 6.0 and BigTIFF. What is checked here is what makes readers hang, allocate 
 elsewhere: the chain of directories, the places that tags point to, the size of images and strips.
 """
 
+import re
 import struct
 from collections.abc import Iterator
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
 from regolith_studio.errors import FileError
+from regolith_studio.readers.units import unit_named
+from regolith_studio.readers.voxels.header import Sizes, sizes_or_none
 
 MOST_PAGES = 100_000
 MOST_TAGS = 512
@@ -172,3 +175,87 @@ def _segments_needed(tags: Tags) -> int:
 def _one(tags: Tags, tag: int, default: int) -> int:
     values = tags.get(tag, ())
     return values[0] if values else default
+
+
+Stated = tuple[Sizes | None, str | None, tuple[str, ...]]
+
+_PHYSICAL = re.compile(r"\bPhysicalSize([XYZ])(Unit)?=\"([^\"]{1,40})\"")
+_LONGEST_DESCRIPTION = 100_000
+_INCH, _CENTIMETRE = 25.4, 10.0
+"""Millimetres."""
+_PRINTERS = (72, 96, 100, 150, 180, 200, 240, 300, 360, 400, 600, 720, 1200, 2400)
+"""Resolutions, in dots per inch, that programs write when they know none."""
+_CUBIC = "The file states the width of a pixel only; the slices were taken to be as far apart."
+
+
+def stated_size(file: Any) -> Stated:
+    """Edges along x, y and z in a unit, the unit, and notes; None where the file does not say.
+
+    Parameters
+    ----------
+    file
+        An open ``tifffile.TiffFile``.
+    """
+    page = file.pages.first
+    description = str(page.description or "")[:_LONGEST_DESCRIPTION]
+    if file.is_imagej:
+        return _imagej(file.imagej_metadata or {}, page)
+    if "<OME" in description:
+        return _ome(description)
+    return _resolution(page)
+
+
+def _imagej(metadata: dict[str, Any], page: Any) -> Stated:
+    unit = unit_named(str(metadata.get("unit", "")))
+    pixel = _pixel(page)
+    if unit is None or pixel is None:
+        return None, None, ()
+    spacing = metadata.get("spacing")
+    size = sizes_or_none((*pixel, _number(spacing, pixel[0])))
+    return size, unit if size else None, () if spacing is not None else (_CUBIC,)
+
+
+def _ome(description: str) -> Stated:
+    found: dict[str, str] = {}
+    for axis, unit, text in _PHYSICAL.findall(description):
+        found.setdefault(axis + unit, text)
+    if "X" not in found:
+        return None, None, ()
+    unit = unit_named(found.get("XUnit", "µm"))
+    if any(unit_named(found.get(f"{axis}Unit", "µm")) != unit for axis in "YZ" if axis in found):
+        return None, None, ("The file states voxel edges in different units; they were passed over.",)
+    width = _number(found["X"], 0.0)
+    size = sizes_or_none((width, _number(found.get("Y"), width), _number(found.get("Z"), width)))
+    return size, unit if size else None, () if "Z" in found else (_CUBIC,)
+
+
+def _resolution(page: Any) -> Stated:
+    """Pixels per inch or centimetre, unless it is only what a printer would want."""
+    tag = page.tags.get("ResolutionUnit")
+    pixel = _pixel(page)
+    millimetres = {2: _INCH, 3: _CENTIMETRE}.get(int(tag.value)) if tag is not None else None
+    if millimetres is None or pixel is None:
+        return None, None, ()
+    edges = [edge * millimetres for edge in pixel]
+    if any(abs(_INCH / edge / dots - 1.0) < 0.01 for edge in edges for dots in _PRINTERS) or max(edges) > 1.0:
+        return None, None, ()
+    size = sizes_or_none((edges[0], edges[1], edges[0]))
+    return size, "mm" if size else None, (_CUBIC,) if size else ()
+
+
+def _pixel(page: Any) -> tuple[float, float] | None:
+    """Width and height of a pixel: the inverse of the two resolution tags."""
+    edges = []
+    for name in ("XResolution", "YResolution"):
+        tag = page.tags.get(name)
+        if tag is None or not isinstance(tag.value, tuple) or len(tag.value) != 2 or not all(tag.value):
+            return None
+        edges.append(float(tag.value[1]) / float(tag.value[0]))
+    return edges[0], edges[1]
+
+
+def _number(value: Any, default: float) -> float:
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        return default

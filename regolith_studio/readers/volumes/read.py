@@ -11,18 +11,18 @@ from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError, InputError
 from regolith_studio.imaging.volume import Volume, VolumeKind
-from regolith_studio.readers.guard import Guard
-from regolith_studio.readers.sentences import printable, sentence_about
-from regolith_studio.readers.slabs import OpenedFile, Progress, opened_file
-from regolith_studio.readers.volume_files import volume_files
-from regolith_studio.readers.volume_format import DatasetEntry, Shape, Sizes
-from regolith_studio.readers.volume_header import (
+from regolith_studio.readers.error_messages import printable, sentence_about
+from regolith_studio.readers.sandbox.parent import Guard
+from regolith_studio.readers.volumes.files import volume_files
+from regolith_studio.readers.volumes.header import (
     RawLayout,
     VolumeHeader,
     VoxelSize,
+    kind_of,
     voxel_size_in_micrometres,
 )
-from regolith_studio.readers.volume_kind import kind_of
+from regolith_studio.readers.volumes.slabs import OpenedFile, Progress, opened_file
+from regolith_studio.readers.voxels.header import DatasetEntry, Shape, Sizes
 
 __all__ = [
     "Bounds",

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError, reason_of
-from regolith_studio.readers.guard import checked_size
-from regolith_studio.readers.sentences import sentence_about
+from regolith_studio.readers.error_messages import sentence_about
+from regolith_studio.readers.sandbox.parent import checked_size
 
 MOST_ARRAYS = 64
 LARGEST_UNPACKED = 2 * 1024**3
@@ -99,3 +99,9 @@ def _array(stream: IO[bytes], size: int) -> NDArray[Any]:
     if len(data) != promised:
         raise FileError(f"ends in the middle of an array of {promised} bytes.")
     return np.frombuffer(data, dtype).reshape(shape, order="F" if fortran else "C").copy()
+
+
+def sha256_of(path: Path) -> str:
+    """SHA-256 of the file's bytes, hexadecimal."""
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()

@@ -1,17 +1,20 @@
 """What a volume's file says about itself, and how its voxel size becomes micrometres."""
 
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from regolith_studio.errors import InputError
-from regolith_studio.readers.sentences import shown_name
+from regolith_studio.readers.error_messages import shown_name
+from regolith_studio.readers.sandbox.parent import checked_size
 from regolith_studio.readers.units import unit_factor
-from regolith_studio.readers.volume_format import DatasetEntry, Kind, Shape, Sizes
+from regolith_studio.readers.voxels.header import DatasetEntry, Kind, Shape, Sizes
 
 VoxelSize = float | Sequence[float]
 
@@ -152,3 +155,112 @@ def voxel_size_in_micrometres(
         )
     factor = unit_factor(unit or str(its_unit))
     return sizes[0] * factor, sizes[1] * factor, sizes[2] * factor
+
+
+_EDGES = re.compile(r"(?<!\d)(\d{1,6})([x×_])(\d{1,6})\2(\d{1,6})(?!\d)", re.IGNORECASE)
+_TYPE = re.compile(
+    r"u?int(?:8|16|32|64)|float(?:32|64)|(?<!\d)(?:8|16|32)[-_ ]?bit|[ui](?:8|16|32)|f(?:32|64)",
+    re.IGNORECASE,
+)
+_BIG = re.compile(r"(?<![a-z])(?:be|big(?:[-_ ]?endian)?|msb)(?![a-z])", re.IGNORECASE)
+_BY_SIZE = {1: "uint8", 2: "uint16", 4: "float32", 8: "float64"}
+_LONGEST_HEADER = 1 << 16
+
+
+def layout_from_name(path: Path) -> RawLayout | None:
+    """The layout that the file's name states and its size confirms, or None.
+
+    The name must hold the voxels along x, y and z; the type may stand there too, and follows from the
+    size otherwise. What the file has more than the voxels, up to 64 KiB, is a header before them.
+
+    Raises
+    ------
+    FileError
+        If there is no such file.
+    """
+    size = checked_size(path, largest=None)
+    found = _EDGES.search(path.stem)
+    if found is None:
+        return None
+    shape = (int(found[1]), int(found[3]), int(found[4]))
+    voxels = math.prod(shape)
+    if not voxels:
+        return None
+    dtype = _type_in(path.stem[: found.start()] + " " + path.stem[found.end() :])
+    if dtype is None:
+        dtype = _BY_SIZE.get(size // voxels)
+    if dtype is None:
+        return None
+    offset = size - voxels * np.dtype(dtype).itemsize
+    if not 0 <= offset <= _LONGEST_HEADER:
+        return None
+    return RawLayout(shape, dtype, "big" if _BIG.search(path.stem) else "little", offset)
+
+
+def _type_in(text: str) -> str | None:
+    """The voxel type that a name holds, as numpy calls it."""
+    found = _TYPE.search(text)
+    if found is None:
+        return None
+    word = found[0].lower()
+    if word.startswith(("uint", "int", "float")):
+        return word
+    number = re.sub(r"\D", "", word)
+    return {"u": "uint", "i": "int", "f": "float"}.get(word[0], "uint") + number
+
+
+LEAST_EQUAL_NEIGHBOURS = 0.7
+"""Share of neighbours with the same value, outside the background; noisy greys reach 0.2."""
+MOST_PIECES = 3.0
+"""Pieces that a label has in a slice, on average; a phase or a mask has one for each grain."""
+MOST_CLASSES = 8
+"""Classes of a segmentation that numbers all of them, as ilastik's simple one does."""
+
+
+def kind_of(slices: NDArray[Any]) -> Kind:
+    """``labels`` if each particle seems to have its own number, else ``grey``.
+
+    Labels are whole numbers, not negative, constant over wide areas, and each of them is in few
+    pieces: a mask or a map of phases has many pieces of one value and is grey (to be split). So is
+    a map of few values with no 0, which has a number for what is between the grains, too.
+
+    Parameters
+    ----------
+    slices
+        A few slices of a volume, shape (k, ny, nx).
+    """
+    if slices.dtype.kind == "b" or (slices.dtype.kind == "f" and not _whole(slices)):
+        return "grey"
+    if (slices.dtype.kind in "if" and slices.min() < 0) or not slices.any():
+        return "grey"
+    if slices.all() and len(np.unique(slices)) <= MOST_CLASSES:
+        return "grey"
+    left, right = slices[:, :, :-1], slices[:, :, 1:]
+    inside = (left != 0) & (right != 0)
+    if not inside.any() or (left == right)[inside].mean() < LEAST_EQUAL_NEIGHBOURS:
+        return "grey"
+    return "labels" if _pieces_a_label(slices) <= MOST_PIECES else "grey"
+
+
+def _whole(slices: NDArray[Any]) -> bool:
+    return bool(np.isfinite(slices).all() and (slices == np.floor(slices)).all())
+
+
+def _pieces_a_label(slices: NDArray[Any]) -> float:
+    """How many pieces a value has in a slice, the mean over voxels."""
+    from scipy import ndimage
+
+    pieces = voxels = 0.0
+    for each in slices:
+        edges = np.zeros(each.shape, dtype=bool)
+        edges[1:, 1:] = (each[1:, 1:] != each[:-1, 1:]) | (each[1:, 1:] != each[1:, :-1])
+        parts, count = ndimage.label((each != 0) & ~edges)
+        if not count:
+            continue
+        _, places, sizes = np.unique(parts, return_index=True, return_counts=True)
+        inside = parts.ravel()[places] > 0
+        _, whose = np.unique(each.ravel()[places[inside]], return_inverse=True)
+        size_of_value = np.bincount(whose, sizes[inside])
+        pieces += float((size_of_value * np.bincount(whose)).sum())
+        voxels += float(size_of_value.sum())
+    return pieces / voxels if voxels else 0.0

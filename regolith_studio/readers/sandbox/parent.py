@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from regolith_studio.errors import EnvironmentProblem, FileError, reason_of
-from regolith_studio.readers.protocol import Message, receive, send
-from regolith_studio.readers.sentences import sentence_about
+from regolith_studio.readers.error_messages import sentence_about
+from regolith_studio.readers.sandbox.messages import Message, receive, send
 
 LARGEST_FILE = 2 * 1024**3
 MEMORY = 6 * 1024**3
@@ -237,12 +237,12 @@ def _memory_limit() -> int:
 
 
 def _started(memory: int) -> subprocess.Popen[bytes]:
-    package = str(Path(__file__).resolve().parents[2])
+    package = str(Path(__file__).resolve().parents[3])
     single = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
     inherited = os.environ.get("PYTHONPATH")
     found = {"PYTHONPATH": os.pathsep.join([package, inherited] if inherited else [package])}
     return subprocess.Popen(
-        [sys.executable, "-P", "-B", "-m", "regolith_studio.readers.child", str(memory)],
+        [sys.executable, "-P", "-B", "-m", "regolith_studio.readers.sandbox.child", str(memory)],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,

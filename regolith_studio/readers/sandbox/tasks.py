@@ -1,0 +1,208 @@
+"""Tasks of the sandbox process: meshes, positions and tables of numbers, parsed and checked."""
+
+import codecs
+import hashlib
+import time
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from regolith_studio.errors import FileError
+from regolith_studio.readers.error_messages import printable, sentence_about
+from regolith_studio.readers.formats import MESH_FORMATS, MeshFormat, ParsedMesh, mesh_suffixes
+from regolith_studio.readers.number_rows import number_rows
+from regolith_studio.readers.position_formats import (
+    POSITION_FORMATS,
+    ParsedPositions,
+    PositionFormat,
+    position_suffixes,
+)
+from regolith_studio.readers.sandbox.messages import Message
+from regolith_studio.readers.volume_formats import VOLUME_FORMATS, volume_suffixes
+
+LARGEST_COORDINATE = 1e40
+"""Beyond it the sixth powers in the checks would leave the range of float64."""
+
+
+def read_mesh_file(request: dict[str, Any]) -> Message:
+    """Vertices and faces of the file at ``request["path"]``."""
+    path = Path(request["path"])
+    data = path.read_bytes()
+    parsed, row = parse_mesh(data, path)
+    header = {
+        "notes": parsed.notes,
+        "format": row.key,
+        "shares_vertices": row.shares_vertices,
+        "sha256": hashlib.sha256(data).hexdigest(),
+    }
+    return Message(header, (parsed.vertices.astype("<f8"), parsed.faces.astype("<i8")))
+
+
+def parse_mesh(data: bytes, path: Path) -> tuple[ParsedMesh, MeshFormat]:
+    """Triangles with finite corners and valid indices, and the format that they came in.
+
+    The content decides where it is unmistakable, the suffix otherwise.
+
+    Raises
+    ------
+    FileError
+        With a whole sentence that names the file.
+    """
+    try:
+        data = without_mark(data)
+        row, notes = _mesh_format_of(data, path)
+        with np.errstate(all="ignore"):
+            parsed = row.parse(data, path)
+            return _checked_mesh(replace(parsed, notes=notes + parsed.notes)), row
+    except FileError as error:
+        raise FileError(sentence_about(path, str(error))) from None
+
+
+def without_mark(data: bytes) -> bytes:
+    """Text without the byte order mark that some editors put first, and never in UTF-16."""
+    if data.startswith(codecs.BOM_UTF8):
+        return data[len(codecs.BOM_UTF8) :]
+    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return data.decode("utf-16", "replace").encode()
+    return data
+
+
+def _mesh_format_of(data: bytes, path: Path) -> tuple[MeshFormat, tuple[str, ...]]:
+    if not data:
+        raise FileError("is empty: it has no bytes at all.")
+    suffix = path.suffix.lower()
+    suffix_or_none = printable(path.suffix) or "without a suffix"
+    named = next((row for row in MESH_FORMATS.values() if suffix in row.suffixes), None)
+    shown = next((row for row in MESH_FORMATS.values() if row.recognises(data[:1024])), None)
+    if shown is not None and shown is not named:
+        return shown, (f"The file is named {suffix_or_none} but holds {shown.label}.",)
+    if named is not None:
+        return named, ()
+    if path.name.lower().endswith(tuple(volume_suffixes() - set(VOLUME_FORMATS["raw"].suffixes))):
+        raise FileError(
+            "is a volume of voxels, not a mesh: make particles of it with “regolith-studio extract”, or on "
+            "the page Scan of the window."
+        )
+    raise FileError(
+        f"is of no kind that is read here ({suffix or 'no suffix'}); "
+        f"what is read are meshes in {', '.join(sorted(mesh_suffixes()))}."
+    )
+
+
+def _checked_mesh(parsed: ParsedMesh) -> ParsedMesh:
+    vertices, faces = parsed.vertices, parsed.faces
+    if not len(vertices):
+        raise FileError("holds an empty mesh: it has no vertices.")
+    if not len(faces):
+        raise FileError(
+            f"is a point cloud: its number of points is {len(vertices):,}, and it has no faces; "
+            "reconstruct a surface first."
+        )
+    if faces.min() < 0 or faces.max() >= len(vertices):
+        raise FileError(f"has faces that point to vertices beyond its {len(vertices):,}.")
+    good = np.asarray((np.abs(vertices) < LARGEST_COORDINATE).all(axis=1))
+    if good.all():
+        return parsed
+    kept = np.asarray(good[faces].all(axis=1))
+    if not kept.any():
+        raise FileError("has no face whose corners are all finite numbers; export it again.")
+    lost = len(faces) - np.count_nonzero(kept)
+    notes = parsed.notes
+    if lost:
+        notes += (f"Left out {lost:,} faces with a corner that is not a finite number.",)
+    return ParsedMesh(np.where(good[:, None], vertices, 0.0), faces[kept], notes)
+
+
+LARGEST_POSITION = 1e30
+
+
+def read_positions_file(request: dict[str, Any]) -> Message:
+    """Points and perhaps diameters of the file at ``request["path"]``."""
+    path = Path(request["path"])
+    parsed, row = parse_positions(path.read_bytes(), path)
+    header = {
+        "format": row.key,
+        "label": row.label,
+        "notes": parsed.notes,
+        "unit": parsed.unit,
+        "diameter_unit": parsed.diameter_unit,
+    }
+    arrays = (parsed.points, *(() if parsed.diameters is None else (parsed.diameters,)))
+    return Message(header, tuple(np.ascontiguousarray(array, "<f8") for array in arrays))
+
+
+def read_number_rows(request: dict[str, Any]) -> Message:
+    """The rows of the text at ``request["path"]`` below at most ``request["headers"]`` lines of header."""
+    path = Path(request["path"])
+    data = path.read_bytes()
+    try:
+        headers = int(request.get("headers", 1))
+        table = number_rows(without_mark(data), headers, numeric_headers=headers)
+    except FileError as error:
+        raise FileError(sentence_about(path, str(error))) from None
+    first = next((line for line in data.splitlines() if line.strip()[:1].isdigit()), b"")
+    return Message(
+        {"names": table.names, "commas": b"," in first}, (np.ascontiguousarray(table.numbers, "<f8"),)
+    )
+
+
+def parse_positions(data: bytes, path: Path) -> tuple[ParsedPositions, PositionFormat]:
+    """Particles with finite positions and positive diameters, and the format that they came in.
+
+    Raises
+    ------
+    FileError
+        With a whole sentence that names the file.
+    """
+    try:
+        if not data:
+            raise FileError("is empty: it has no bytes at all.")
+        data = without_mark(data)
+        row = _position_format_of(data, path)
+        with np.errstate(all="ignore"):
+            return _checked_positions(row.parse(data)), row
+    except FileError as error:
+        raise FileError(sentence_about(path, str(error))) from None
+
+
+def _position_format_of(data: bytes, path: Path) -> PositionFormat:
+    rows = POSITION_FORMATS.values()
+    shown = next((row for row in rows if row.recognises(data[:1024])), None)
+    named = next((row for row in rows if path.suffix.lower() in row.suffixes), None)
+    if shown is None and named is None:
+        raise FileError(
+            f"holds no positions that are read here ({printable(path.suffix) or 'no suffix'}); they end in "
+            f"{', '.join(sorted(position_suffixes()))}."
+        )
+    return shown or named  # type: ignore[return-value]
+
+
+def _checked_positions(parsed: ParsedPositions) -> ParsedPositions:
+    points, diameters = parsed.points, parsed.diameters
+    if not len(points):
+        raise FileError("holds no particles.")
+    good = np.asarray((np.abs(points) < LARGEST_POSITION).all(axis=1))
+    if diameters is not None:
+        good &= (diameters > 0.0) & (diameters < LARGEST_POSITION)
+    if not good.any():
+        raise FileError("has no particle whose position and size are proper numbers.")
+    lost = len(points) - int(np.count_nonzero(good))
+    if not lost:
+        return parsed
+    note = f"Left out {lost:,} of {len(points):,} particles whose position or size is no proper number."
+    kept = None if diameters is None else diameters[good]
+    return replace(parsed, points=points[good], diameters=kept, notes=(*parsed.notes, note))
+
+
+def spin(_request: dict[str, Any]) -> Message:
+    """Work for ever, as a parser does on a file made to that end; the tests ask for it."""
+    while True:
+        pass
+
+
+def sleep(_request: dict[str, Any]) -> Message:
+    """Hang, as a parser does on a file made to that end; the tests ask for it."""
+    time.sleep(3600.0)
+    return Message({})
