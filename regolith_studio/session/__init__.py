@@ -6,7 +6,7 @@ The cycle
 :class:`~regolith_studio.session.results.ParticleEntry`), ``choices`` (a frozen
 :class:`~regolith_studio.session.choices.Choices`) and ``results`` (a frozen
 :class:`~regolith_studio.session.results.Results`). A panel reads these, connects to
-``session.topics.<name>`` and calls:
+``session.events.<name>`` and calls:
 
 =============================================  ==================================================
 ``open(paths, unit=None, add=False)``          read meshes in the background
@@ -21,12 +21,10 @@ The cycle
 =============================================  ==================================================
 
 Bad values raise :class:`~regolith_studio.errors.InputError` with one sentence; everything that goes
-wrong in the background arrives at ``topics.failed`` as a ``Failure(title, sentence, details)``.
+wrong in the background arrives at ``events.failed`` as a ``Failure(title, sentence, details)``.
 
-Topics: ``particles choices fit surface descriptors coarsening lmax_study coarsening_study tasks``
-carry no argument (read the session anew); ``failed`` carries a ``Failure``, ``problems`` a tuple of
-``Problem(path, sentence)`` of files that were refused, ``exported`` the folder written. All are
-emitted in the thread that owns the session.
+The events are those of :class:`~regolith_studio.session.events.SessionEvents`, emitted in the thread that
+owns the session; ``choices`` carries the names of the fields that have changed.
 
 Which work a change of choices makes necessary is decided by the pure function
 :func:`~regolith_studio.session.plan.plan`; requests are numbered and answers to old ones dropped.

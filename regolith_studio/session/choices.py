@@ -127,6 +127,11 @@ class Choices:
             changes["settings"] = ()
         return dataclasses.replace(self, **changes)
 
+    def changed_from(self, before: Self) -> frozenset[str]:
+        """Names of the fields that differ."""
+        names = (each.name for each in dataclasses.fields(self))
+        return frozenset(name for name in names if getattr(self, name) != getattr(before, name))
+
     @property
     def fit_options(self) -> FitOptions:
         """How a radius function is taken and expanded."""

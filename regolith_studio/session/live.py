@@ -8,7 +8,6 @@ from regolith_studio.jobs.coarsening import coarsen_one
 from regolith_studio.jobs.events import Failed, Job
 from regolith_studio.jobs.fitting import FitOrder, describe_meshes, draw_surface, fit_one
 from regolith_studio.session.choices import Choices
-from regolith_studio.session.grown import Grown
 from regolith_studio.session.plan import LIVE, Kind, needs, plan
 from regolith_studio.session.results import ParticleEntry, Results
 from regolith_studio.session.tasks import Reactions, TaskBoard
@@ -47,7 +46,7 @@ class Owner(Protocol):
     def choices(self) -> Choices: ...
     @property
     def selected(self) -> ParticleEntry | None: ...
-    def update(self, *topics: str, **changes: Any) -> None: ...
+    def update(self, *events: str, **changes: Any) -> None: ...
     def tell_failure(self, title: str) -> Callable[[Failed], None]: ...
 
 
@@ -193,7 +192,7 @@ class LiveResults:
     def _keep_progress(self, step: "CoarseningProgress") -> None:
         self._losses.append((step.step, step.loss))
         best = step if step.polyhedron else self._owner.results.best
-        history = Grown(self._losses)
+        history = tuple(self._losses)
         self._owner.update("coarsening", coarsening_progress=step, best=best, loss_history=history)
         self._has_shown = self._has_shown or step.polyhedron is not None
         if self._has_shown and Kind.COARSENING in self._due:

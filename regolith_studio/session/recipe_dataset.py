@@ -64,13 +64,7 @@ class Exports(Strict):
 
 @dataclass(frozen=True)
 class Standing:
-    """What the page of the dataset has chosen, as it lies on the shelf of a session."""
+    """What the page of the dataset has chosen."""
 
     representatives: Representatives | None = None
     exports: Exports | None = None
-
-
-STANDING = "standing"
-"""Its name on the shelf."""
-OPENED = "opened_dataset_wish"
-"""Name on the shelf of what the recipe that was opened last says of its dataset, a :class:`Standing`."""

@@ -15,15 +15,15 @@ from regolith_studio.jobs.runners.protocol import Runner
 from regolith_studio.readers.particles import FileProblem, LoadedParticles, unique_names
 from regolith_studio.session.bringing import Brought, bring_back
 from regolith_studio.session.choices import Choices
+from regolith_studio.session.events import Failure, SessionEvents
 from regolith_studio.session.live import LiveResults
 from regolith_studio.session.origins import Files, Origin, Place, Shipped, place_by_source, places_of
 from regolith_studio.session.plan import STUDIES, Kind, depends
 from regolith_studio.session.recipe import SAMPLE, Recipe
+from regolith_studio.session.recipe_dataset import Standing
 from regolith_studio.session.results import ParticleEntry, Results
-from regolith_studio.session.shelf import Shelf
 from regolith_studio.session.studies import study_job
 from regolith_studio.session.tasks import Reactions, Task, TaskBoard
-from regolith_studio.session.topics import Failure, Topics
 from regolith_studio.session.undo import History
 
 
@@ -36,18 +36,32 @@ class Session:
         Drives the jobs and brings their events into this thread.
     choices
         Where to begin; the defaults if left out.
+
+    Attributes
+    ----------
+    events
+        What can be listened to.
+    particles, results
+        All that is open, and what has been computed of the selected particle.
+    runs_folder
+        Where simulations are kept.
+    dataset_request
+        What a recipe of this session says of its dataset; ``None`` before representatives are chosen.
     """
 
     def __init__(self, runner: Runner, choices: Choices | None = None) -> None:
-        self.topics = Topics()
+        self.events = SessionEvents()
         self.particles: tuple[ParticleEntry, ...] = ()
         self.results = Results()
         self._runner = runner
         self._history: History[Choices] = History(choices or Choices())
-        self._board = TaskBoard(runner, self.topics.tasks.emit)
+        self._board = TaskBoard(runner, self.events.tasks.emit)
         self._live = LiveResults(self, self._board)
         self._studied: dict[Kind, Choices] = {}
-        self.shelf = Shelf(self.topics.shelf.emit)
+        self._dataset_folder: Path | None = None
+        self._opened_request: Standing | None = None
+        self.runs_folder: Path | None = None
+        self.dataset_request: Standing | None = None
 
     # --- reading -------------------------------------------------------------------------------
 
@@ -75,6 +89,26 @@ class Session:
     def can_redo(self) -> bool:
         """Whether :meth:`redo` would change something."""
         return self._history.can_redo
+
+    @property
+    def dataset_folder(self) -> Path | None:
+        """The dataset that was written or read last."""
+        return self._dataset_folder
+
+    @dataset_folder.setter
+    def dataset_folder(self, folder: Path) -> None:
+        self._dataset_folder = folder
+        self.events.dataset_folder.emit()
+
+    @property
+    def opened_request(self) -> Standing | None:
+        """What the recipe that was opened last says of its dataset."""
+        return self._opened_request
+
+    @opened_request.setter
+    def opened_request(self, request: Standing) -> None:
+        self._opened_request = request
+        self.events.opened_request.emit()
 
     # --- particles -----------------------------------------------------------------------------
 
@@ -228,7 +262,7 @@ class Session:
     def export_dataset(self, folder: Path | str, options: DatasetOptions | None = None) -> int:
         """Coarsen every open particle with the present choices and write the dataset folder.
 
-        Returns the task's id; ``topics.exported`` tells when it is done, ``topics.problems`` which
+        Returns the task's id; ``events.exported`` tells when it is done, ``events.problems`` which
         particles are not in it.
         """
         wish = options or DatasetOptions()
@@ -239,8 +273,8 @@ class Session:
         def tell(built: Built) -> None:
             failed = tuple(FileProblem(o.name, o.problem) for o in built.outcomes if not o.coarsened)
             if failed:
-                self.topics.problems.emit(failed)
-            self.topics.exported.emit(built.folder)
+                self.events.problems.emit(failed)
+            self.events.exported.emit(built.folder)
 
         title = "Building the dataset"
         return self._board.start("export", title, job, Reactions(tell, failed=self.tell_failure(title)))
@@ -261,7 +295,7 @@ class Session:
         ----------
         finished, partial, failed, stopped
             Called in this thread while no newer job has taken the lane; a failure that nobody takes
-            care of is told by ``topics.failed``.
+            care of is emitted as ``events.failed``.
         """
         reactions = Reactions(
             finished,
@@ -291,17 +325,17 @@ class Session:
 
     # --- for the parts of the session ----------------------------------------------------------
 
-    def update(self, *topics: str, **changes: Any) -> None:
-        """Replace fields of the results and tell the topics."""
+    def update(self, *events: str, **changes: Any) -> None:
+        """Replace fields of the results and emit events by their names."""
         self.results = dataclasses.replace(self.results, **changes)
-        for topic in topics:
-            getattr(self.topics, topic).emit()
+        for name in events:
+            getattr(self.events, name).emit()
 
     def tell_failure(self, title: str) -> Any:
         """A reaction that tells a failure of the work called `title`."""
 
         def tell(failure: Failed) -> None:
-            self.topics.failed.emit(Failure(title, failure.sentence, failure.details))
+            self.events.failed.emit(Failure(title, failure.sentence, failure.details))
 
         return tell
 
@@ -311,9 +345,10 @@ class Session:
         return tuple(entry.particle for entry in self.particles)
 
     def _follow(self, before: Choices) -> None:
-        if self.choices == before:
+        changed = self.choices.changed_from(before)
+        if not changed:
             return
-        self.topics.choices.emit()
+        self.events.choices.emit(changed)
         self._mark_outdated()
         self._live.follow(before, self.choices)
 
@@ -334,7 +369,7 @@ class Session:
         self, loaded: LoadedParticles, places: Sequence[Place | None] = (), add: bool = False
     ) -> None:
         if loaded.problems:
-            self.topics.problems.emit(loaded.problems)
+            self.events.problems.emit(loaded.problems)
         kept = self.particles if add else ()
         fresh = unique_names(loaded.particles, [entry.id for entry in kept])
         known = places or [place_by_source(particle) for particle in loaded.particles]
@@ -349,8 +384,8 @@ class Session:
         self.update(
             "lmax_study", "coarsening_study", lmax_study=None, coarsening_study=None, outdated=frozenset()
         )
-        self.topics.particles.emit()
-        self.topics.choices.emit()
+        self.events.particles.emit()
+        self.events.choices.emit(frozenset({"selected"}))
         self._inspect()
         self._live.follow(None, self.choices)
 
@@ -363,7 +398,7 @@ class Session:
                         rows[at], health=facts.health, descriptors=facts.descriptors, sight=facts.sight
                     )
             self.particles = tuple(rows)
-            self.topics.particles.emit()
+            self.events.particles.emit()
 
         job = Job(examine_particles, (self._open_particles(),))
         title = "Measuring particles"

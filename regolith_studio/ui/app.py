@@ -88,10 +88,10 @@ def _warm_up_later(session: Session, runner: ThreadRunner) -> None:
 
     def begin() -> None:
         if session.results.coarsened is not None:
-            cut()
+            session.events.coarsening.disconnect(begin)
             runner.submit(Job(warm_up, (1,)), lambda _event: None, "warm-up")
 
-    cut = session.topics.coarsening.connect(begin)
+    session.events.coarsening.connect(begin)
 
 
 def _give_back_at_rest(window: MainWindow) -> None:

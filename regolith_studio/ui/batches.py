@@ -13,7 +13,6 @@ from regolith_studio.session.portrait import Portrait
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.session.project import without_file
 from regolith_studio.session.recipe import Recipe, read_recipe
-from regolith_studio.session.recipe_dataset import STANDING
 from regolith_studio.session.session import Session
 from regolith_studio.ui.dialogs.batch import BatchDialog, BatchOrder
 from regolith_studio.ui.translation import mark, tr
@@ -89,7 +88,7 @@ class Batches(QObject):
     def _recipe(self, order: BatchOrder) -> Recipe:
         if order.recipe:
             return read_recipe(order.recipe)
-        standing = self._session.shelf.get(STANDING)
+        standing = self._session.dataset_request
         portrait = Portrait.of(self._session.particles, self._session.choices, order.outputs, standing)
         return portrait.beside((order.folder / "drawn.json").absolute(), whole_path=True)
 

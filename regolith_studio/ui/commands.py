@@ -19,7 +19,7 @@ from regolith_studio.session.portrait import Portrait
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.session.project import input_shown, inputs_of
 from regolith_studio.session.recipe import read_recipe
-from regolith_studio.session.recipe_dataset import OPENED, STANDING, Standing
+from regolith_studio.session.recipe_dataset import Standing
 from regolith_studio.session.scripting import as_command, as_python
 from regolith_studio.session.session import Session
 from regolith_studio.ui.dialogs.export import ExportDialog, ExportOrder
@@ -113,7 +113,7 @@ class Commands(QObject):
         name, _ = QFileDialog.getSaveFileName(self._window, tr("Save recipe"), start, kinds)
         if not name:
             return
-        standing = self._session.shelf.get(STANDING)
+        standing = self._session.dataset_request
         portrait = Portrait.of(self._session.particles, self._session.choices, standing=standing)
         try:
             write_bytes(Path(name), portrait.beside(Path(name)).to_json().encode("utf-8"))
@@ -183,7 +183,7 @@ class Commands(QObject):
         names = {each.name for each in dataclasses.fields(Choices)} - {"selected"}
         self._session.choose(**{name: getattr(recipe.choices(), name) for name in names})
         if recipe.representatives or recipe.exports:
-            self._session.shelf.put(OPENED, Standing(recipe.representatives, recipe.exports))
+            self._session.opened_request = Standing(recipe.representatives, recipe.exports)
         if recipe.population is not None and recipe.population.n > MOST:
             self._toast.note(tr("Its choices are taken; it is too large to be opened: use Run as a batch."))
             return None

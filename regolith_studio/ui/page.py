@@ -79,7 +79,7 @@ class PageContext:
     key
         Of the page.
     session
-        Particles, choices, results, topics; see :mod:`regolith_studio.session`.
+        Particles, choices, results, events; see :mod:`regolith_studio.session`.
     wiring
         The page's own: what it refreshes is refreshed while the page is seen, and at its next visit
         if something has changed meanwhile.

@@ -1,7 +1,6 @@
 """Project files in the window: saved, opened, saved by themselves, and brought back after a crash."""
 
 import os
-from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
@@ -47,10 +46,8 @@ class Projects(QObject):
         self._recovered: dict[Path, QLockFile] = {}
         self._timer = QTimer(self, interval=1000 * AUTOSAVE_SECONDS, singleShot=True)
         self._timer.timeout.connect(self._autosave)
-        self._cuts: list[Callable[[], None]] = [
-            session.topics.choices.connect(self._note_change),
-            session.topics.particles.connect(self._note_change),
-        ]
+        for event in (session.events.choices, session.events.particles):
+            event.connect(self._note_change)
 
     @property
     def modified(self) -> bool:
@@ -128,8 +125,8 @@ class Projects(QObject):
     def close(self) -> None:
         """The window closes as it should: nothing needs to be brought back."""
         self._timer.stop()
-        for cut in self._cuts:
-            cut()
+        for event in (self._session.events.choices, self._session.events.particles):
+            event.disconnect(self._note_change)
         _remove(autosave_path())
         self._lock.unlock()
         self._forget_recovered()
@@ -172,14 +169,18 @@ class Projects(QObject):
         """Put the particle back on screen as soon as it has been read."""
 
         def select() -> None:
-            cut()
+            particles.disconnect(later)
             if any(entry.id == name for entry in self._session.particles):
                 self._session.select(name)
             if self.path is not None:
                 self._saved = self._state()
                 self.changed.emit()
 
-        cut = self._session.topics.particles.connect(lambda: QTimer.singleShot(0, self, select))
+        def later() -> None:
+            QTimer.singleShot(0, self, select)
+
+        particles = self._session.events.particles
+        particles.connect(later)
 
     def _note_change(self) -> None:
         if not self._timer.isActive():

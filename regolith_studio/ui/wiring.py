@@ -1,7 +1,7 @@
 """Connects the session with the panels: the one place that knows both."""
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from functools import partial
 from typing import Any, Protocol
 
@@ -37,7 +37,7 @@ class Wiring(QObject):
     Parameters
     ----------
     session
-        Whose topics are heard.
+        Whose events are listened to.
     problem
         Told the sentence of a choice that the session refuses.
     """
@@ -65,22 +65,34 @@ class Wiring(QObject):
 
         panel.valueChanged.connect(choose)
         panel.editingFinished.connect(self._session.end_step)
-        self._cuts.append(self._session.topics.choices.connect(show))
+        self._listen("choices", show, panel.FIELDS)
         show()
 
     def refresh(
-        self, topics: str, action: Callable[[], None], *, slow: bool = False, holds: bool = False
+        self,
+        events: str,
+        action: Callable[[], None],
+        fields: Collection[str] = (),
+        *,
+        slow: bool = False,
+        holds: bool = False,
     ) -> None:
-        """Call `action` soon after any of the topics (words in one text) has said something, and now.
+        """Call `action` soon after any of the events (words in one text), and now.
 
-        What `holds` particles is also refreshed by :meth:`let_go` while nothing else is.
+        Parameters
+        ----------
+        fields
+            Of the choices, whose change matters to `action`; each of them if empty.
+        slow
+            For tables and plots.
+        holds
+            Whether `action` keeps particles, and is called by :meth:`let_go` too while nothing else is.
         """
         beat = self._slow if slow else self._fast
         if holds:
             self._holders.append(partial(beat.run_now, action))
-        for topic in topics.split():
-            signal = getattr(self._session.topics, topic)
-            self._cuts.append(signal.connect(lambda *_: beat.add(action)))
+        for event in events.split():
+            self._listen(event, lambda: beat.add(action), fields)
         action()
 
     @property
@@ -88,9 +100,22 @@ class Wiring(QObject):
         """Nothing waits to be refreshed, or all of it waits for :meth:`resume`."""
         return self._fast.idle and self._slow.idle
 
-    def hear(self, topic: str, action: Callable[..., None]) -> None:
-        """Call `action` with what a topic says, at once."""
-        self._cuts.append(getattr(self._session.topics, topic).connect(action))
+    def hear(self, event: str, action: Callable[..., None]) -> None:
+        """Call `action` with the arguments of an event, at once."""
+        signal = getattr(self._session.events, event)
+        signal.connect(action)
+        self._cuts.append(lambda: signal.disconnect(action))
+
+    def _listen(self, event: str, action: Callable[[], None], fields: Collection[str]) -> None:
+        if event != "choices" or not fields:
+            self.hear(event, action)
+            return
+
+        def act_on(changed: frozenset[str]) -> None:
+            if not changed.isdisjoint(fields):
+                action()
+
+        self.hear(event, act_on)
 
     def pause(self) -> None:
         """Refresh nothing until :meth:`resume`; what is due meanwhile is kept."""

@@ -9,7 +9,6 @@ from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.jobs.events import Job, Listener
 from regolith_studio.jobs.runners.run_job import run_job
 from regolith_studio.session.choices import Choices
-from regolith_studio.session.grown import Grown
 from regolith_studio.session.session import Session
 
 
@@ -92,7 +91,7 @@ def test_that_a_coarsening_shows_its_first_polyhedron_before_it_makes_room(
     for n_facets in (13, 14):
         session.choose("drag", n_facets=n_facets)
     shown: list[int] = []
-    session.topics.coarsening.connect(
+    session.events.coarsening.connect(
         lambda: shown.append(session.results.polyhedron.n_facets if session.results.polyhedron else 0)
     )
     assert not held.let("coarsening")  # stopped as soon as it had shown something
@@ -134,7 +133,7 @@ def test_that_another_particle_never_waits_for_the_surface_of_the_last(session: 
 
 def test_that_an_outdated_failure_is_not_told(session: Session, held: Held) -> None:
     failures: list[str] = []
-    session.topics.failed.connect(lambda failure: failures.append(failure.sentence))
+    session.events.failed.connect(lambda failure: failures.append(failure.sentence))
     session.choose(l_max=5)
     handle = held.waiting["surface"][0]
     handle.job = Job(_refuse)
@@ -146,7 +145,7 @@ def test_that_an_outdated_failure_is_not_told(session: Session, held: Held) -> N
 
 def test_that_nothing_is_made_of_a_surface_that_could_not_be_drawn(session: Session, held: Held) -> None:
     failures: list[str] = []
-    session.topics.failed.connect(lambda failure: failures.append(failure.sentence))
+    session.events.failed.connect(lambda failure: failures.append(failure.sentence))
     session.choose(l_max=5)
     held.waiting["surface"][0].job = Job(_refuse)
     held.all()
@@ -165,13 +164,3 @@ def test_that_nothing_is_made_of_a_surface_that_could_not_be_drawn(session: Sess
 def _refuse():  # type: ignore[no-untyped-def]
     raise ValueError("an old degree")
     yield
-
-
-def test_that_a_snapshot_of_a_growing_list_stays_what_it_was() -> None:
-    items = [1, 2]
-    then = Grown(items)
-    items.append(3)
-    assert list(then) == [1, 2] == then
-    assert (then[-1], then[:1], len(Grown(items))) == (2, (1,), 3)
-    with pytest.raises(IndexError):
-        then[2]

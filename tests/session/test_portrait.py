@@ -53,7 +53,7 @@ def files(folder: Path) -> dict[str, bytes]:
 def assert_that_a_run_gives_the_dataset_of(session: Session, place: Path) -> Portrait:
     """By way of the recipe on disk; the dataset of the session has the name of the run's folder."""
     exported: list[Path] = []
-    session.topics.exported.connect(exported.append)
+    session.events.exported.connect(exported.append)
     session.export_dataset(place / "window" / "grains")
     assert exported
     portrait = Portrait.of(session.particles, session.choices, ONLY_DATASET)

@@ -52,10 +52,10 @@ def opened(session: Session, grains: Path) -> Session:
     return session
 
 
-def listen(session: Session, *topics: str) -> list[str]:
+def listen(session: Session, *events: str) -> list[str]:
     heard: list[str] = []
-    for topic in topics:
-        getattr(session.topics, topic).connect(lambda *_, name=topic: heard.append(name))
+    for event in events:
+        getattr(session.events, event).connect(lambda *_, name=event: heard.append(name))
     return heard
 
 
@@ -172,7 +172,7 @@ def test_that_a_refused_choice_changes_nothing(opened: Session) -> None:
 
 def test_that_files_that_cannot_be_read_are_told_and_cost_nothing(session: Session, grains: Path) -> None:
     problems: list[str] = []
-    session.topics.problems.connect(lambda found: problems.extend(each.sentence for each in found))
+    session.events.problems.connect(lambda found: problems.extend(each.sentence for each in found))
     session.open([grains / "grain-0.stl", grains / "nothing.stl"])
     assert [entry.id for entry in session.particles] == ["grain-0"]
     assert len(problems) == 1
@@ -180,7 +180,7 @@ def test_that_files_that_cannot_be_read_are_told_and_cost_nothing(session: Sessi
 
 def test_that_opening_nothing_useful_fails_with_a_sentence_and_keeps_what_was_there(opened: Session) -> None:
     failures: list[str] = []
-    opened.topics.failed.connect(lambda failure: failures.append(failure.sentence))
+    opened.events.failed.connect(lambda failure: failures.append(failure.sentence))
     opened.open(["/nowhere/nothing.stl"])
     assert len(failures) == 1
     assert len(opened.particles) == 3
@@ -195,7 +195,7 @@ def test_that_particles_of_the_same_name_are_told_apart(opened: Session, grains:
 
 def test_that_a_dataset_holds_every_particle(opened: Session, tmp_path: Path) -> None:
     written: list[Path] = []
-    opened.topics.exported.connect(written.append)
+    opened.events.exported.connect(written.append)
     opened.export_dataset(tmp_path / "set", DatasetOptions(name="three"))
     dataset = read_dataset(tmp_path / "set")
     assert [path.name for path in written] == ["set"]
@@ -207,7 +207,7 @@ def test_that_a_dataset_holds_every_particle(opened: Session, tmp_path: Path) ->
 def test_that_an_export_refuses_a_folder_in_use_before_it_works(opened: Session, tmp_path: Path) -> None:
     (tmp_path / "thesis.txt").write_text("important")
     failures: list[str] = []
-    opened.topics.failed.connect(lambda failure: failures.append(failure.sentence))
+    opened.events.failed.connect(lambda failure: failures.append(failure.sentence))
     opened.export_dataset(tmp_path)
     assert len(failures) == 1
     assert (tmp_path / "thesis.txt").read_text() == "important"
@@ -305,7 +305,7 @@ def test_that_a_fit_that_cannot_be_made_shows_nothing_and_is_told_once(
         raise InputError("The grain is too shy.")
 
     failures: list[str] = []
-    opened.topics.failed.connect(lambda failure: failures.append(failure.sentence))
+    opened.events.failed.connect(lambda failure: failures.append(failure.sentence))
     monkeypatch.setattr("regolith_studio.harmonics.fit.fit_harmonics", refuse)
     opened.select("grain-1")
     results = opened.results
@@ -340,3 +340,15 @@ def test_that_the_particle_is_measured_once_whatever_l_max(opened: Session) -> N
     assert opened.results.particle_descriptors is before
     opened.choose(box_metric="trimesh")
     assert opened.results.particle_descriptors is not before
+
+
+def test_that_a_change_of_choices_names_the_fields_that_have_changed(opened: Session) -> None:
+    changes: list[frozenset[str]] = []
+    opened.events.choices.connect(changes.append)
+    opened.choose(l_max=7, seed=opened.choices.seed)
+    opened.choose(method="annealing", l_max=7)
+    opened.undo()
+    opened.choose(l_max=7)
+    assert changes == [{"l_max"}, {"method"}, {"method"}]
+    opened.select("grain-1")
+    assert changes[-1] == {"selected"}

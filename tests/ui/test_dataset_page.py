@@ -18,7 +18,7 @@ from regolith_studio.io.stl import stl_bytes
 from regolith_studio.jobs.runners.inline import InlineRunner
 from regolith_studio.session.performing import perform
 from regolith_studio.session.recipe import Recipe, read_recipe
-from regolith_studio.session.recipe_dataset import STANDING, Exports, Representatives
+from regolith_studio.session.recipe_dataset import Exports, Representatives
 from regolith_studio.session.session import Session
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.dialogs.folder import FolderDialog
@@ -94,7 +94,7 @@ def test_that_a_new_user_gets_to_a_rocky_script_and_a_yade_run(chosen, wait, tmp
     copy = chosen.exports.findChild(QPushButton, "dataset_copy_yade")
     QTest.mouseClick(copy, Qt.MouseButton.LeftButton)
     assert QGuiApplication.clipboard().text() == f"yade -j1 {tmp_path / 'yade'}/yade_case.py"
-    assert chosen.session.shelf.get("dataset_folder") == folder
+    assert chosen.session.dataset_folder == folder
 
 
 def test_that_the_curve_falls_and_the_slider_chooses_among_its_points(chosen, wait) -> None:
@@ -267,7 +267,7 @@ def test_that_the_library_lists_datasets_with_what_came_from_them(chosen, tmp_pa
 def test_that_the_first_dataset_opens_the_library_with_its_simulations(chosen, tmp_path, wait) -> None:
     """Nobody chose a folder: what was built is listed, and what was simulated elsewhere with it."""
     runs = tmp_path / "elsewhere"
-    chosen.session.shelf.put("runs_folder", runs)
+    chosen.session.runs_folder = runs
     chosen.build_in(tmp_path / "sets" / "set")
     library = chosen.library
     wait(lambda: library.tree.topLevelItemCount() == 1)
@@ -362,7 +362,7 @@ def test_that_a_recipe_that_is_opened_sets_the_controls(page, wait, tmp_path) ->
     assert (options.coarse_graining_factor, options.n_particles) == (4.0, 7)
     assert (options.contact.density, options.test.gravity) == (2500.0, 1.62)
     page.folder.name.setText("mine")
-    page.session.shelf.put("something", "else")
+    page.session.events.opened_request.emit()
     wait(lambda: page._context.wiring.idle)
     assert page.folder.name.text() == "mine", "a recipe is taken once"
 
@@ -370,9 +370,9 @@ def test_that_a_recipe_that_is_opened_sets_the_controls(page, wait, tmp_path) ->
 def test_that_a_format_that_may_not_change_shapes_is_in_no_recipe(chosen) -> None:
     altering = next(key for key, each in EXPORTERS.items() if each.alters)
     chosen.targets.setValue({"targets": [altering]})
-    assert chosen.session.shelf.get(STANDING).exports is None
+    assert chosen.session.dataset_request.exports is None
     chosen.targets.setValue({"targets": [altering], "lossy": True})
-    assert chosen.session.shelf.get(STANDING).exports.targets == [altering]
+    assert chosen.session.dataset_request.exports.targets == [altering]
     chosen.session.adopt(grains(first=3))
     chosen._show_particles()
-    assert chosen.session.shelf.get(STANDING) is None
+    assert chosen.session.dataset_request is None

@@ -243,7 +243,7 @@ def test_that_ten_shapes_are_exported_for_rocky(newcomer, tmp_path):
     newcomer.rest()
     newcomer.answer(tmp_path, lambda: newcomer.click(QPushButton, "dataset_export"))
     newcomer.rest()
-    folder = newcomer.window.session.shelf.get("dataset_folder")
+    folder = newcomer.window.session.dataset_folder
     assert folder.parent == tmp_path
     assert len(read_dataset(folder)) == 10
     assert list(validate_dataset(folder)) == []

@@ -2,6 +2,7 @@
 
 import time
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from PySide6.QtCore import Qt, QTimer
@@ -33,7 +34,7 @@ class _Counter(PageWidget):
         super().__init__()
         self.context, self.refreshed, self.heard, self.entries = context, 0, [], 0
         QVBoxLayout(self).addWidget(QLabel(context.key))
-        context.wiring.refresh("shelf", self._refresh)
+        context.wiring.refresh("dataset_folder", self._refresh)
 
     def _refresh(self):
         self.refreshed += 1
@@ -114,7 +115,7 @@ def test_that_a_hidden_page_is_refreshed_when_it_is_seen_again(stack, wait):
     assert one.refreshed == 1
     stack.go("two")
     for number in range(5):
-        stack.session.shelf.put("population", number)
+        stack.session.dataset_folder = Path(str(number))
     QTest.qWait(100)
     assert one.refreshed == 1
     stack.go("one")
@@ -124,30 +125,30 @@ def test_that_a_hidden_page_is_refreshed_when_it_is_seen_again(stack, wait):
 
 
 class _Holder(PageWidget):
-    """A page that keeps what lies on the shelf."""
+    """A page that keeps what the session holds."""
 
     def __init__(self, context):
         super().__init__()
         self.context, self.held = context, None
-        context.wiring.refresh("shelf", self._hold, holds=True)
+        context.wiring.refresh("dataset_folder", self._hold, holds=True)
 
     def _hold(self):
-        self.held = self.context.session.shelf.get("sample")
+        self.held = self.context.session.dataset_folder
 
 
 @pytest.mark.parametrize("slow", [False, True])
 def test_that_a_hidden_page_lets_go_what_is_not_open_any_more(stack, slow):
     stack.pages["one"] = replace(stack.pages["one"], make=_Holder)
     one = stack.go("one")
-    one.context.wiring.refresh("shelf", one._hold, slow=slow, holds=True)
-    stack.session.shelf.put("sample", "old")
+    one.context.wiring.refresh("dataset_folder", one._hold, slow=slow, holds=True)
+    stack.session.dataset_folder = Path("old")
     stack.go("two")
     stack.go("one")
     stack.go("two")
-    stack.session.shelf.put("sample", "new")
-    assert one.held != "new"
+    stack.session.dataset_folder = Path("new")
+    assert one.held != Path("new")
     stack.let_go()
-    assert one.held == "new"
+    assert one.held == Path("new")
     one.held = "untouched"
     stack.let_go()
     assert one.held == "untouched"
@@ -218,7 +219,7 @@ def test_that_a_page_that_is_prepared_is_refreshed_when_it_is_seen(pieces, wait)
     pieces.prepare("two")
     wait(lambda: "two" in pieces.widgets)
     two = pieces.widgets["two"]
-    pieces.session.shelf.put("anything", 1)
+    pieces.session.dataset_folder = Path("any")
     assert (pieces.current, two.entries, two.refreshed) == ("one", 0, 1)
     pieces.visit("two")
     assert (pieces.current, two.entries) == ("two", 1)

@@ -26,7 +26,7 @@ from regolith_studio.ui.app import open_window
 projects.AUTOSAVE_SECONDS = 0
 window = open_window(views="image")
 window.show()
-window.session.topics.particles.connect(lambda: window.session.choose(n_facets=17, seed=4))
+window.session.events.particles.connect(lambda: window.session.choose(n_facets=17, seed=4))
 app.exec()
 """
 QUICK = "quadric"

@@ -44,7 +44,7 @@ def page(shown, preferences, wait, monkeypatch):
         "scan", session, wiring, preferences, toast, Commands(session, preferences, toast, frame), "image",
         visited.append,
     )  # fmt: skip
-    session.topics.failed.connect(lambda failure: toast.problem(failure.sentence))
+    session.events.failed.connect(lambda failure: toast.problem(failure.sentence))
     made = PAGE.build(context)
     made.context, made.visited, made.adopted = context, visited, adopted
     QVBoxLayout(frame).addWidget(made)

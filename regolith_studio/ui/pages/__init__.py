@@ -52,14 +52,12 @@ What a page can rely on
   long and touches no widget.
 * **State**: ``context.session`` is the one truth: ``particles``, ``choices``, ``results``,
   ``choose(...)``, ``adopt(particles)`` for particles made by a page (they replace or join the open
-  ones and are measured and shown everywhere), ``shelf`` for anything else that pages hand to each
-  other: ``session.shelf.put("runs_folder", value)``, ``.get("runs_folder")``, topic ``shelf`` (carries
-  the name). Names on the shelf so far: ``dataset_folder`` and ``runs_folder`` (Paths written last), and those
-  of :mod:`~regolith_studio.session.recipe_dataset`. What lies there stays: no particles, no meshes.
-* **Refreshing**: ``context.wiring.refresh("particles choices", action)`` calls `action` soon after these
-  topics, and now; ``slow=True`` for tables and plots. Nothing is refreshed while the page is hidden;
+  ones and are measured and shown everywhere), ``dataset_folder`` and ``runs_folder`` (written last).
+* **Refreshing**: ``context.wiring.refresh("particles choices", action, ("l_max",))`` calls `action` soon
+  after these events, and now; after a change of choices only if one of the fields named has changed.
+  ``slow=True`` for tables and plots. Nothing is refreshed while the page is hidden;
   what was missed follows at the next visit. What keeps particles says ``holds=True``, to let go of
-  those that have been closed. ``context.wiring.hear(topic, action)`` is not held back.
+  those that have been closed. ``context.wiring.hear(event, action)`` is not held back.
 * **Work**: ``context.start(title, job, finished, partial=..., lane=...)`` runs a generator of
   ``Started``, ``Progress`` and ``Partial`` events in a thread; requests are numbered, the newest of a
   lane wins, what an older one says is dropped. Progress, time left and the stop button are in the

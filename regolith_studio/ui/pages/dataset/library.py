@@ -99,7 +99,7 @@ class LibraryPanel(QWidget):
     def _results(self) -> Path:
         """Where the page of the angle of repose keeps its runs."""
         usual = user_data_path("regolith-studio") / "repose"
-        return Path(self._context.session.shelf.get("runs_folder", usual))
+        return self._context.session.runs_folder or usual
 
     def selected(self) -> LibraryEntry | None:
         """The entry of the chosen row."""

@@ -19,7 +19,7 @@ from regolith_studio.jobs.datasets import open_dataset_folder, validate_dataset_
 from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.exporting import export_dataset_folder
 from regolith_studio.jobs.representing import ChosenParticles, Survey, choose_one, survey
-from regolith_studio.session.recipe_dataset import OPENED, STANDING, Standing
+from regolith_studio.session.recipe_dataset import Standing
 from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.layout import equal_parts, padded, scrolled_column, side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
@@ -27,7 +27,13 @@ from regolith_studio.ui.pages.dataset.controls import FolderPanel, Representativ
 from regolith_studio.ui.pages.dataset.gallery import RepresentativesGallery
 from regolith_studio.ui.pages.dataset.library import LibraryPanel
 from regolith_studio.ui.pages.dataset.plots import QualityPlot, SizesPlot
-from regolith_studio.ui.pages.dataset.shown import chosen_particles, request_of, shapes, title_of
+from regolith_studio.ui.pages.dataset.shown import (
+    SHAPE_FIELDS,
+    chosen_particles,
+    request_of,
+    shapes,
+    title_of,
+)
 from regolith_studio.ui.pages.dataset.standing import Controls
 from regolith_studio.ui.pages.dataset.targets import ExportsList, LossesLabel, TargetsPanel
 from regolith_studio.ui.theme import Theme
@@ -70,8 +76,8 @@ class DatasetPage(PageWidget):
         self._connect()
         self._context.wiring.refresh("particles", self._show_particles, holds=True)
         yield
-        self._context.wiring.refresh("choices", self._show_choices, slow=True)
-        self._context.wiring.refresh("shelf", self._take_opened)
+        self._context.wiring.refresh("choices", self._show_choices, SHAPE_FIELDS, slow=True)
+        self._context.wiring.refresh("opened_request", self._take_opened)
         self._show_losses()
 
     # --- the page of the window ----------------------------------------------------------------
@@ -316,7 +322,7 @@ class DatasetPage(PageWidget):
 
     def _take_dataset(self, folder: Path, dataset: Dataset) -> None:
         self._folder, self._dataset = folder, dataset
-        self._context.session.shelf.put("dataset_folder", folder)
+        self._context.session.dataset_folder = folder
         title = title_of(dataset)
         self.gallery.show_shapes(title, shapes(dataset))
         self.folder.show_dataset(f"{title}\n{folder}")
@@ -349,18 +355,15 @@ class DatasetPage(PageWidget):
 
     def _take_opened(self) -> None:
         """Set the controls as the recipe says that was opened, once."""
-        opened = self._context.session.shelf.get(OPENED)
-        if isinstance(opened, Standing) and opened is not self._opened:
+        opened = self._context.session.opened_request
+        if opened is not None and opened is not self._opened:
             self._opened = opened
             self._controls.take(opened)
 
     def _leave_wish(self) -> None:
         """Leave what a recipe would say of the dataset; nothing before representatives are chosen."""
-        shelf, wish = self._context.session.shelf, None
-        if self._chosen is not None and self.sizes.sizing() is not None:
-            wish = self._controls.standing()
-        if wish != shelf.get(STANDING):
-            shelf.put(STANDING, wish)
+        is_complete = self._chosen is not None and self.sizes.sizing() is not None
+        self._context.session.dataset_request = self._controls.standing() if is_complete else None
 
     def _show_losses(self) -> None:
         self.losses.show_formats(self.targets.chosen())

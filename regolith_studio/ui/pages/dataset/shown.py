@@ -56,6 +56,10 @@ def title_of(dataset: Dataset) -> str:
     )
 
 
+SHAPE_FIELDS = ("method", "stop_at", "n_facets", "n_triangles", "largest_error")
+"""Choices that :func:`request_of` names."""
+
+
 def request_of(choices: Choices) -> str:
     """How the shapes will be made."""
     known = METHODS.get(choices.method)

@@ -103,9 +103,11 @@ class ExplorePage(PageWidget):
         for panel in (self.particles, self.fit, self.coarsening, self.loss):
             wiring.edit(panel)
         wiring.refresh("particles", lambda: self.particles.set_entries(session.particles), holds=True)
-        wiring.refresh("particles choices", lambda: self.triptych.show_particle(session.selected))
+        wiring.refresh(
+            "particles choices", lambda: self.triptych.show_particle(session.selected), ("selected",)
+        )
         wiring.refresh("fit", self._show_star_point)
-        wiring.refresh("fit choices", self._show_findings, slow=True)
+        wiring.refresh("fit choices", self._show_findings, ("l_max",), slow=True)
         wiring.refresh("surface", self._show_fit)
         wiring.refresh("coarsening", self._show_coarsening)
         self.plots.wire(session, wiring)

@@ -90,7 +90,7 @@ class PlotArea(QSplitter):
         def spectrum() -> None:
             self.spectrum.show_results(session.results, session.choices)
 
-        wiring.refresh("descriptors coarsening choices", errors, slow=True)
+        wiring.refresh("descriptors coarsening choices", errors, ("selected", "target"), slow=True)
         wiring.refresh("descriptors coarsening", lambda: self.table.show_results(session.results), slow=True)
         wiring.refresh("coarsening", lambda: self.loss_curve.show_results(session.results), slow=True)
-        wiring.refresh("fit choices", spectrum, slow=True)
+        wiring.refresh("fit choices", spectrum, ("l_max",), slow=True)

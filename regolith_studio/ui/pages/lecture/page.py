@@ -63,7 +63,7 @@ class LecturePage(PageWidget):
         self.another.clicked.connect(self.draw_another)
         self.particle.currentIndexChanged.connect(self._select)
         yield
-        context.wiring.refresh("particles choices", self._show_particles)
+        context.wiring.refresh("particles choices", self._show_particles, ("selected",))
         context.wiring.refresh("particles choices fit surface", self._fill, slow=True)
 
     # --- the page of the window ----------------------------------------------------------------

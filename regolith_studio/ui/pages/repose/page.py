@@ -78,7 +78,7 @@ class ReposePage(PageWidget):
         yield
         self._connect()
         yield
-        self._context.wiring.refresh("shelf", self._take_dataset)
+        self._context.wiring.refresh("dataset_folder", self._take_dataset)
         self.setup.tell([tr("Open a dataset, or make one from the open particles.")])
         self._list_runs()
 
@@ -212,9 +212,9 @@ class ReposePage(PageWidget):
     # --- set-up and preview --------------------------------------------------------------------
 
     def _take_dataset(self) -> None:
-        written = self._context.session.shelf.get("dataset_folder")
+        written = self._context.session.dataset_folder
         if written is not None and self.setup.dataset is None:
-            self.setup.set_dataset(Path(written))
+            self.setup.set_dataset(written)
 
     def _ask_preview(self) -> None:
         if not self._running:
@@ -290,7 +290,7 @@ class ReposePage(PageWidget):
     # --- what a run left -----------------------------------------------------------------------
 
     def _list_runs(self, chosen: Path | None = None) -> None:
-        self._context.session.shelf.put("runs_folder", self._folder)
+        self._context.session.runs_folder = self._folder
         self.runs.set_runs(find_runs(self._folder) if self._folder.is_dir() else [], chosen)
 
     def _show_study_run(self, run: RunSummary) -> None:

@@ -69,7 +69,7 @@ class SamplePage(PageWidget):
         self._connect()
         wiring.refresh("particles", self._show_particles, slow=True, holds=True)
         yield
-        wiring.refresh("choices", self._show_current)
+        wiring.refresh("choices", self._show_current, ("selected",))
 
     def theme_steps(self, theme: Theme) -> Iterator[None]:
         self.table.model_.set_theme(theme)

@@ -69,7 +69,7 @@ class StudiesPage(PageWidget):
         yield
         wiring.refresh("tasks", self._show_gallery_task, slow=True)
         wiring.refresh("particles", self._name_gallery_button)
-        wiring.refresh("choices", self._show_l_max, slow=True)
+        wiring.refresh("choices", self._show_l_max, ("l_max",), slow=True)
 
     def theme_steps(self, theme: Theme) -> Iterator[None]:
         for part in (self.lmax_study, self.coarsening_study):
