@@ -1,7 +1,6 @@
 """Only the newest task of a lane is heard; the test decides when each job says what."""
 
 from regolith_studio.jobs.events import Failed, Finished, Job, Listener, Partial, Progress, Started, Stopped
-from regolith_studio.session.signal import Signal
 from regolith_studio.session.tasks import Reactions, Task, TaskBoard
 
 
@@ -83,25 +82,3 @@ def test_that_a_failure_reaches_its_reaction() -> None:
     tasks.start("load", "Reading", JOB, Reactions(heard.append, failed=heard.append))
     puppet.listeners[0](Failed("Broken."))
     assert heard == [Failed("Broken.")]
-
-
-def test_that_a_signal_calls_what_is_connected_and_nothing_else() -> None:
-    signal: Signal[[int]] = Signal()
-    heard: list[int] = []
-    stop = signal.connect(heard.append)
-    signal.connect(lambda value: heard.append(-value))
-    signal.emit(1)
-    stop()
-    stop()
-    signal.emit(2)
-    assert heard == [1, -1, -2]
-
-
-def test_that_a_callback_may_disconnect_another_during_an_emission() -> None:
-    signal: Signal[[]] = Signal()
-    heard: list[str] = []
-    signal.connect(lambda: stop())
-    stop = signal.connect(lambda: heard.append("late"))
-    signal.emit()
-    assert heard == []
-    assert len(signal) == 1
