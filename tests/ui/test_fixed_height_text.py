@@ -157,14 +157,14 @@ def test_that_no_control_of_the_angle_of_repose_moves_with_consequences_and_prob
 def test_that_no_control_of_the_lecture_moves_with_its_sentences(window, watched, wait, settled):
     page = watched.go("lecture")
     window.session.keep([window.session.particles[0].id])
-    wait(lambda: page.annealing.transport.has_steps, SECONDS)
+    wait(lambda: page.annealing.playback.has_steps, SECONDS)
     for step in (1, 2, 5, 100):
-        watched.does(f"step {step}", page.annealing.transport.go, step)
+        watched.does(f"step {step}", page.annealing.playback.go, step)
     page.tabs.setCurrentIndex(1)
-    wait(lambda: page.degrees.transport.has_steps, SECONDS)
+    wait(lambda: page.degrees.playback.has_steps, SECONDS)
     settled(window, SECONDS)
     for step in (1, 2, 8):
-        watched.does(f"degree {step}", page.degrees.transport.go, step)
+        watched.does(f"degree {step}", page.degrees.playback.go, step)
 
 
 def test_that_long_texts_are_scrolled_by_keys_and_short_ones_are_passed_by(shown, app):

@@ -1,4 +1,4 @@
-"""Pictures of the guide: taken from the window, compared with those that are shipped.
+"""PictureExport of the guide: taken from the window, compared with those that are shipped.
 
 ``REGOLITH_STUDIO_UPDATE=1`` writes them anew. Letters differ between machines, so small pictures are
 compared, in grey: what moved, came or went is seen, the shape of a letter is not.

@@ -16,7 +16,7 @@ from regolith_studio.scene.moves import FACET_OLD, FRAME_NEW
 from regolith_studio.session.session import Session
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.page import PageContext
-from regolith_studio.ui.pages.lecture import PAGE, words
+from regolith_studio.ui.pages.lecture import PAGE, texts
 from regolith_studio.ui.theme import DARK, LIGHT, choose_letters
 from regolith_studio.ui.widgets import formula
 from regolith_studio.ui.widgets.formula import FormulaLabel, outline
@@ -55,10 +55,10 @@ def actor(frame, name):
 def test_that_every_step_of_the_annealing_is_shown_said_and_set(page):
     lesson = page.annealing._lesson
     assert len(lesson.steps) == 26
-    transport, moods = page.annealing.transport, set()
+    playback, moods = page.annealing.playback, set()
     for number, step in enumerate(lesson.steps):
-        transport.go(number)
-        mood = words.mood_of(step)
+        playback.go(number)
+        mood = texts.mood_of(step)
         moods.add(mood)
         said = page.annealing.sentence.text()
         assert {"refused": "Refused", "accepted": "accepted", "lucky": "luck", "start": "start"}[mood] in said
@@ -77,32 +77,32 @@ def test_that_every_step_of_the_annealing_is_shown_said_and_set(page):
 def test_that_the_numbers_of_the_loss_add_up_to_the_loss(page):
     lesson = page.annealing._lesson
     for step in lesson.steps:
-        terms = words.terms_of(lesson.weights, step.evaluation)
+        terms = texts.terms_of(lesson.weights, step.evaluation)
         assert sum(terms.values()) == pytest.approx(step.evaluation.loss)
-        line = " ".join(words.loss_lines(lesson.weights, step.evaluation))
+        line = " ".join(texts.loss_lines(lesson.weights, step.evaluation))
         numbers = [float(part.split("_")[0]) for part in line.split(r"\cdot")[1:]]
         assert sum(numbers) == pytest.approx(step.evaluation.loss, rel=0.01, abs=4e-4)
 
 
 def test_that_it_plays_by_itself_pauses_and_steps_back(page, wait):
-    transport = page.annealing.transport
-    transport.speed.setValue(20)
+    playback = page.annealing.playback
+    playback.speed.setValue(20)
     commands = page.commands()
     commands["play"]()
-    wait(lambda: transport.step >= 3, 10.0)
+    wait(lambda: playback.step >= 3, 10.0)
     commands["back"]()
-    here = transport.step
-    assert not transport.playing
+    here = playback.step
+    assert not playback.playing
     QTest.qWait(150)
-    assert transport.step == here
+    assert playback.step == here
     commands["forward"]()
-    assert transport.step == here + 1
-    transport.go(25)
+    assert playback.step == here + 1
+    playback.go(25)
     commands["play"]()  # at the end: from the beginning
-    assert transport.playing
-    assert transport.step < 25
+    assert playback.playing
+    assert playback.step < 25
     page.left()
-    assert not transport.playing
+    assert not playback.playing
 
 
 def test_that_another_seed_is_another_run_and_a_project_remembers_it(page):
@@ -128,10 +128,10 @@ def test_that_the_lesson_follows_the_particle_and_the_choices(page, wait):
 
 def test_that_the_degrees_grow_from_a_sphere(page):
     page.tabs.setCurrentIndex(1)
-    transport = page.degrees.transport
-    assert transport.slider.maximum() == 30
+    playback = page.degrees.playback
+    assert playback.slider.maximum() == 30
     for degree in (0, 5, 30):
-        transport.go(degree)
+        playback.go(degree)
         assert f"l<sub>max</sub> = {degree}:" in page.degrees.sentence.text()
         assert f"={(degree + 1) ** 2}$" in page.degrees.formula.lines()[1]
         assert len(page.degrees.errors.curves[0].x) == degree + 1

@@ -22,7 +22,7 @@ from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.model import PAGE
 from regolith_studio.ui.pages.model.distributions import distance_words
-from regolith_studio.ui.pages.model.judgement import JudgementPanel
+from regolith_studio.ui.pages.model.evaluation_panel import EvaluationPanel
 from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.plots.spectrum_editor import SpectrumEditor
 from regolith_studio.ui.widgets.toast import Toast
@@ -151,18 +151,18 @@ def test_that_particles_are_drawn_in_the_range_shown_and_taken_over(page, wait):
 def test_that_models_are_judged_on_the_sample_that_was_fitted(page):
     take(page, rough_sample())
     page.source.model.setCurrentIndex(page.source.model.findData("gaussian_field"))
-    assert not page.judgement.frame.start.isEnabled()
+    assert not page.evaluation.frame.start.isEnabled()
     page.source.fit.click()
     assert page.live.spectrum.value() == pytest.approx(
         np.sqrt(page._model.spectrum[1:]) / page._model.mean, rel=1e-12
     )
-    page.judgement.setValue({"splits": 1, "repeats": 1, "all_models": False})
+    page.evaluation.setValue({"splits": 1, "repeats": 1, "all_models": False})
     page.judge()
-    assert page.judgement.ranking.rowCount() == 1
-    assert page.judgement.ranking.item(0, 0).text() == MODELS["gaussian_field"].label
-    assert not page.judgement.pictures["number"].is_empty()
-    assert page.judgement.pictures["components"].is_empty()
-    tables = page.judgement.tables
+    assert page.evaluation.ranking.rowCount() == 1
+    assert page.evaluation.ranking.item(0, 0).text() == MODELS["gaussian_field"].label
+    assert not page.evaluation.pictures["number"].is_empty()
+    assert page.evaluation.pictures["components"].is_empty()
+    tables = page.evaluation.tables
     assert tables["distances"].rowCount() == 2 * len(KEYS)
     headers = [tables["distances"].horizontalHeaderItem(at).text() for at in range(6)]
     assert headers == ["Model", "Weighting", "Descriptor", "W [%]", "from [%]", "to [%]"]
@@ -242,7 +242,7 @@ def test_that_the_state_of_the_page_is_plain_and_comes_back(page):
 
 
 def test_that_stop_answers_before_the_work_has_ended(shown):
-    panel = shown(JudgementPanel())
+    panel = shown(EvaluationPanel())
     asked = []
     panel.cancelRequested.connect(asked.append)
     panel.show_task(Task(3, "judge", "Judging models"))
@@ -267,10 +267,10 @@ def test_that_what_is_fitted_drawn_and_judged_goes_through_the_translation(opene
     page.source.fit.click()
     page.drawing.setValue({"n": 4})
     page.drawing.draw.click()
-    page.judgement.setValue({"splits": 1, "repeats": 2, "all_models": False})
+    page.evaluation.setValue({"splits": 1, "repeats": 2, "all_models": False})
     page.judge()
     assert [each for each in english_left(page) if each[1] not in ("rough", "r_eq")] == []
-    for table in (page.judgement.ranking, *page.judgement.tables.values()):
+    for table in (page.evaluation.ranking, *page.evaluation.tables.values()):
         cells = [
             table.item(row, column).text()
             for row in range(table.rowCount())
@@ -288,12 +288,12 @@ def test_that_the_outcome_of_a_judgement_is_told_in_german(opened, speaking):
     assert "6,261 Partikeln des veröffentlichten Mikro-CT-Satzes ma165" in page.source.findings.text()
     take(page, rough_sample())
     page.source.fit.click()
-    page.judgement.setValue({"splits": 1, "repeats": 2, "all_models": False})
+    page.evaluation.setValue({"splits": 1, "repeats": 2, "all_models": False})
     page.judge()
-    words = page.judgement.notes.text()
+    words = page.evaluation.notes.text()
     assert words.startswith("30 gemessene Partikel bei l<sub>max</sub> = 4, 0 ausgelassen;")
     assert words.endswith("1 Teilung, 2-mal 20 Ziehungen je Fit, Startwert 0.")
-    wanted = {page.judgement.tables["targets"].item(row, 3).text().split()[0] for row in range(3)}
+    wanted = {page.evaluation.tables["targets"].item(row, 3).text().split()[0] for row in range(3)}
     assert wanted <= {"mindestens", "höchstens"}
     assert retold("Mixture of fields, split 2, draw 3") == "Mischung von Feldern, Teilung 2, Ziehung 3"
     assert retold("noise of sampling, split 30") == "Rauschen der Stichprobe, Teilung 30"

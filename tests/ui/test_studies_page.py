@@ -9,7 +9,7 @@ from PySide6.QtTest import QTest
 
 from regolith_studio.studies.loss_rows import PAPER_ROWS, losses, paper_rows
 from regolith_studio.ui.app import open_window
-from regolith_studio.ui.pages.studies.rows_bar import RowsBar
+from regolith_studio.ui.pages.studies.loss_selector import LossSelector
 from regolith_studio.ui.theme import DARK
 
 SECONDS = 170.0
@@ -77,7 +77,7 @@ def test_that_the_gallery_has_a_row_for_each_loss_that_is_chosen(window, wait, s
 
 
 def test_that_one_loss_always_stays(shown):
-    bar = shown(RowsBar())
+    bar = shown(LossSelector())
     bar.set_names(["only_volume"])
     assert bar.rows.text().startswith("Volume only")
     bar._actions["only_volume"].trigger()

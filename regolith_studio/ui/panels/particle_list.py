@@ -27,7 +27,7 @@ WORDS = 2
 
 
 @dataclass(frozen=True)
-class Column:
+class ListColumn:
     """One column of the list.
 
     Parameters
@@ -61,16 +61,16 @@ def _descriptor(
 
 
 COLUMNS = (
-    Column(mark("Particle"), mark("Name and health of the mesh"), lambda e: e.id, lambda e: e.id),
-    Column(
+    ListColumn(mark("Particle"), mark("Name and health of the mesh"), lambda e: e.id, lambda e: e.id),
+    ListColumn(
         mark("Group"),
         mark("Sample or size fraction"),
         lambda e: e.particle.group,
         lambda e: e.particle.group,
     ),
-    Column("V [µm³]", mark("Volume"), *_descriptor("volume", lambda v: short_number(v, 3))),
-    Column("S", mark("Sphericity, Eq. 1 (Wadell)"), *_descriptor("sphericity", "{:.3f}".format)),
-    Column("AR", mark("Aspect ratio, Eq. 2"), *_descriptor("aspect_ratio", "{:.2f}".format)),
+    ListColumn("V [µm³]", mark("Volume"), *_descriptor("volume", lambda v: short_number(v, 3))),
+    ListColumn("S", mark("Sphericity, Eq. 1 (Wadell)"), *_descriptor("sphericity", "{:.3f}".format)),
+    ListColumn("AR", mark("Aspect ratio, Eq. 2"), *_descriptor("aspect_ratio", "{:.2f}".format)),
 )
 
 

@@ -1,8 +1,8 @@
-"""What is chosen: representatives, sizes, name."""
+"""The controls at the left of the page: representatives, sizes, folder, and what a recipe says of them."""
 
 import re
 from collections.abc import Mapping
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from typing import Any
 
 from PySide6.QtCore import QSignalBlocker, Signal
@@ -11,7 +11,8 @@ from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLineEdit, QPushButton, QV
 from regolith_studio.dataset.size_spec import Sizing, parse_sizes
 from regolith_studio.errors import InputError
 from regolith_studio.jobs.representing import RepresentativesOrder
-from regolith_studio.session.recipe_dataset import Representatives
+from regolith_studio.session.recipe_dataset import Representatives, Standing
+from regolith_studio.ui.pages.dataset.export_panel import ExportPanel
 from regolith_studio.ui.translation import mark, tr, tr_count
 from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
 from regolith_studio.ui.widgets.labels import heading, remark
@@ -232,3 +233,27 @@ class FolderPanel(QWidget):
     def show_dataset(self, words: str) -> None:
         """Say which dataset is there."""
         self.state.setText(words or tr("No dataset yet."))
+
+
+@dataclass(frozen=True)
+class DatasetControls:
+    """All panels at the left of the page, set from a recipe and read for one."""
+
+    representatives: RepresentativesPanel
+    sizes: SizesPanel
+    folder: FolderPanel
+    targets: ExportPanel
+
+    def take(self, opened: Standing) -> None:
+        """Set them as a recipe says."""
+        if wish := opened.representatives:
+            self.representatives.setValue(wish.model_dump())
+            self.sizes.set_text(wish.sizes)
+            self.folder.name.setText(wish.name or self.folder.name.text())
+        if opened.exports:
+            self.targets.take(opened.exports)
+
+    def standing(self) -> Standing:
+        """What a recipe would say."""
+        name = self.folder.name.text().strip()
+        return Standing(self.representatives.wish(self.sizes.text(), name), self.targets.wish())

@@ -17,7 +17,7 @@ SIZE, CELL = 92, QSize(128, 136)
 
 
 @dataclass(frozen=True)
-class Shown:
+class GalleryItem:
     """One picture: a solid, two words below it, and what the mouse tells."""
 
     mesh: Mesh
@@ -32,7 +32,7 @@ class RepresentativesGallery(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self._theme = current_theme()
-        self._shown: tuple[Shown, ...] = ()
+        self._shown: tuple[GalleryItem, ...] = ()
         self._next = 0
         self._painting: Painting | None = None
         self._timer = QTimer(self, interval=0)
@@ -62,11 +62,11 @@ class RepresentativesGallery(QWidget):
         self.show_shapes(tr("Representatives"), ())
 
     @property
-    def shown(self) -> tuple[Shown, ...]:
+    def shown(self) -> tuple[GalleryItem, ...]:
         """What is shown, in order."""
         return self._shown
 
-    def show_shapes(self, title: str, shown: Sequence[Shown]) -> None:
+    def show_shapes(self, title: str, shown: Sequence[GalleryItem]) -> None:
         """Show these instead."""
         self.title.setText(title)
         self._shown = tuple(shown)

@@ -23,19 +23,23 @@ from regolith_studio.session.recipe_dataset import Standing
 from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.layout import equal_parts, padded, scrolled_column, side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
-from regolith_studio.ui.pages.dataset.controls import FolderPanel, RepresentativesPanel, SizesPanel
+from regolith_studio.ui.pages.dataset.controls import (
+    DatasetControls,
+    FolderPanel,
+    RepresentativesPanel,
+    SizesPanel,
+)
+from regolith_studio.ui.pages.dataset.export_panel import ExportPanel, ExportsList, LossesLabel
 from regolith_studio.ui.pages.dataset.gallery import RepresentativesGallery
 from regolith_studio.ui.pages.dataset.library import LibraryPanel
 from regolith_studio.ui.pages.dataset.plots import QualityPlot, SizesPlot
-from regolith_studio.ui.pages.dataset.shown import (
+from regolith_studio.ui.pages.dataset.view_data import (
     SHAPE_FIELDS,
     chosen_particles,
     request_of,
     shapes,
     title_of,
 )
-from regolith_studio.ui.pages.dataset.standing import Controls
-from regolith_studio.ui.pages.dataset.targets import ExportsList, LossesLabel, TargetsPanel
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr, tr_count
 
@@ -63,8 +67,8 @@ class DatasetPage(PageWidget):
     def assemble(self) -> Iterator[None]:
         self.representatives, self.sizes = RepresentativesPanel(), SizesPanel()
         yield
-        self.folder, self.targets = FolderPanel(), TargetsPanel()
-        self._controls = Controls(self.representatives, self.sizes, self.folder, self.targets)
+        self.folder, self.targets = FolderPanel(), ExportPanel()
+        self._controls = DatasetControls(self.representatives, self.sizes, self.folder, self.targets)
         yield
         self.quality, self.distribution = QualityPlot(), SizesPlot()
         yield

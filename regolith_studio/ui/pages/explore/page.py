@@ -10,7 +10,7 @@ from regolith_studio.scene.cameras import DIRECTIONS
 from regolith_studio.ui.following import Following
 from regolith_studio.ui.layout import CONTROLS_WIDTH, padded, scrolled_column, side_by_side, stacked
 from regolith_studio.ui.page import PageContext, PageWidget
-from regolith_studio.ui.pages.explore.pictures import Pictures
+from regolith_studio.ui.pages.explore.pictures import PictureExport
 from regolith_studio.ui.pages.explore.plot_area import PlotArea
 from regolith_studio.ui.panels.coarsening import CoarseningPanel
 from regolith_studio.ui.panels.fit import FitPanel
@@ -45,7 +45,7 @@ class ExplorePage(PageWidget):
         self.triptych = Triptych(context.views, measuring.want)
         self.plots = PlotArea(self.triptych)
         self.triptych.whispered.connect(self._whisper)
-        self.pictures = Pictures(context, self.triptych, self)
+        self.pictures = PictureExport(context, self.triptych, self)
         self._place()
         self._wire(context)
 

@@ -38,7 +38,7 @@ TOLD = {
 }
 
 
-class Pictures(QObject):
+class PictureExport(QObject):
     """Asks for a file and draws into it.
 
     Parameters
@@ -64,7 +64,7 @@ class Pictures(QObject):
         accepted = asked.exec() == QDialog.DialogCode.Accepted
         kind, scale, transparent = asked.value()
         asked.deleteLater()
-        kinds = tr("Pictures (*.png)")
+        kinds = tr("PictureExport (*.png)")
         name = self._ask(tr("Save picture"), f"{entry.id}.png", kinds) if accepted else ""
         if not name:
             return

@@ -15,8 +15,8 @@ from regolith_studio.scene.comparing import OTHER, show_other
 from regolith_studio.scene.moves import show_move
 from regolith_studio.scene.shapes import FIT, Shape
 from regolith_studio.ui.layout import side_by_side, stacked
-from regolith_studio.ui.pages.lecture import words
-from regolith_studio.ui.pages.lecture.transport import Transport
+from regolith_studio.ui.pages.lecture import texts
+from regolith_studio.ui.pages.lecture.playback_bar import PlaybackBar
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.views.camera_link import CameraLink
@@ -74,8 +74,8 @@ class AnnealingView(QWidget):
             plot.setObjectName(f"annealing_{name}")
         self.frames["annealing"].set_texts(tr("Annealing"))
         self.frames["exact"].set_texts(tr("Exact method"))
-        self.transport = Transport("annealing", mark("step"))
-        self.transport.stepChanged.connect(self._show_step)
+        self.playback = PlaybackBar("annealing", mark("step"))
+        self.playback.stepChanged.connect(self._show_step)
         yield
         self._arrange()
 
@@ -84,11 +84,11 @@ class AnnealingView(QWidget):
         fresh = self._lesson is None or self._lesson.steps is not lesson.steps
         self._lesson = lesson
         if fresh:
-            self.transport.pause()
-            self.transport.set_count(len(lesson.steps))
+            self.playback.pause()
+            self.playback.set_count(len(lesson.steps))
             self.link.frame(lesson.imitated.vertices)
         self._show_exact()
-        self._show_step(self.transport.step)
+        self._show_step(self.playback.step)
 
     def wait(self, sentence: str = WAIT) -> None:
         """Say what is being done, or why nothing is."""
@@ -97,7 +97,7 @@ class AnnealingView(QWidget):
     @property
     def step(self) -> AnnealingStep | None:
         """The step that is seen."""
-        return self._lesson.steps[self.transport.step] if self._lesson is not None else None
+        return self._lesson.steps[self.playback.step] if self._lesson is not None else None
 
     def theme_steps(self, theme: Theme) -> Iterator[None]:
         """Take the colours of a theme, step by step."""
@@ -111,20 +111,20 @@ class AnnealingView(QWidget):
         if self._lesson is not None:
             self._show_exact()
             yield
-            self._show_step(self.transport.step)
+            self._show_step(self.playback.step)
         yield
 
     def release(self) -> None:
         """Stop, and give the graphics memory back."""
-        self.transport.pause()
+        self.playback.pause()
         for frame in self.frames.values():
             frame.view.release()
 
     def colour_of(self, step: AnnealingStep) -> str:
         """Refused moves are orange-red, accepted ones green, lucky ones blue."""
         theme = self._theme
-        return {words.REFUSED: theme.bad, words.ACCEPTED: theme.good, words.LUCKY: theme.fit}.get(
-            words.mood_of(step), theme.muted
+        return {texts.REFUSED: theme.bad, texts.ACCEPTED: theme.good, texts.LUCKY: theme.fit}.get(
+            texts.mood_of(step), theme.muted
         )
 
     def _show_step(self, number: int) -> None:
@@ -132,12 +132,12 @@ class AnnealingView(QWidget):
         if lesson is None:
             return
         step = lesson.steps[number]
-        self.sentence.setText(words.sentence_of(step, lesson))
-        self.loss_formula.set_lines(*words.loss_lines(lesson.weights, step.evaluation))
+        self.sentence.setText(texts.sentence_of(step, lesson))
+        self.loss_formula.set_lines(*texts.loss_lines(lesson.weights, step.evaluation))
         self.rule.set_lines(
-            words.proposal_line(step, lesson),
-            words.temperature_line(lesson.settings, step.number),
-            words.decision_line(step),
+            texts.proposal_line(step, lesson),
+            texts.temperature_line(lesson.settings, step.number),
+            texts.decision_line(step),
         )
         self.frames["annealing"].view.draw(partial(self._fill_step, step))
         solid = step.polyhedron
@@ -194,7 +194,7 @@ class AnnealingView(QWidget):
                 facets=exact.n_facets,
             ),
         )
-        self.exact_formula.set_lines(*words.exact_lines(lesson))
+        self.exact_formula.set_lines(*texts.exact_lines(lesson))
 
     def _plot_loss(self, number: int) -> None:
         lesson, theme = self._lesson, self._theme
@@ -218,14 +218,14 @@ class AnnealingView(QWidget):
     def _proposals(self, seen: tuple[AnnealingStep, ...]) -> list[PlotCurve]:
         curves = []
         for mood, label, colour in (
-            (words.ACCEPTED, tr("better"), self._theme.good),
-            (words.LUCKY, tr("worse, accepted"), self._theme.fit),
-            (words.REFUSED, tr("refused"), self._theme.bad),
+            (texts.ACCEPTED, tr("better"), self._theme.good),
+            (texts.LUCKY, tr("worse, accepted"), self._theme.fit),
+            (texts.REFUSED, tr("refused"), self._theme.bad),
         ):
             chosen = [
                 (float(step.number), step.move.proposed.loss)
                 for step in seen
-                if step.move is not None and step.move.proposed is not None and words.mood_of(step) == mood
+                if step.move is not None and step.move.proposed is not None and texts.mood_of(step) == mood
             ]
             x, y = zip(*chosen, strict=True) if chosen else ((), ())
             curves.append(PlotCurve(label, colour, tuple(x), tuple(y), markers=True, line=False))
@@ -254,15 +254,15 @@ class AnnealingView(QWidget):
         if lesson is None:
             return
         move = step.move
-        before = words.terms_of(lesson.weights, move.before if move else step.evaluation)
+        before = texts.terms_of(lesson.weights, move.before if move else step.evaluation)
         series = [BarSeries(tr("before"), theme.particle, tuple(before.values()))]
         if move is not None and move.proposed is not None:
-            proposed = words.terms_of(lesson.weights, move.proposed)
+            proposed = texts.terms_of(lesson.weights, move.proposed)
             series.append(BarSeries(tr("proposed"), self.colour_of(step), tuple(proposed.values())))
         if lesson.exact is not None:
-            exact = words.exact_terms(lesson)
+            exact = texts.exact_terms(lesson)
             series.append(BarSeries(tr("exact method"), theme.polyhedron, tuple(exact.values())))
-        self.terms.set_bars([words.plain(key) for key in before], series)
+        self.terms.set_bars([texts.plain(key) for key in before], series)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
@@ -299,4 +299,4 @@ class AnnealingView(QWidget):
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(rows, 1)
-        layout.addWidget(self.transport)
+        layout.addWidget(self.playback)

@@ -10,8 +10,8 @@ from regolith_studio.jobs.lecturing import DegreeStep
 from regolith_studio.scene import surfaces
 from regolith_studio.scene.palette import DESCRIPTOR_COLOURS
 from regolith_studio.ui.layout import side_by_side
-from regolith_studio.ui.pages.lecture import words
-from regolith_studio.ui.pages.lecture.transport import Transport
+from regolith_studio.ui.pages.lecture import texts
+from regolith_studio.ui.pages.lecture.playback_bar import PlaybackBar
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import mark, tr, tr_count
 from regolith_studio.ui.views.camera_link import CameraLink
@@ -53,16 +53,16 @@ class DegreesView(QWidget):
         self.formula = FormulaLabel(tr("Eq. 4 with its numbers"))
         self.errors = CurvePlot(tr("Degree l<sub>max</sub>"), tr("Error [%]"), tr(WAIT), log_y=True)
         self.errors.setObjectName("degrees_errors")
-        self.transport = Transport("degrees", mark("degree"))
-        self.transport.stepChanged.connect(self._show_step)
+        self.playback = PlaybackBar("degrees", mark("degree"))
+        self.playback.stepChanged.connect(self._show_step)
         yield
         self._arrange()
 
     def show_particle(self, mesh: Mesh, name: str) -> None:
         """Begin with a particle; its steps follow."""
         self._particle, self._steps = mesh, ()
-        self.transport.pause()
-        self.transport.set_count(0)
+        self.playback.pause()
+        self.playback.set_count(0)
         self.frames["particle"].set_texts(tr("CT particle, {name}", name=name))
         self.frames["fit"].set_texts(tr("Spherical-harmonics fit"))
         self.frames["particle"].view.draw(lambda plotter: surfaces.show_particle(plotter, mesh))
@@ -74,9 +74,9 @@ class DegreesView(QWidget):
         """The degrees that are known by now."""
         first = not self._steps
         self._steps = steps
-        self.transport.extend(len(steps))
-        if first or self.transport.step == len(steps) - 1:
-            self._show_step(self.transport.step)
+        self.playback.extend(len(steps))
+        if first or self.playback.step == len(steps) - 1:
+            self._show_step(self.playback.step)
         else:
             self._plot()
 
@@ -91,7 +91,7 @@ class DegreesView(QWidget):
 
     def release(self) -> None:
         """Stop, and give the graphics memory back."""
-        self.transport.pause()
+        self.playback.pause()
         for frame in self.frames.values():
             frame.view.release()
 
@@ -100,8 +100,8 @@ class DegreesView(QWidget):
             return
         step = self._steps[number]
         mesh = step.mesh
-        self.sentence.setText(words.degree_sentence(step))
-        self.formula.set_lines(*words.degree_lines(step))
+        self.sentence.setText(texts.degree_sentence(step))
+        self.formula.set_lines(*texts.degree_lines(step))
         count = (step.l_max + 1) ** 2
         degree = f"l<sub>max</sub>&nbsp;=&nbsp;{step.l_max}"
         self.frames["fit"].set_texts(
@@ -116,11 +116,11 @@ class DegreesView(QWidget):
         self._plot()
 
     def _plot(self) -> None:
-        known = [step for step in self._steps[: self.transport.step + 1] if step.errors]
+        known = [step for step in self._steps[: self.playback.step + 1] if step.errors]
         x = tuple(float(step.l_max) for step in known)
         curves = [
             PlotCurve(
-                words.plain(key),
+                texts.plain(key),
                 DESCRIPTOR_COLOURS[place],
                 x,
                 tuple(max(100 * step.errors[key], 1e-4) for step in known),
@@ -148,4 +148,4 @@ class DegreesView(QWidget):
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(parts, 1)
-        layout.addWidget(self.transport)
+        layout.addWidget(self.playback)

@@ -13,7 +13,7 @@ from regolith_studio.scene.fields import show_field
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.ui.following import Following
 from regolith_studio.ui.layout import side_by_side
-from regolith_studio.ui.pages.lecture import words
+from regolith_studio.ui.pages.lecture import texts
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.camera_link import CameraLink
@@ -92,7 +92,7 @@ class FieldView(QWidget):
         self.reset.setEnabled(self.spectrum.is_changed())
         if not len(amplitudes):
             return
-        self.formula.set_lines(*words.field_lines(amplitudes.tolist()))
+        self.formula.set_lines(*texts.field_lines(amplitudes.tolist()))
         self._unframed |= again
         seed = self.seed
         self._following.want(

@@ -16,7 +16,7 @@ from regolith_studio.ui.page_building import polish
 from regolith_studio.ui.pages.lecture.annealing import AnnealingView
 from regolith_studio.ui.pages.lecture.degrees import DegreesView
 from regolith_studio.ui.pages.lecture.field import FieldView
-from regolith_studio.ui.pages.lecture.transport import Transport
+from regolith_studio.ui.pages.lecture.playback_bar import PlaybackBar
 from regolith_studio.ui.theme import Theme, current_theme, letters_share
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
@@ -76,9 +76,9 @@ class LecturePage(PageWidget):
 
     def commands(self) -> Mapping[str, Callable[..., object]]:
         return {
-            "play": lambda: self._with_transport(Transport.toggle),
-            "back": lambda: self._with_transport(lambda each: each.go(each.step - 1)),
-            "forward": lambda: self._with_transport(lambda each: each.go(each.step + 1)),
+            "play": lambda: self._control_playback(PlaybackBar.toggle),
+            "back": lambda: self._control_playback(lambda each: each.go(each.step - 1)),
+            "forward": lambda: self._control_playback(lambda each: each.go(each.step + 1)),
             "another": self.draw_another,
             "larger": partial(self.scale_letters, STEP),
             "smaller": partial(self.scale_letters, 1 / STEP),
@@ -90,7 +90,7 @@ class LecturePage(PageWidget):
 
     def left(self) -> None:
         for lesson in (self.annealing, self.degrees):
-            lesson.transport.pause()
+            lesson.playback.pause()
 
     def state(self) -> dict[str, Any]:
         return {"lesson": self.lesson, "seed": self._seed}
@@ -233,13 +233,13 @@ class LecturePage(PageWidget):
         self.left()
         self._fill()
 
-    def _with_transport(self, action: Callable[[Transport], object]) -> None:
+    def _control_playback(self, action: Callable[[PlaybackBar], object]) -> None:
         if self.lesson == "field":
             self._context.toast.note(tr("A random field has no steps: drag its bars, or draw anew."))
             return
-        transport = (self.annealing if self.lesson == "annealing" else self.degrees).transport
-        if transport.has_steps:
-            action(transport)
+        playback = (self.annealing if self.lesson == "annealing" else self.degrees).playback
+        if playback.has_steps:
+            action(playback)
         else:
             self._tell_absence()
 

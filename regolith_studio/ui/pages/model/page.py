@@ -1,4 +1,4 @@
-"""Controls on the left; spectrum and drawn particle above, gallery and judgement below."""
+"""Controls on the left; spectrum and drawn particle above, gallery and evaluation below."""
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
@@ -32,10 +32,10 @@ from regolith_studio.ui.layout import padded, scrolled_column, side_by_side, sta
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.model.controls import DrawControls, SourceControls, order_from
 from regolith_studio.ui.pages.model.distributions import DistributionsPanel
+from regolith_studio.ui.pages.model.evaluation_panel import EvaluationPanel
 from regolith_studio.ui.pages.model.files import ask_card, ask_model
-from regolith_studio.ui.pages.model.judgement import JudgementPanel
-from regolith_studio.ui.pages.model.sources import Sources, usual_sizes
-from regolith_studio.ui.pages.model.views import Gallery, LiveShape
+from regolith_studio.ui.pages.model.source_box import SourceBox, usual_sizes
+from regolith_studio.ui.pages.model.views import LiveShape, ShapeGallery
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.views.factory import make_view
@@ -50,13 +50,13 @@ JUDGE = "judge"
 
 
 class ModelPage(PageWidget):
-    """Asks jobs for models, particles and judgements, and shows them."""
+    """Asks jobs for models, particles and evaluations, and shows them."""
 
     def __init__(self, context: PageContext) -> None:
         super().__init__()
         self.setObjectName("model")
         self._context = context
-        self._sources = Sources(context.session)
+        self._sources = SourceBox(context.session)
         self._fitted: FittedShapes | None = None
         self._model: FittedModel | None = None
         self._drawn: DrawnShapes | None = None
@@ -75,11 +75,11 @@ class ModelPage(PageWidget):
         yield
         view = make_view(views, surroundings)
         yield
-        self.gallery = Gallery(view)
+        self.gallery = ShapeGallery(view)
         yield
         self.distributions = DistributionsPanel()
         yield
-        self.judgement = JudgementPanel()
+        self.evaluation = EvaluationPanel()
         yield
         yield from self._place()
         self._connect()
@@ -110,14 +110,14 @@ class ModelPage(PageWidget):
         return {
             "source": self.source.value(),
             "drawing": self.drawing.value(),
-            "judgement": self.judgement.value(),
+            "evaluation": self.evaluation.value(),
         }
 
     def restore(self, state: Mapping[str, Any]) -> None:
         for name, panel in (
             ("source", self.source),
             ("drawing", self.drawing),
-            ("judgement", self.judgement),
+            ("evaluation", self.evaluation),
         ):
             if isinstance(state.get(name), Mapping):
                 panel.setValue(state[name])
@@ -216,7 +216,7 @@ class ModelPage(PageWidget):
         sample = self._sample()
         if sample is None:
             raise InputError(tr("Models are judged on measured particles: fit one to a sample first."))
-        order, chosen = self._order(), self.judgement.value()
+        order, chosen = self._order(), self.evaluation.value()
         key = str(self.source.value()["model"])
         options = {
             "l_max": order.l_max or 10,
@@ -225,7 +225,7 @@ class ModelPage(PageWidget):
             "seed": order.seed,
         }
         job = Job(judge_shapes, (sample, None if chosen["all_models"] else (key,)), options)
-        show = self.judgement.show_judged
+        show = self.evaluation.show_judged
         self._context.start(tr("Judging models"), job, show, partial=show, lane=JUDGE)
 
     def _order(self) -> GenerateOrder:
@@ -245,7 +245,7 @@ class ModelPage(PageWidget):
         self.gallery.show_shapes(fitted.examples, ())
         self._context.stop("compare")
         self.distributions.show_compared(None)
-        self.judgement.show_judged(None)
+        self.evaluation.show_judged(None)
         self._show_state()
         self.drawing.show_names(getattr(model, "names", ()))
         if (sizes := usual_sizes(fitted.source)) is not None:
@@ -320,12 +320,12 @@ class ModelPage(PageWidget):
     def _show_state(self) -> None:
         self.drawing.set_ready(model=self._model is not None, drawn=self._drawn is not None)
         missing = tr("Fit a model to a sample of 20 particles or more.")
-        self.judgement.set_ready("" if self._sample() else missing)
+        self.evaluation.set_ready("" if self._sample() else missing)
 
     def _show_tasks(self) -> None:
         lane = f"{self._context.key}:{JUDGE}"
         running = next((task for task in self._context.session.tasks if task.lane == lane), None)
-        self.judgement.show_task(running)
+        self.evaluation.show_task(running)
 
     def _sample(self) -> Sample | None:
         content = self._fitted.source.content if self._fitted else None
@@ -347,8 +347,8 @@ class ModelPage(PageWidget):
             self._context.toast.problem(str(error))
 
     def _place(self) -> Iterator[None]:
-        shown = [(self.gallery, tr("Gallery")), (self.distributions, tr("Distributions"))]
-        below = tabs("model_tabs", [*shown, (self.judgement, tr("Judgement"))])
+        shown = [(self.gallery, tr("ShapeGallery")), (self.distributions, tr("Distributions"))]
+        below = tabs("model_tabs", [*shown, (self.evaluation, tr("Judgement"))])
         yield
         middle = stacked([self.live, below], [380, 420], stretch=1)
         middle.setObjectName("model_rows")
@@ -371,5 +371,5 @@ class ModelPage(PageWidget):
         self.live.spectrum.valueChanged.connect(self._edit)
         self.live.reset.clicked.connect(self.live.spectrum.reset)
         self.live.another.clicked.connect(self.another)
-        self.judgement.startRequested.connect(self.judge)
-        self.judgement.cancelRequested.connect(self._context.session.cancel)
+        self.evaluation.startRequested.connect(self.judge)
+        self.evaluation.cancelRequested.connect(self._context.session.cancel)

@@ -42,7 +42,7 @@ TIPS = (
 """Names of all columns."""
 
 
-class TableView(QTableWidget):
+class StudyTableView(QTableWidget):
     """Shows a :class:`~regolith_studio.io.tables.Table`; keys of models and descriptors become words."""
 
     def __init__(self, name: str, spoken: str) -> None:

@@ -73,7 +73,7 @@ class LiveShape(QWidget):
         self.frame.set_colour(theme.fit)
 
 
-class Gallery(QWidget):
+class ShapeGallery(QWidget):
     """Measured particles above, drawn ones below."""
 
     def __init__(self, view: SceneView) -> None:
@@ -93,7 +93,7 @@ class Gallery(QWidget):
             (False, True): tr("drawn; the source holds no measured particles"),
             (False, False): tr("empty until a model is fitted"),
         }
-        self.frame.set_texts(tr("Gallery"), words[bool(measured), bool(drawn)])
+        self.frame.set_texts(tr("ShapeGallery"), words[bool(measured), bool(drawn)])
         self._shown = (measured, drawn)
         self.frame.view.draw(lambda plotter: show_gallery(plotter, measured, drawn))
         self._frame()

@@ -26,13 +26,13 @@ from regolith_studio.ui.layout import padded, scrolled_column, side_by_side, sta
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.repose.engine_panel import EnginePanel
 from regolith_studio.ui.pages.repose.export import export_measurement, read_other
-from regolith_studio.ui.pages.repose.player import Player
+from regolith_studio.ui.pages.repose.player import RunPlayer
 from regolith_studio.ui.pages.repose.runs import RunsPanel
 from regolith_studio.ui.pages.repose.section_plot import SectionPlot
 from regolith_studio.ui.pages.repose.setup import SetupPanel
 from regolith_studio.ui.pages.repose.study import StudyPanel
-from regolith_studio.ui.pages.repose.study_desk import StudyDesk
-from regolith_studio.ui.pages.repose.words import angle_in_words, checks_in_words, duration
+from regolith_studio.ui.pages.repose.study_controller import ReposeStudyController
+from regolith_studio.ui.pages.repose.texts import angle_in_words, checks_in_words, duration
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import remark
@@ -58,7 +58,7 @@ class ReposePage(PageWidget):
     def assemble(self) -> Iterator[None]:
         self.setup = SetupPanel()
         yield
-        self.player = Player(self._context.views)
+        self.player = RunPlayer(self._context.views)
         yield
         self.x_z, self.y_z = SectionPlot("x"), SectionPlot("y")
         self.verdict = remark(tr("No pile yet."))
@@ -70,7 +70,7 @@ class ReposePage(PageWidget):
         yield
         self.engines = EnginePanel()
         yield
-        self.studies = StudyDesk(self._context, self.study, self.setup, self._show_study_run)
+        self.studies = ReposeStudyController(self._context, self.study, self.setup, self._show_study_run)
         self._later = QTimer(self, singleShot=True, interval=PREVIEW_DELAY)
         self._later.timeout.connect(self._preview)
         yield

@@ -23,7 +23,7 @@ FRAME = 50
 """Milliseconds between two pictures of a replay."""
 
 
-class Player(QWidget):
+class RunPlayer(QWidget):
     """Shows piles; never asks where they come from."""
 
     def __init__(self, views: str) -> None:

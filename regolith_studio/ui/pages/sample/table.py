@@ -36,7 +36,7 @@ WORDS = 4
 
 
 @dataclass(frozen=True)
-class Column:
+class SampleColumn:
     """Key, header, explanation; what it is sorted by and what it shows."""
 
     key: str
@@ -46,7 +46,7 @@ class Column:
     text: Callable[[ParticleEntry], str]
 
 
-def columns() -> tuple[Column, ...]:
+def columns() -> tuple[SampleColumn, ...]:
     """Name, health, group and form, the descriptors of the catalogue that are at hand, and the weight."""
     words: tuple[tuple[str, str, str, Callable[[ParticleEntry], str]], ...] = (
         ("name", tr("Particle"), tr("Name of the file or of the grain"), lambda entry: entry.id),
@@ -61,9 +61,9 @@ def columns() -> tuple[Column, ...]:
     )
     numbers = [row for row in CATALOGUE.values() if not row.costly and row.dimension in _UNITS]
     return (
-        *(Column(key, title, tip, text, text) for key, title, tip, text in words),
+        *(SampleColumn(key, title, tip, text, text) for key, title, tip, text in words),
         *(
-            Column(
+            SampleColumn(
                 row.key,
                 plain_symbol(row.symbol) + _UNITS[row.dimension],
                 f"{tr(row.label)}: {tr(row.formula)}",
@@ -72,7 +72,7 @@ def columns() -> tuple[Column, ...]:
             )
             for row in numbers
         ),
-        Column(
+        SampleColumn(
             WEIGHT,
             tr("weight"),
             tr("How many grains it stands for, since large ones were lost at the border of the scan"),
@@ -97,7 +97,7 @@ class _Formatted(_Number):
         return short_number(entry.descriptors[self._key])
 
 
-class SampleModel(ParticleTableModel):
+class SampleTableModel(ParticleTableModel):
     """The entries as Qt asks for them."""
 
     def __init__(self, parent: QWidget) -> None:
@@ -154,7 +154,7 @@ class SampleTable(ListTable):
         self.setObjectName("sample_table")
         self.setAccessibleName(tr("All particles"))
         self.setSelectionMode(QAbstractItemView.SelectionMode.ExtendedSelection)
-        self.model_ = SampleModel(self)
+        self.model_ = SampleTableModel(self)
         self.model_.set_theme(current_theme())
         self.setModel(self.model_)
         self.setSortingEnabled(True)

@@ -1,16 +1,16 @@
-"""Everything that can be chosen between a volume and its particles."""
+"""Settings of the segmentation: denoising, threshold, cleaning, splitting, surface."""
 
 import dataclasses
 from collections.abc import Sequence
+from typing import Any
 
 from PySide6.QtCore import QEvent, QSignalBlocker, Signal
-from PySide6.QtWidgets import QCheckBox, QDoubleSpinBox, QFormLayout, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QCheckBox, QComboBox, QDoubleSpinBox, QFormLayout, QVBoxLayout, QWidget
 
 from regolith_studio.imaging.extraction import voxel_diameter
 from regolith_studio.imaging.segmentation.cleaning import CleaningSettings
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings
 from regolith_studio.jobs.grain_recipe import GrainRecipe
-from regolith_studio.ui.pages.scan.fields import choice
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.labels import heading, remark
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec, align_labels
@@ -268,3 +268,13 @@ def _form(rows: Sequence[tuple[str, QWidget]]) -> QFormLayout:
     for words, part in rows:
         form.addRow(words, part)
     return form
+
+
+def choice(name: str, words: str, rows: Sequence[tuple[Any, str]]) -> QComboBox:
+    """A combo box of values and labels; `words` is the accessible name. Translates the labels only."""
+    box = QComboBox()
+    box.setObjectName(name)
+    box.setAccessibleName(words)
+    for key, label in rows:
+        box.addItem(tr(label), key)
+    return box

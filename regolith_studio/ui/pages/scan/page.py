@@ -35,9 +35,9 @@ from regolith_studio.session.recipe_inputs import VolumeEntry
 from regolith_studio.ui.layout import CONTROLS_WIDTH, padded, scrolled_column, side_by_side
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.scan.controls import SegmentationControls
-from regolith_studio.ui.pages.scan.overview import Overview
-from regolith_studio.ui.pages.scan.steps import StepsPanel
+from regolith_studio.ui.pages.scan.slices_view import SlicesView
 from regolith_studio.ui.pages.scan.volume_dialog import RAW_SUFFIXES, VolumeDialog, needs_asking
+from regolith_studio.ui.pages.scan.workflow_panel import WorkflowPanel
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.translation.sentences import retold
@@ -65,11 +65,11 @@ class ScanPage(PageWidget):
         self._found_with: SegmentationSettings | None = None
 
     def assemble(self) -> Iterator[None]:
-        self.overview = Overview()
+        self.overview = SlicesView()
         yield
         self.controls = SegmentationControls()
         yield
-        self.steps = StepsPanel()
+        self.steps = WorkflowPanel()
         yield
         self._timer = QTimer(self, interval=PREVIEW_DELAY, singleShot=True)
         yield from self._arrange()

@@ -20,7 +20,7 @@ from PySide6.QtWidgets import (
 from regolith_studio.jobs.extracting import VolumeInput
 from regolith_studio.readers.volume_formats import WITH_AXES
 from regolith_studio.readers.volumes.header import RawLayout, VolumeHeader
-from regolith_studio.ui.pages.scan.fields import choice
+from regolith_studio.ui.pages.scan.controls import choice
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.labels import remark

@@ -33,7 +33,7 @@ COLUMNS = 6
 """Particles that are shown at most."""
 
 
-class SolidGallery(QWidget):
+class PolyhedronGallery(QWidget):
     """Cells fill while the polyhedra are found."""
 
     def __init__(self) -> None:

@@ -19,10 +19,10 @@ from regolith_studio.studies.variations import VARIATIONS
 from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.layout import side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
-from regolith_studio.ui.pages.studies.desk import VariationDesk
-from regolith_studio.ui.pages.studies.gallery import COLUMNS, SolidGallery
-from regolith_studio.ui.pages.studies.rows_bar import RowsBar
-from regolith_studio.ui.pages.studies.variation_panel import VariationPanel
+from regolith_studio.ui.pages.studies.controller import SweepController
+from regolith_studio.ui.pages.studies.gallery import COLUMNS, PolyhedronGallery
+from regolith_studio.ui.pages.studies.loss_selector import LossSelector
+from regolith_studio.ui.pages.studies.sweep_panel import SweepPanel
 from regolith_studio.ui.panels.coarsening_study import CoarseningStudyPanel
 from regolith_studio.ui.panels.lmax_study import LmaxStudyPanel
 from regolith_studio.ui.theme import Theme
@@ -51,17 +51,17 @@ class StudiesPage(PageWidget):
         yield
         self.coarsening_study = CoarseningStudyPanel()
         yield
-        self.gallery, self.bar = SolidGallery(), RowsBar()
-        self.variations: dict[str, VariationPanel] = {}
+        self.gallery, self.bar = PolyhedronGallery(), LossSelector()
+        self.variations: dict[str, SweepPanel] = {}
         for key in VARIATIONS:
             yield
-            self.variations[key] = VariationPanel(key)
+            self.variations[key] = SweepPanel(key)
         yield
         self.tabs = self._tabs()
         yield
         yield from self._place()
         yield
-        self.desk = VariationDesk(self._context, self.variations, self.bar)
+        self.desk = SweepController(self._context, self.variations, self.bar)
         self._wire(Kind.LMAX_STUDY, self.lmax_study)
         self._wire(Kind.COARSENING_STUDY, self.coarsening_study)
         self.gallery.frame.startRequested.connect(self.draw_gallery)

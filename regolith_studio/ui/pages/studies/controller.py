@@ -12,12 +12,12 @@ from regolith_studio.session.variations import varied_rows
 from regolith_studio.studies.coarsening import CoarseningStudy
 from regolith_studio.studies.variations import VARIATIONS
 from regolith_studio.ui.page import PageContext
-from regolith_studio.ui.pages.studies.rows_bar import RowsBar
-from regolith_studio.ui.pages.studies.variation_panel import VariationPanel
+from regolith_studio.ui.pages.studies.loss_selector import LossSelector
+from regolith_studio.ui.pages.studies.sweep_panel import SweepPanel
 from regolith_studio.ui.translation import tr
 
 
-class VariationDesk:
+class SweepController:
     """A lane for each variation: they can run beside each other, each can be stopped.
 
     Parameters
@@ -28,7 +28,7 @@ class VariationDesk:
         Says by which box diameters are measured.
     """
 
-    def __init__(self, context: PageContext, panels: Mapping[str, VariationPanel], bar: RowsBar) -> None:
+    def __init__(self, context: PageContext, panels: Mapping[str, SweepPanel], bar: LossSelector) -> None:
         self._context, self._session, self._panels, self._bar = context, context.session, panels, bar
         self._found: dict[str, CoarseningStudy] = {}
         self._made: dict[str, Choices] = {}

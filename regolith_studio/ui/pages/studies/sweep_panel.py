@@ -12,7 +12,7 @@ from regolith_studio.scene.palette import DESCRIPTOR_COLOURS
 from regolith_studio.studies.coarsening import COLUMNS, LEAST_DRAWN, CoarseningStudy
 from regolith_studio.studies.variations import VARIATIONS, descriptor_error, efficient
 from regolith_studio.ui.pages.studies.band_plot import BandPlot, Series
-from regolith_studio.ui.pages.studies.change_table import ChangeTable
+from regolith_studio.ui.pages.studies.sensitivity_table import SensitivityTable
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import mark, tr, tr_count
 from regolith_studio.ui.translation.sentences import retold
@@ -24,14 +24,14 @@ OVERLAP = "Jaccard"
 ON_AND_OFF = mark("The method keeps descriptors exactly: each is asked for or not, whatever its weight.")
 
 
-class Shown(Protocol):
+class StudyView(Protocol):
     """What a panel places below its controls."""
 
     def show_study(self, study: CoarseningStudy | None) -> None: ...
     def set_theme(self, theme: Theme) -> None: ...
 
 
-class FacesPlot(BandPlot):
+class FacetsPlot(BandPlot):
     """A curve a descriptor against the number of facets."""
 
     def __init__(self) -> None:
@@ -105,23 +105,23 @@ class TradeoffPlot(BandPlot):
         self.set_series(series, behind=[line])
 
 
-def sensitivity_part() -> ChangeTable:
+def sensitivity_part() -> SensitivityTable:
     """The table of a sensitivity."""
     headers = (*(plain_symbol(CATALOGUE[key].symbol) for key in LOSS_KEYS), OVERLAP)
-    return ChangeTable(
+    return SensitivityTable(
         tr("What each error becomes when one weight of the loss is changed: which weights matter."), headers
     )
 
 
 PARTS: Mapping[str, Callable[[], QWidget]] = {
-    "faces": FacesPlot,
+    "faces": FacetsPlot,
     "tradeoff": TradeoffPlot,
     "sensitivity": sensitivity_part,
 }
 """What shows each variation, by its key."""
 
 
-class VariationPanel(QWidget):
+class SweepPanel(QWidget):
     """Emits ``startRequested`` and ``cancelRequested(task)`` of its frame."""
 
     startRequested = Signal()  # noqa: N815
@@ -159,17 +159,17 @@ class VariationPanel(QWidget):
 
     def show_study(self, study: CoarseningStudy | None, outdated: bool) -> None:
         """Show what was found, or nothing."""
-        shown: Shown = self.part  # type: ignore[assignment]  # every part of PARTS is one
+        shown: StudyView = self.part  # type: ignore[assignment]  # every part of PARTS is one
         shown.show_study(study)
-        self.frame.set_remark("" if study is None else said_of(study, outdated))
+        self.frame.set_remark("" if study is None else summary_text(study, outdated))
 
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
-        shown: Shown = self.part  # type: ignore[assignment]  # every part of PARTS is one
+        shown: StudyView = self.part  # type: ignore[assignment]  # every part of PARTS is one
         shown.set_theme(theme)
 
 
-def said_of(study: CoarseningStudy, outdated: bool) -> str:
+def summary_text(study: CoarseningStudy, outdated: bool) -> str:
     """Particles, box, requests that could not be met, and whether the choices have moved on."""
     words = [tr_count("1 particle", "{count} particles", len(study.names))]
     if study.box_metric != "exact":

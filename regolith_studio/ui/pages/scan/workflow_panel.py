@@ -14,7 +14,7 @@ _DENSEST, _LARGEST = 0.7, 0.4
 """Shares of the voxels that the grains of no packing have, and that no single grain has."""
 
 
-class StepsPanel(QWidget):
+class WorkflowPanel(QWidget):
     """Buttons that lead through the page; each says what it needs by being greyed out."""
 
     openRequested = Signal()  # noqa: N815

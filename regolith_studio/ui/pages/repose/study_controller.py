@@ -16,7 +16,7 @@ from regolith_studio.ui.translation import tr
 LANE = "study"
 
 
-class StudyDesk:
+class ReposeStudyController:
     """One study at a time, in the background; what is on screen can be used meanwhile.
 
     Parameters

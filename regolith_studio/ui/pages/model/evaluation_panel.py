@@ -28,7 +28,7 @@ from regolith_studio.shape_models.models import MODELS
 from regolith_studio.studies.population import PopulationStudy
 from regolith_studio.studies.population_tables import distance_table, pair_table, ranking_table, target_table
 from regolith_studio.ui.layout import tabs
-from regolith_studio.ui.pages.model.table_view import TableView
+from regolith_studio.ui.pages.model.table_view import StudyTableView
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.labels import remark, with_subscripts
@@ -126,7 +126,7 @@ class PictureLabel(QWidget):
         painter.end()
 
 
-class JudgementPanel(QWidget):
+class EvaluationPanel(QWidget):
     """Starts a study, and shows what came of it so far."""
 
     startRequested = Signal()  # noqa: N815
@@ -142,7 +142,9 @@ class JudgementPanel(QWidget):
         self.pictures = {name: PictureLabel(tr(WAITING), LEGIBLE) for name in FIGURES}
         self.places = {name: _scrolled(label) for name, label in self.pictures.items()}
         self.tabs = tabs("model_figures", [(self._ranked(), tr("Ranking"))])
-        self.tables = {name: TableView(f"model_{name}", tr(title)) for name, (title, _) in TABLES.items()}
+        self.tables = {
+            name: StudyTableView(f"model_{name}", tr(title)) for name, (title, _) in TABLES.items()
+        }
         for name, (title, _) in TABLES.items():
             self.tabs.addTab(self.tables[name], tr(title))
         for name, title in FIGURES.items():

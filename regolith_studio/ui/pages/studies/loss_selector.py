@@ -24,7 +24,7 @@ BOX_TIP = mark(
 EQUAL_TIP = mark("Losses can be compared at equal numbers of facets only; choose the number beside Facets n.")
 
 
-class RowsBar(QWidget):
+class LossSelector(QWidget):
     """One line above the studies; emits ``valueChanged``."""
 
     valueChanged = Signal()  # noqa: N815
@@ -78,7 +78,7 @@ class RowsBar(QWidget):
         self.remark.setText(words if stops else "")
 
     def _menu(self) -> QMenu:
-        menu = _StayingMenu(self)
+        menu = _StickyMenu(self)
         menu.setObjectName("study_rows_menu")
         for words, names in (
             (tr("Those of Fig. 8"), PAPER_ROWS),
@@ -118,7 +118,7 @@ class RowsBar(QWidget):
         self.rows.setText(words + ARROW)
 
 
-class _StayingMenu(QMenu):
+class _StickyMenu(QMenu):
     """Stays open while its entries are checked, so that several can be chosen."""
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:

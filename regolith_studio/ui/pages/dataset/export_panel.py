@@ -41,7 +41,7 @@ PARTICLES = NumberSpec(
 )
 
 
-class TargetsPanel(QWidget):
+class ExportPanel(QWidget):
     """Check boxes of the formats, and the settings that they share."""
 
     exportRequested = Signal()  # noqa: N815

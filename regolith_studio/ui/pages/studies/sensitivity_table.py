@@ -14,7 +14,7 @@ from regolith_studio.ui.widgets.heat_table import keep_legible, numbers_table, r
 from regolith_studio.ui.widgets.table import FontRowHeight
 
 
-class ChangeTable(QWidget):
+class SensitivityTable(QWidget):
     """A row a change, a column a descriptor; a sentence where there is nothing yet."""
 
     def __init__(self, placeholder: str, headers: tuple[str, ...]) -> None:

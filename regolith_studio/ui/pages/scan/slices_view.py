@@ -19,7 +19,7 @@ PREVIEW_EDGE = 96
 """Voxels of the box of the preview along each axis, where the volume has as many."""
 
 
-class Overview(QWidget):
+class SlicesView(QWidget):
     """Shows a :class:`Scan` and the grains found in a part of it, or in all of it."""
 
     boxMoved = Signal()  # noqa: N815

@@ -38,7 +38,7 @@ class SourceKind:
     words: str
 
 
-class Sources:
+class SourceBox:
     """By key: ``open``, names of materials, and ``file:`` with a number."""
 
     def __init__(self, session: Session) -> None:

@@ -8,11 +8,11 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.representing import ChosenParticles
 from regolith_studio.session.choices import Choices
 from regolith_studio.ui.fineness import fineness_words
-from regolith_studio.ui.pages.dataset.gallery import Shown
+from regolith_studio.ui.pages.dataset.gallery import GalleryItem
 from regolith_studio.ui.translation import tr, tr_count
 
 
-def chosen_particles(particles: Sequence[Particle], chosen: ChosenParticles) -> list[Shown]:
+def chosen_particles(particles: Sequence[Particle], chosen: ChosenParticles) -> list[GalleryItem]:
     """The particles that stand for all."""
     classes = chosen.representatives.classes
     total = sum(one.weight for one in classes)
@@ -27,11 +27,11 @@ def chosen_particles(particles: Sequence[Particle], chosen: ChosenParticles) -> 
             name=particle.name,
             share=share,
         )
-        shown.append((one.weight, Shown(particle.mesh, f"{share}\n{particle.name}", tip)))
+        shown.append((one.weight, GalleryItem(particle.mesh, f"{share}\n{particle.name}", tip)))
     return _by_share(shown)
 
 
-def shapes(dataset: Dataset) -> list[Shown]:
+def shapes(dataset: Dataset) -> list[GalleryItem]:
     """The polyhedra of a dataset."""
     shown = []
     for one, weight in zip(dataset.representatives, dataset.weights, strict=True):
@@ -44,7 +44,7 @@ def shapes(dataset: Dataset) -> list[Shown]:
             count=one.n_members,
         )
         words = f"{100 * weight:.1f} %\n" + tr("{count} facets", count=solid.n_facets)
-        shown.append((float(weight), Shown(solid.mesh, words, tip, coarsened=True)))
+        shown.append((float(weight), GalleryItem(solid.mesh, words, tip, coarsened=True)))
     return _by_share(shown)
 
 
@@ -70,5 +70,5 @@ def request_of(choices: Choices) -> str:
     )
 
 
-def _by_share(shown: list[tuple[float, Shown]]) -> list[Shown]:
+def _by_share(shown: list[tuple[float, GalleryItem]]) -> list[GalleryItem]:
     return [each for _, each in sorted(shown, key=lambda pair: -pair[0])]

@@ -18,7 +18,7 @@ SPEED = NumberSpec(
 USUAL_SPEED = 2.0
 
 
-class Transport(QWidget):
+class PlaybackBar(QWidget):
     """Chooses one of some steps, by hand or by itself.
 
     Parameters
