@@ -5,7 +5,6 @@ input ends. It kills itself when a request takes too long, so that it cannot out
 """
 
 import contextlib
-import logging
 import os
 import signal
 import sys
@@ -60,7 +59,6 @@ def main() -> None:
     limit = int(sys.argv[1]) if len(sys.argv) > 1 else 0
     _limit_memory(limit)
     warnings.simplefilter("ignore")
-    logging.disable(logging.CRITICAL)
     send(sink, Message({"status": "ready", "pid": os.getpid()}))
     len(MESH_FORMATS)  # imports them while the parent is busy with what to ask
     with contextlib.suppress(EOFError, OSError, KeyboardInterrupt):

@@ -12,7 +12,7 @@ from regolith_studio.errors import FileError
 from regolith_studio.readers.error_messages import shown_name
 from regolith_studio.readers.volume_formats import VolumeFormat
 from regolith_studio.readers.voxels.header import LARGEST_SLICE, VoxelHeader, shown_shape, voxel_type
-from regolith_studio.readers.voxels.tiff import check_tiff, stated_size
+from regolith_studio.readers.voxels.tiff import check_page, open_tiff_file, stated_size
 
 SLICE_SUFFIXES = (".tif", ".tiff", ".png", ".bmp")
 _BMP = struct.Struct("<10xIIiiHHIIxxxxxxxxI")
@@ -83,15 +83,13 @@ def _image(path: Path) -> NDArray[Any]:
 
 
 def _tiff(path: Path) -> NDArray[Any]:
-    import tifffile
-
-    pages = check_tiff(path)
-    if pages != 1:
-        raise FileError(f"has {pages:,} pages: it is a stack of its own.")
-    with tifffile.TiffFile(path, mode="r", is_ome=False, _multifile=False) as file:
+    with open_tiff_file(path) as file:
+        if len(file.pages) != 1:
+            raise FileError(f"has {len(file.pages):,} pages: it is a stack of its own.")
         page: Any = file.pages.first
         if page.nbytes > LARGEST_SLICE:
             raise FileError("is larger than 1 GiB.")
+        check_page(page, path.stat().st_size, 0)
         decoded: NDArray[Any] = page.asarray(maxworkers=1)
     return decoded
 
@@ -137,9 +135,7 @@ def _bmp_edges(data: bytes) -> tuple[int, int]:
 def _stated(path: Path) -> Any:
     if path.suffix.lower() not in (".tif", ".tiff"):
         return None, None, ()
-    import tifffile
-
-    with tifffile.TiffFile(path, mode="r", is_ome=False, _multifile=False) as file:
+    with open_tiff_file(path) as file:
         return stated_size(file)
 
 

@@ -18,7 +18,7 @@ from regolith_studio.readers.voxels.header import (
     voxel_type,
 )
 from regolith_studio.readers.voxels.stored import PlainVoxels
-from regolith_studio.readers.voxels.tiff import check_tiff, stated_size
+from regolith_studio.readers.voxels.tiff import check_page, open_tiff_file, stated_size
 
 MOST_CHANNELS = 8
 _CHANNELS = re.compile(r"<Pixels\b[^>]*\bSize[CT]=\"(?!1\")(\d+)\"")
@@ -47,8 +47,9 @@ class TiffPages:
 
     def _decoded(self, page: Any, number: int) -> NDArray[Any]:
         try:
+            check_page(page, self._file.filehandle.size, number)
             decoded: NDArray[Any] = page.asarray(maxworkers=1)
-        except MemoryError:
+        except (FileError, MemoryError):
             raise
         except Exception:  # noqa: BLE001 (each codec has errors of its own)
             raise FileError(
@@ -69,16 +70,11 @@ def open_tiff(path: Path, _options: Mapping[str, Any]) -> OpenVolume:
     FileError
         If the file is broken, holds colours, or its pages are no stack.
     """
-    import tifffile
-
-    check_tiff(path)
-    file: Any = None
+    file = open_tiff_file(path)
     try:
-        file = tifffile.TiffFile(path, mode="r", is_ome=False, _multifile=False)
         return _stack(path, file)
     except Exception as error:
-        if file is not None:
-            file.close()
+        file.close()
         if isinstance(error, FileError | MemoryError):
             raise
         raise FileError("is a broken TIFF file; export it again.") from None
@@ -87,6 +83,8 @@ def open_tiff(path: Path, _options: Mapping[str, Any]) -> OpenVolume:
 def _stack(path: Path, file: Any) -> OpenVolume:
     series = max(file.series, key=lambda each: each.size)
     page = series.keyframe
+    if page.dtype is None:
+        raise FileError("is a broken TIFF file: its pixels have no size.")
     size, unit, notes = stated_size(file)
     notes += _check_colours(series, page)
     shape = three_dimensions(tuple(series.shape))

@@ -1,181 +1,15 @@
-"""A look at the directories of a TIFF file before a library follows them: all inside the file, no loops.
+"""Traits of TIFF files: what tifffile steps over in broken ones, and the voxel size that a file states."""
 
-TIFF 6.0 and BigTIFF. What is checked here is what makes readers hang, allocate without end or read
-elsewhere: the chain of directories, the places that tags point to, the size of images and strips.
-"""
-
+import logging
+import math
 import re
-import struct
-from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, BinaryIO
+from types import TracebackType
+from typing import Any, Self
 
 from regolith_studio.errors import FileError
 from regolith_studio.readers.units import unit_named
 from regolith_studio.readers.voxels.header import Sizes, sizes_or_none
-
-MOST_PAGES = 100_000
-MOST_TAGS = 512
-LARGEST_EDGE = 1 << 20
-_SIZES = {
-    1: 1,
-    2: 1,
-    3: 2,
-    4: 4,
-    5: 8,
-    6: 1,
-    7: 1,
-    8: 2,
-    9: 4,
-    10: 8,
-    11: 4,
-    12: 8,
-    13: 4,
-    16: 8,
-    17: 8,
-    18: 8,
-}
-_WHOLE = {1: "B", 3: "H", 4: "I", 13: "I", 16: "Q"}
-_WIDTH, _LENGTH, _BITS, _SAMPLES, _ROWS = 256, 257, 258, 277, 278
-_TILE_WIDTH, _TILE_LENGTH, _DEPTH, _TILE_DEPTH = 322, 323, 32997, 32998
-_OFFSETS, _COUNTS = (273, 324), (279, 325)
-
-Tags = dict[int, tuple[int, ...]]
-
-
-def check_tiff(path: Path) -> int:
-    """The number of pages of a TIFF file whose directories all make sense.
-
-    Raises
-    ------
-    FileError
-        If the file is cut short, its directories go in circles, or an image has an impossible size.
-    """
-    with path.open("rb") as file:
-        walk = _Walk(file, path.stat().st_size)
-        pages = 0
-        for tags in walk.directories():
-            _check_page(tags, walk.size, pages + 1)
-            pages += 1
-            if pages > MOST_PAGES:
-                raise FileError(f"has more than {MOST_PAGES:,} pages: it is damaged.")
-    if not pages:
-        raise FileError("is a TIFF without a single page.")
-    return pages
-
-
-class _Walk:
-    """The directories of one file, in the order of their chain."""
-
-    def __init__(self, file: BinaryIO, size: int) -> None:
-        self.size = size
-        self._file = file
-        if not size:
-            raise FileError("is empty: it has no bytes at all.")
-        head = self._at(0, 16, short=8)
-        self._order = {b"II": "<", b"MM": ">"}.get(head[:2], "")
-        version = struct.unpack(f"{self._order or '<'}H", head[2:4])[0]
-        if not self._order or version not in (42, 43):
-            raise FileError("is no TIFF file: it does not begin as one.")
-        self._big = version == 43
-        self._count, self._entry, self._next = ("Q", "HHQ8s", "Q") if self._big else ("H", "HHI4s", "I")
-        if self._big and (len(head) < 16 or struct.unpack(f"{self._order}HH", head[4:8]) != (8, 0)):
-            raise FileError("is a broken BigTIFF file: its header makes no sense.")
-        self._first = struct.unpack_from(f"{self._order}{self._next}", head, 8 if self._big else 4)[0]
-
-    def directories(self) -> Iterator[Tags]:
-        """The whole numbers among the tags of each page."""
-        place, seen = self._first, set[int]()
-        while place:
-            if place in seen:
-                raise FileError("is a broken TIFF file: its pages go round in a circle.")
-            seen.add(place)
-            tags, place = self._directory(place)
-            yield tags
-
-    def _directory(self, place: int) -> tuple[Tags, int]:
-        count_size, entry_size = struct.calcsize("<" + self._count), struct.calcsize("<" + self._entry)
-        count = struct.unpack(self._order + self._count, self._at(place, count_size))[0]
-        if not 0 < count <= MOST_TAGS:
-            raise FileError(f"is a broken TIFF file: a page has {count:,} tags.")
-        next_size = struct.calcsize("<" + self._next)
-        rows = self._at(place + count_size, count * entry_size + next_size)
-        tags: Tags = {}
-        for row in struct.iter_unpack(self._order + self._entry, rows[: count * entry_size]):
-            tag, kind, number, value = row
-            tags[tag] = self._value(tag, kind, number, value)
-        return tags, struct.unpack(self._order + self._next, rows[count * entry_size :])[0]
-
-    def _value(self, tag: int, kind: int, number: int, value: bytes) -> tuple[int, ...]:
-        size = number * _SIZES.get(kind, 0)
-        if size <= len(value):
-            data = value[:size]
-        else:
-            pointer = struct.unpack(self._order + self._next, value)[0]
-            if pointer + size > self.size:
-                raise FileError(f"is cut short or broken: its tag {tag} points beyond the end of the file.")
-            if kind not in _WHOLE or tag not in _NEEDED:
-                return ()
-            data = self._at(pointer, size)
-        if kind not in _WHOLE:
-            return ()
-        return struct.unpack(f"{self._order}{number}{_WHOLE[kind]}", data)
-
-    def _at(self, place: int, size: int, short: int | None = None) -> bytes:
-        self._file.seek(min(place, self.size))
-        data = self._file.read(size)
-        if len(data) < (size if short is None else short):
-            raise FileError("is cut short or broken: a page of it lies beyond the end of the file.")
-        return data
-
-
-_NEEDED = frozenset(
-    (_WIDTH, _LENGTH, _BITS, _SAMPLES, _ROWS, _TILE_WIDTH, _TILE_LENGTH, _DEPTH, _TILE_DEPTH)
-) | frozenset(_OFFSETS + _COUNTS)
-
-
-def _check_page(tags: Tags, size: int, page: int) -> None:
-    edges = [_one(tags, tag, default) for tag, default in ((_WIDTH, 0), (_LENGTH, 0), (_DEPTH, 1))]
-    if not all(0 < edge <= LARGEST_EDGE for edge in edges):
-        raise FileError(f"is a broken TIFF file: page {page:,} is {edges[0]:,} × {edges[1]:,} pixels.")
-    for tag in (_TILE_WIDTH, _TILE_LENGTH, _TILE_DEPTH):
-        if not 0 < _one(tags, tag, 1) <= LARGEST_EDGE:
-            raise FileError(f"is a broken TIFF file: the tiles of page {page:,} have no size.")
-    if not 0 < _one(tags, _SAMPLES, 1) <= 1024 or not all(0 < bits <= 64 for bits in tags.get(_BITS, (1,))):
-        raise FileError(f"is a broken TIFF file: the pixels of page {page:,} have no size.")
-    _check_segments(tags, size, page)
-
-
-def _check_segments(tags: Tags, size: int, page: int) -> None:
-    """Strips or tiles: as many as the image needs, each inside the file."""
-    offsets = next((tags[tag] for tag in _OFFSETS if tag in tags), ())
-    counts = next((tags[tag] for tag in _COUNTS if tag in tags), ())
-    if not offsets:
-        raise FileError(f"is a broken TIFF file: page {page:,} has no pixels.")
-    if len(counts) > len(offsets):
-        raise FileError(f"is a broken TIFF file: page {page:,} has more strip sizes than strips.")
-    for place, count in zip(offsets, counts, strict=False):
-        if place + count > size:
-            raise FileError(
-                f"is cut short: the pixels of page {page:,} end at byte {place + count:,} of {size:,}."
-            )
-    if len(offsets) < _segments_needed(tags):
-        raise FileError(f"is a broken TIFF file: page {page:,} lacks some of its pixels.")
-
-
-def _segments_needed(tags: Tags) -> int:
-    width, length, depth = (_one(tags, tag, 1) for tag in (_WIDTH, _LENGTH, _DEPTH))
-    if _TILE_WIDTH in tags and _TILE_LENGTH in tags:
-        tiles = -(-width // _one(tags, _TILE_WIDTH, 1)) * -(-length // _one(tags, _TILE_LENGTH, 1))
-        return tiles * -(-depth // _one(tags, _TILE_DEPTH, 1))
-    rows = min(max(_one(tags, _ROWS, length), 1), length)
-    return -(-length // rows) * depth
-
-
-def _one(tags: Tags, tag: int, default: int) -> int:
-    values = tags.get(tag, ())
-    return values[0] if values else default
-
 
 Stated = tuple[Sizes | None, str | None, tuple[str, ...]]
 
@@ -186,6 +20,82 @@ _INCH, _CENTIMETRE = 25.4, 10.0
 _PRINTERS = (72, 96, 100, 150, 180, 200, 240, 300, 360, 400, 600, 720, 1200, 2400)
 """Resolutions, in dots per inch, that programs write when they know none."""
 _CUBIC = "The file states the width of a pixel only; the slices were taken to be as far apart."
+
+
+class _ErrorLog(logging.Handler):
+    """What tifffile logs as errors while it is in use."""
+
+    def __init__(self) -> None:
+        super().__init__(logging.ERROR)
+        self.messages: list[str] = []
+
+    def emit(self, record: logging.LogRecord) -> None:
+        self.messages.append(record.getMessage())
+
+    def __enter__(self) -> Self:
+        logging.getLogger("tifffile").addHandler(self)
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        logging.getLogger("tifffile").removeHandler(self)
+
+
+def open_tiff_file(path: Path) -> Any:
+    """An open ``tifffile.TiffFile`` whose pages have all been found.
+
+    tifffile only logs it when the chain of pages breaks off, goes in a circle or lacks strips, and gives the
+    pages that it has found: a file that is cut short would become a smaller volume. So its log decides.
+
+    Raises
+    ------
+    FileError
+        If it is no TIFF file, or tifffile has logged an error.
+    """
+    import tifffile
+
+    if not path.stat().st_size:
+        raise FileError("is empty: it has no bytes at all.")
+    file: Any = None
+    with _ErrorLog() as log:
+        try:
+            file = tifffile.TiffFile(path, mode="r", is_ome=False, _multifile=False)
+            pages, _series = len(file.pages), file.series
+        except MemoryError:
+            raise
+        except Exception as error:  # noqa: BLE001 (whatever a parser trips over is the file's fault)
+            message = str(error)
+            if file is not None:
+                file.close()
+            if "not a TIFF file" in message or "invalid TIFF version" in message:
+                raise FileError("is no TIFF file: it does not begin as one.") from None
+            raise FileError("is a broken TIFF file, or is cut short; copy or export it again.") from None
+    if log.messages or not pages:
+        file.close()
+        raise FileError(
+            "is a broken TIFF file, or is cut short: not all of its pages are there; copy or export it again."
+        )
+    return file
+
+
+def check_page(page: Any, size: int, number: int) -> None:
+    """Check that the strips or tiles of a page are all there and lie within the `size` bytes of the file.
+
+    tifffile fills with zeros what it cannot find.
+
+    Raises
+    ------
+    FileError
+        If not, naming the page by its `number`, counted from 0.
+    """
+    for place, count in zip(page.dataoffsets, page.databytecounts, strict=False):
+        if place + count > size:
+            raise FileError(
+                f"is cut short: the pixels of page {number + 1:,} end at byte {place + count:,} of {size:,}."
+            )
+    if page.dtype is None or len(page.dataoffsets) < math.prod(page.chunked):
+        raise FileError(f"is a broken TIFF file: page {number + 1:,} lacks some of its pixels.")
 
 
 def stated_size(file: Any) -> Stated:
