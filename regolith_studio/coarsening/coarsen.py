@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from regolith_studio.coarsening.bounds import attainable_errors
 from regolith_studio.coarsening.loss import loss
+from regolith_studio.coarsening.lower_bounds import attainable_errors
 from regolith_studio.coarsening.methods import METHODS, CoarseningMethod
 from regolith_studio.coarsening.polyhedra import polyhedron_of
 from regolith_studio.coarsening.progress import CoarseningProgress, MethodStep

@@ -1,17 +1,53 @@
-"""What a coarsening tells while it runs."""
+"""Progress of a coarsening: the steps of a method, and the proposals of simulated annealing."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from regolith_studio.coarsening.evaluation import Evaluation
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
 
-if TYPE_CHECKING:
-    from regolith_studio.coarsening.moves import Move
+
+@dataclass(frozen=True, eq=False)
+class Move:
+    """One proposal, for a particle of unit volume with its centroid at the origin.
+
+    Parameters
+    ----------
+    plane
+        Index i of the point p_i that is moved.
+    points
+        The points with p_i', shape (n, 3).
+    sigma
+        Standard deviation of the step in each coordinate.
+    before
+        Errors and loss (Eq. 9) of the polyhedron as it was.
+    proposed
+        The same of the proposal; ``None`` where its half-spaces bound no polyhedron.
+    probability
+        T(k), with which a worse polyhedron is taken.
+    drawn
+        The uniform random number that was compared with T(k).
+    accepted
+        Whether the proposal is the polyhedron from now on.
+    """
+
+    plane: int
+    points: FloatArray
+    sigma: float
+    before: Evaluation
+    proposed: Evaluation | None
+    probability: float
+    drawn: float
+    accepted: bool
+
+    @property
+    def better(self) -> bool:
+        """Whether the proposal has the smaller loss."""
+        return self.proposed is not None and self.proposed.loss < self.before.loss
 
 
 @dataclass(frozen=True)
@@ -34,7 +70,7 @@ class MethodStep:
     steps: int
     loss: float
     half_spaces: HalfSpaces | None = None
-    move: "Move | None" = None
+    move: Move | None = None
 
 
 @dataclass(frozen=True)

@@ -67,7 +67,7 @@ class Coarsened:
     n_facets_asked, n_facets, n_vertices, n_triangles
         Facets asked for; real facets, vertices and triangles.
     bounds
-        Least attainable error of each descriptor, see :mod:`regolith_studio.coarsening.bounds`.
+        Least attainable error of each descriptor, see :mod:`regolith_studio.coarsening.lower_bounds`.
     reason
         Why the request is not met, in one sentence; ``None`` where it is met.
     steps

@@ -9,9 +9,8 @@ from regolith_studio.coarsening.coarsen import coarsen, settings_of
 from regolith_studio.coarsening.evaluation import Evaluation
 from regolith_studio.coarsening.methods import METHODS
 from regolith_studio.coarsening.methods.annealing import AnnealingSettings
-from regolith_studio.coarsening.moves import Move
 from regolith_studio.coarsening.polyhedra import polyhedron_of
-from regolith_studio.coarsening.progress import MethodStep
+from regolith_studio.coarsening.progress import MethodStep, Move
 from regolith_studio.coarsening.result import Coarsened
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import LossWeights

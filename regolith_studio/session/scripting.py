@@ -45,7 +45,7 @@ def as_python(choices: Choices, source: str) -> str:
     doors = [*([] if until else ["coarsen"]), "fit_harmonics", *([] if sample else ["read_mesh"])]
     lines = [
         f"from regolith_studio import {', '.join(doors)}",
-        *(["from regolith_studio.coarsening.budgets import coarsen_below"] if until else []),
+        *(["from regolith_studio.coarsening.stopping_criteria import coarsen_below"] if until else []),
         "from regolith_studio.coarsening.coarsen import settings_of",
         "from regolith_studio.coarsening.weights import LossWeights",
         "from regolith_studio.harmonics.surface import reconstruct",

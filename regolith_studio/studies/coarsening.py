@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from regolith_studio.coarsening.coarsen import DEFAULT_METHOD, coarsen
+from regolith_studio.coarsening.decimated_hull import decimated_hull
 from regolith_studio.coarsening.result import Coarsened
-from regolith_studio.coarsening.start import decimated_hull
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import JACCARD
 from regolith_studio.descriptors.catalogue import LOSS_KEYS

@@ -9,8 +9,8 @@ from regolith_studio.coarsening.core.box_flush import box_on_facets
 from regolith_studio.coarsening.core.evaluate import least_extents
 from regolith_studio.coarsening.core.intersection import edges_of, intersect
 from regolith_studio.coarsening.core.measures import facets_of
+from regolith_studio.coarsening.decimated_hull import quadric_half_spaces
 from regolith_studio.coarsening.evaluation import LossFunction
-from regolith_studio.coarsening.start import quadric_half_spaces
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.descriptors.catalogue import LOSS_KEYS

@@ -6,7 +6,7 @@ import string
 import numpy as np
 import pytest
 
-from regolith_studio.coarsening.bounds import greatest_sphericity, sphericity_reason
+from regolith_studio.coarsening.lower_bounds import max_sphericity, sphericity_reason
 from regolith_studio.imaging.extraction import Extraction
 from regolith_studio.imaging.segmentation.segment import Segmentation
 from regolith_studio.imaging.segmentation.thresholding import Histogram
@@ -76,7 +76,7 @@ def test_that_sentences_of_the_layers_below_are_told_anew(speaking):
     reason = sphericity_reason(0.97, 10)
     assert retold(reason) == (
         f"Die Sphärizität 0.970 braucht mindestens {re.findall(r'[0-9]+', reason)[2]} Facetten;"
-        f" mit 10 sind höchstens {greatest_sphericity(10):.3f} möglich."
+        f" mit 10 sind höchstens {max_sphericity(10):.3f} möglich."
     )
     off = "No polyhedron with 8 facets was found that meets all descriptors: sphericity is off by 3 %;"
     german = retold(f"{off} more facets or a weight of 0 would free it.")

@@ -10,11 +10,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from regolith_studio.coarsening.bounds import greatest_sphericity
 from regolith_studio.coarsening.core.planes import tangents_of
 from regolith_studio.coarsening.exact.course import NOWHERE, Attempt, attempt, course, mended, start_planes
 from regolith_studio.coarsening.exact.polish import measured
 from regolith_studio.coarsening.exact.problem import Problem
+from regolith_studio.coarsening.lower_bounds import max_sphericity
 from regolith_studio.coarsening.target import Target
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.sphere_points import fibonacci_directions
@@ -43,9 +43,7 @@ def numbers_to_grow_from(target: Target, n_facets: int, keeps_sphericity: bool) 
     surplus = more_surface_than_hull(target) if keeps_sphericity else -np.inf
     order = next(few for least, few in FEW_FACETS if surplus >= least)
     wanted = target.descriptors["sphericity"] if keeps_sphericity else 0.0
-    numbers = [
-        few if ALIKE * few < n_facets else n_facets for few in order if greatest_sphericity(few) > wanted
-    ]
+    numbers = [few if ALIKE * few < n_facets else n_facets for few in order if max_sphericity(few) > wanted]
     if not keeps_sphericity:
         numbers.insert(0, n_facets)
     return tuple(dict.fromkeys([*numbers, n_facets]))

@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from regolith_studio.coarsening.bounds import hull_gives_way, sphericity_reason
 from regolith_studio.coarsening.exact.problem import Problem
+from regolith_studio.coarsening.lower_bounds import sphericity_reason, volume_is_preferred
 from regolith_studio.coarsening.target import RayTable, Target
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.descriptors.comparison import relative_errors
@@ -59,7 +59,7 @@ class Request:
     def of(cls, target: Target, weights: LossWeights) -> "Request":
         """A weight above 0 makes a condition; of V and CH the one that Eq. 9 prefers."""
         wanted = target.descriptors
-        keeps_volume = hull_gives_way(weights, wanted)
+        keeps_volume = volume_is_preferred(weights, wanted)
         volume = wanted["volume"] if keeps_volume else wanted["convex_hull_volume"]
         box = (weights["min_diameter"] > 0, weights["max_diameter"] > 0)
         asked = (

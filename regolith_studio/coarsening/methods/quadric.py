@@ -5,10 +5,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from regolith_studio.coarsening.decimated_hull import decimated_hull, quadric_half_spaces
 from regolith_studio.coarsening.loss import loss
 from regolith_studio.coarsening.progress import MethodStep
 from regolith_studio.coarsening.result import MethodResult
-from regolith_studio.coarsening.start import decimated_hull, quadric_half_spaces
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import JACCARD, LossWeights
 from regolith_studio.descriptors.comparison import relative_errors

@@ -1,4 +1,4 @@
-"""The start of every method: the convex hull, decimated by quadric error (section 2.4)."""
+"""The convex hull decimated by quadric error: the baseline and the start of annealing (section 2.4)."""
 
 import numpy as np
 

@@ -2,8 +2,13 @@
 
 import pytest
 
-from regolith_studio.coarsening.budgets import Trial, coarsen_below, facets_for_triangles, fewest_facets
 from regolith_studio.coarsening.coarsen import coarsen
+from regolith_studio.coarsening.stopping_criteria import (
+    Trial,
+    coarsen_below,
+    facets_for_triangles,
+    fewest_facets,
+)
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.mesh import Mesh

@@ -1,4 +1,4 @@
-"""What no convex polyhedron with n facets can do better, and the sentences that say so."""
+"""Lower bounds of the errors of any convex polyhedron with n facets, and the reasons that follow."""
 
 from collections.abc import Mapping
 
@@ -6,11 +6,11 @@ import numpy as np
 
 from regolith_studio.coarsening.weights import JACCARD, LossWeights
 
-MOST_FACES = 100_000
+MAX_FACETS = 100_000
 """Sphericities that ask for more facets count as unreachable."""
 
 
-def greatest_sphericity(n_facets: int) -> float:
+def max_sphericity(n_facets: int) -> float:
     """Upper bound of Wadell's sphericity of a convex polyhedron with `n_facets` facets (Goldberg 1935).
 
     Attained by the tetrahedron, the cube and the dodecahedron (n = 4, 6, 12).
@@ -28,16 +28,16 @@ def greatest_sphericity(n_facets: int) -> float:
 
 def min_facets(sphericity: float) -> int | None:
     """Fewest facets whose Goldberg bound reaches `sphericity`; ``None`` above 100,000 facets."""
-    if greatest_sphericity(MOST_FACES) < sphericity:
+    if max_sphericity(MAX_FACETS) < sphericity:
         return None
-    low, high = 4, MOST_FACES
+    low, high = 4, MAX_FACETS
     while low < high:
         middle = (low + high) // 2
-        low, high = (low, middle) if greatest_sphericity(middle) >= sphericity else (middle + 1, high)
+        low, high = (low, middle) if max_sphericity(middle) >= sphericity else (middle + 1, high)
     return low
 
 
-def hull_gives_way(weights: LossWeights, descriptors: Mapping[str, float]) -> bool:
+def volume_is_preferred(weights: LossWeights, descriptors: Mapping[str, float]) -> bool:
     """Whether V is kept and CH misses: a convex polyhedron has V = CH, a particle V < CH.
 
     Eq. 9 is least at one of the two ends: at V where alpha_V / V >= alpha_CH / CH, else at CH.
@@ -57,12 +57,12 @@ def attainable_errors(
     Sphericity follows Goldberg's bound; box and aspect ratio have the bound 0.
     """
     solidity = min(1.0, descriptors["volume"] / descriptors["convex_hull_volume"])
-    keep_volume = hull_gives_way(weights, descriptors)
+    keep_volume = volume_is_preferred(weights, descriptors)
     free = not (weights["volume"] or weights["convex_hull_volume"])
     return {
         JACCARD: 0.0 if keep_volume or free else 1.0 - solidity,
         "volume": 0.0 if keep_volume else 1.0 / solidity - 1.0,
-        "sphericity": max(0.0, 1.0 - greatest_sphericity(n_facets) / descriptors["sphericity"]),
+        "sphericity": max(0.0, 1.0 - max_sphericity(n_facets) / descriptors["sphericity"]),
         "min_diameter": 0.0,
         "max_diameter": 0.0,
         "aspect_ratio": 0.0,
@@ -70,7 +70,7 @@ def attainable_errors(
     }
 
 
-def least_loss(descriptors: Mapping[str, float], n_facets: int, weights: LossWeights) -> float:
+def min_loss(descriptors: Mapping[str, float], n_facets: int, weights: LossWeights) -> float:
     """A lower bound of Eq. 9."""
     bounds = attainable_errors(descriptors, n_facets, weights)
     return float(sum(weights[key] * bound for key, bound in bounds.items()))
@@ -78,9 +78,9 @@ def least_loss(descriptors: Mapping[str, float], n_facets: int, weights: LossWei
 
 def sphericity_reason(sphericity: float, n_facets: int) -> str | None:
     """Why `n_facets` facets cannot have this sphericity, or ``None`` if Goldberg's bound allows it."""
-    most = greatest_sphericity(n_facets)
-    if sphericity <= most:
+    limit = max_sphericity(n_facets)
+    if sphericity <= limit:
         return None
     needed = min_facets(sphericity)
     ask = "more than 100,000 facets" if needed is None else f"at least {needed} facets"
-    return f"Sphericity {sphericity:.3f} needs {ask}; with {n_facets} the most is {most:.3f}."
+    return f"Sphericity {sphericity:.3f} needs {ask}; with {n_facets} the most is {limit:.3f}."

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from regolith_studio.coarsening.bounds import (
+from regolith_studio.coarsening.lower_bounds import (
     attainable_errors,
-    greatest_sphericity,
-    least_loss,
+    max_sphericity,
     min_facets,
+    min_loss,
     sphericity_reason,
 )
 from regolith_studio.coarsening.weights import LossWeights
@@ -21,15 +21,15 @@ def test_that_the_platonic_solids_attain_goldbergs_bound() -> None:
     golden = (1 + 5**0.5) / 2
     dodecahedron = np.pi ** (1 / 3) * (6 * (15 + 7 * 5**0.5) / 4) ** (2 / 3) / (3 * np.sqrt(25 + 10 * 5**0.5))
     assert golden > 1
-    assert greatest_sphericity(4) == pytest.approx(tetrahedron)
-    assert greatest_sphericity(6) == pytest.approx(cube)
-    assert greatest_sphericity(12) == pytest.approx(dodecahedron)
+    assert max_sphericity(4) == pytest.approx(tetrahedron)
+    assert max_sphericity(6) == pytest.approx(cube)
+    assert max_sphericity(12) == pytest.approx(dodecahedron)
 
 
 def test_that_the_fewest_faces_are_the_first_whose_bound_reaches() -> None:
     n = min_facets(0.957)
     assert n is not None
-    assert greatest_sphericity(n) >= 0.957 > greatest_sphericity(n - 1)
+    assert max_sphericity(n) >= 0.957 > max_sphericity(n - 1)
     assert min_facets(0.999999999) is None
 
 
@@ -54,4 +54,4 @@ def test_that_the_bound_is_the_least_of_the_loss_over_all_volumes(of_volume: flo
     volumes = np.linspace(0.5, 1.5, 200_001)
     losses = of_volume * abs(volumes - 0.8) / 0.8 + of_hull * abs(volumes - 1.0)
     weights = LossWeights.of(volume=of_volume, convex_hull_volume=of_hull)
-    assert least_loss(SHAPE, 20, weights) == pytest.approx(losses.min(), abs=1e-5)
+    assert min_loss(SHAPE, 20, weights) == pytest.approx(losses.min(), abs=1e-5)
