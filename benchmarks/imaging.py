@@ -31,7 +31,7 @@ from regolith_studio.imaging.sample_volumes import sample_volume
 from regolith_studio.imaging.segmentation.denoising import DenoiseSettings
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings, segmentation_steps
 from regolith_studio.imaging.slabs import Scratch
-from regolith_studio.jobs.extracting import VolumeInput
+from regolith_studio.jobs.extraction_settings import VolumeInput
 
 CELL = 51
 GREY = (62, 150, 9.0)

@@ -24,7 +24,7 @@ def coarsen(
     from regolith_studio.cli.inputs import exit_code
     from regolith_studio.cli.terminal import complain, follow, print_json, print_table
     from regolith_studio.io.atomic import staged_folder
-    from regolith_studio.jobs.coarsening import coarsen_sample
+    from regolith_studio.jobs.coarsening_jobs import coarsen_sample
     from regolith_studio.session.outputs.coarsening import coarsening_document, error_table, write_coarsening
 
     wish = how.choices(preset, seed=seed, **fineness.changes)

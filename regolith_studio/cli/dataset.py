@@ -76,15 +76,19 @@ def build(
     from regolith_studio.dataset.size_spec import parse_sizes
     from regolith_studio.io.atomic import write_bytes
     from regolith_studio.io.tables import csv_text
-    from regolith_studio.jobs.building import DatasetOptions, build_dataset_folder, check_place
-    from regolith_studio.jobs.representing import RepresentativesOrder, measure_population, measure_quality
+    from regolith_studio.jobs.dataset_jobs import DatasetOptions, build_dataset_folder, check_place
+    from regolith_studio.jobs.representatives_jobs import (
+        RepresentativesRequest,
+        measure_population,
+        measure_quality,
+    )
     from regolith_studio.session.outputs.coarsening import coarsening_document
     from regolith_studio.studies.representatives import quality_table
 
     wish = how.choices(preset, seed=seed, **fineness.changes)
     with as_bad_use():
         parse_sizes(sizes)
-        chosen = RepresentativesOrder.of(representatives or 10, weighting, size_importance, seed)
+        chosen = RepresentativesRequest.of(representatives or 10, weighting, size_importance, seed)
     check_place(output, overwrite)
     loaded = reading.read(meshes)
     if quality_curve is not None:
@@ -136,7 +140,7 @@ def list_(
     """List the datasets below a folder, each with what was exported and simulated from it."""
     from regolith_studio.cli.terminal import follow, print_json
     from regolith_studio.dataset.library import provenance_tree
-    from regolith_studio.jobs.datasets import list_library
+    from regolith_studio.jobs.dataset_jobs import list_library
 
     del jobs, seed  # taken by every command
     tree = provenance_tree(entry for entry in follow(list_library(root)) if entry.matches(words))
@@ -230,7 +234,7 @@ def export(
     """Write a dataset for DEM programs, one folder a format; what a format loses is said."""
     from regolith_studio.cli.terminal import complain, follow, print_json
     from regolith_studio.dataset.exporting import ExportOptions
-    from regolith_studio.jobs.exporting import chosen_exporters, export_dataset_folder
+    from regolith_studio.jobs.dataset_jobs import chosen_exporters, export_dataset_folder
 
     del jobs  # taken by every command
     with as_bad_use():

@@ -42,7 +42,7 @@ def _pictures(done: "Performed") -> tuple[tuple[str, str], ...]:
     from regolith_studio.cli.picture import draw_three_views
     from regolith_studio.cli.terminal import follow
     from regolith_studio.errors import RegolithError
-    from regolith_studio.jobs.coarsening import coarsen_particle
+    from regolith_studio.jobs.coarsening_jobs import coarsen_particle
 
     index = done.tally.first_coarse
     if index is None:

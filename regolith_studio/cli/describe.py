@@ -54,13 +54,13 @@ def describe(
         raise typer.BadParameter(f"Particles weigh by number or by volume, not by {weighting!r}.")
     start_reader()
     from regolith_studio.cli.terminal import complain, follow, print_json, print_table
-    from regolith_studio.jobs.examining import examine_sample
+    from regolith_studio.jobs.particle_jobs import measure_sample
     from regolith_studio.session.outputs.descriptors import described, short_table
     from regolith_studio.session.results import ParticleEntry
 
     del seed  # taken by every command; nothing here is random
     loaded = reading.read(meshes)
-    facts = follow(examine_sample(loaded.particles, workers=jobs))
+    facts = follow(measure_sample(loaded.particles, workers=jobs))
     pairs = list(zip(loaded.particles, facts, strict=True))
     entries = [ParticleEntry(p.name, p, each.health, each.descriptors, sight=each.sight) for p, each in pairs]
     if csv is not None:

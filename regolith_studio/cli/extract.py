@@ -36,14 +36,14 @@ def extract(
     """
     from regolith_studio.cli.terminal import follow, print_json
     from regolith_studio.io.atomic import staged_folder
-    from regolith_studio.jobs.extracting import extract_measured
-    from regolith_studio.jobs.grain_recipe import read_grain_recipe
+    from regolith_studio.jobs.extraction_settings import read_grain_settings
+    from regolith_studio.jobs.volume_jobs import extract_measured
     from regolith_studio.session.outputs.extraction import ExtractionFolder
 
     del seed  # taken by every command; nothing here is random
     with as_bad_use():
         given = contents.of(volume)
-        settings = read_grain_recipe(recipe) if recipe else grains.recipe
+        settings = read_grain_settings(recipe) if recipe else grains.recipe
     with staged_folder(output) as stage:
         folder = ExtractionFolder(stage)
         done = follow(extract_measured(given, settings, output.parent, folder.add, jobs))

@@ -45,13 +45,13 @@ def fit(
     """Fit spherical harmonics to meshes; write coefficients and spectrum."""
     from regolith_studio.cli.inputs import exit_code
     from regolith_studio.cli.terminal import complain, follow, print_json
-    from regolith_studio.jobs.fitting import FitOrder, fit_sample
+    from regolith_studio.jobs.particle_jobs import FitRequest, fit_sample
     from regolith_studio.session.choices import Choices
     from regolith_studio.session.outputs.fits import FittedSample, fits_document, write_fits, write_surfaces
 
     with as_bad_use():
         Choices(l_max=l_max, seed=seed, level=level)
-        order = FitOrder(l_max, radii.fit_options)
+        order = FitRequest(l_max, radii.fit_options)
     stem = output.with_suffix("") if output.suffix in (".json", ".npz") else output
     loaded = reading.read(meshes)
     sample = FittedSample.of(loaded.particles, follow(fit_sample(loaded.particles, order, jobs)))

@@ -35,11 +35,11 @@ def gallery(
     from regolith_studio.cli.terminal import complain, follow, print_json
     from regolith_studio.harmonics.fit import HarmonicFit
     from regolith_studio.io.atomic import staged_folder
-    from regolith_studio.jobs.fitting import FIT_DEGREE, FitOrder, fit_sample
+    from regolith_studio.jobs.particle_jobs import FIT_DEGREE, FitRequest, fit_sample
 
     wanted = whole_numbers(degrees, 0, FIT_DEGREE)
     with as_bad_use():
-        order = FitOrder(max(wanted), radii.fit_options)
+        order = FitRequest(max(wanted), radii.fit_options)
     loaded = reading.read(meshes)
     fits = follow(fit_sample(loaded.particles, order))
     drawn: list[str] = []

@@ -19,7 +19,7 @@ from regolith_studio.cli.options import (
 )
 
 if TYPE_CHECKING:
-    from regolith_studio.jobs.generating import GenerateOrder
+    from regolith_studio.jobs.model_jobs import GenerationRequest
     from regolith_studio.readers.shape_files import ShapeSource
 
 Sources = Annotated[
@@ -86,13 +86,13 @@ def generate(
     """Draw virtual particles with the shapes and sizes of a sample (section 2.3)."""
     from regolith_studio.cli.terminal import complain, follow, print_json
     from regolith_studio.io.atomic import staged_folder
-    from regolith_studio.jobs.generating import GenerateOrder, draw, fit_model, groups_of
+    from regolith_studio.jobs.model_jobs import GenerationRequest, draw, fit_model, groups_of
     from regolith_studio.session.choices import Choices
     from regolith_studio.session.outputs.virtual import Generated, write_document
 
     with as_bad_use():
         Choices(level=level)
-        order = GenerateOrder(model, tuple(values(set_, "setting").items()), l_max, n, seed, size_range)
+        order = GenerationRequest(model, tuple(values(set_, "setting").items()), l_max, n, seed, size_range)
         if format_ not in ("stl", "npz"):
             raise typer.BadParameter(f"The format must be stl or npz, got {format_!r}.")
     source = shape_source(sources, reading, order, jobs)
@@ -115,7 +115,7 @@ def generate(
 def shape_source(
     sources: list[str],
     reading: ReadingOptions,
-    order: "GenerateOrder | None" = None,
+    order: "GenerationRequest | None" = None,
     jobs: int = 1,
 ) -> "ShapeSource":
     """What the arguments of a command name: one fit, card or model, or meshes, which are expanded.
@@ -126,7 +126,7 @@ def shape_source(
         If nothing can be read.
     """
     from regolith_studio.cli.terminal import follow
-    from regolith_studio.jobs.generating import expansion_of, sample_of_meshes
+    from regolith_studio.jobs.model_jobs import fit_request_for, sample_of_meshes
     from regolith_studio.readers.shape_files import is_shape_source, read_shape_source
 
     named = [source for source in sources if is_shape_source(source)]
@@ -135,7 +135,7 @@ def shape_source(
     if named:
         return read_shape_source(named[0])
     loaded = reading.read([Path(source) for source in sources])
-    found: ShapeSource = follow(sample_of_meshes(loaded.particles, expansion_of(order), jobs))
+    found: ShapeSource = follow(sample_of_meshes(loaded.particles, fit_request_for(order), jobs))
     return found
 
 
@@ -152,7 +152,7 @@ def _named(fitted: Any, names: str) -> Any:
 
 def _write(stage: Path, made: Any, format_: str, level: int, jobs: int) -> dict[str, Any]:
     from regolith_studio.cli.terminal import follow
-    from regolith_studio.jobs.generating import write_meshes
+    from regolith_studio.jobs.model_jobs import write_meshes
     from regolith_studio.session.outputs import virtual
 
     if format_ == "npz":

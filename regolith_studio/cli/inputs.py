@@ -22,7 +22,7 @@ def read_inputs(paths: Sequence[Path], unit: str, repair: bool = True) -> "Loade
     FileError
         If nothing can be read.
     """
-    from regolith_studio.jobs.loading import load_particles
+    from regolith_studio.jobs.particle_jobs import load_particles
     from regolith_studio.readers.units import unit_factor
 
     with as_bad_use():

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from regolith_studio.coarsening.result import Coarsened
     from regolith_studio.geometry.mesh import Mesh
     from regolith_studio.geometry.particle import Particle
-    from regolith_studio.jobs.coarsening import CoarsenedParticle
+    from regolith_studio.jobs.coarsening_jobs import CoarsenedParticle
     from regolith_studio.session.choices import Choices
 
 _PATIENCE = 120.0

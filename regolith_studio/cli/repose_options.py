@@ -11,7 +11,7 @@ from regolith_studio.cli.options import Settings, as_bad_use, values
 
 if TYPE_CHECKING:
     from regolith_studio.dem.evaluation.settings import EvaluationSettings
-    from regolith_studio.jobs.repose import ReposeOrder
+    from regolith_studio.jobs.repose_jobs import ReposeRequest
 
 Particles = Annotated[int, typer.Option("--particles", "-n", help="Simulated particles.", metavar="N")]
 EngineKey = Annotated[str, typer.Option("--engine", help="See the command engines.", metavar="KEY")]
@@ -36,18 +36,18 @@ class CaseOptions:
     set_: Settings = None
     measure: Measure = None
 
-    def order(self, **case: Any) -> "ReposeOrder":
+    def order(self, **case: Any) -> "ReposeRequest":
         """The order that the options stand for; a wrong one is bad use. `case`: fields of ``ReposeCase``."""
         from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
         from regolith_studio.dem.case import ReposeCase
         from regolith_studio.dem.engines import engine_named
-        from regolith_studio.jobs.repose import ReposeOrder
+        from regolith_studio.jobs.repose_jobs import ReposeRequest
 
         with as_bad_use():
             code = engine_named(self.engine)
         test = filled(LiftingCylinderTest, values(self.test, "value"), "value of the test")
         contact = filled(ContactParameters, values(self.contact, "value"), "contact parameter")
-        return ReposeOrder(
+        return ReposeRequest(
             filled(ReposeCase, {"test": test, "contact": contact, **case}, "value of the case"),
             self.engine,
             filled(code.Settings, values(self.set_, "setting"), f"setting of {code.label}"),

@@ -35,7 +35,7 @@ def run(
 
     from regolith_studio.cli.repose_words import run_in_words, run_remarks
     from regolith_studio.cli.terminal import complain, follow, print_json
-    from regolith_studio.jobs.repose import simulate_repose
+    from regolith_studio.jobs.repose_jobs import simulate_repose
 
     del jobs  # a run is one process
     order = how.order(
@@ -75,7 +75,7 @@ def study(
 ) -> None:
     """Angle of repose against one value or one dataset against others; goes on where it was stopped."""
     from regolith_studio.cli.terminal import follow, print_json, print_table
-    from regolith_studio.jobs.repose_study import StudyRow, study_repose, with_value
+    from regolith_studio.jobs.repose_jobs import ReposeVariant, study_repose, with_value
     from regolith_studio.studies.repose import repose_table, write_repose_study
 
     del jobs  # one run after the other, so that what is there already is known
@@ -85,9 +85,9 @@ def study(
     for folder in datasets:
         name = (key if len(datasets) == 1 else f"{key} {folder.name}") if points else "dataset"
         with as_bad_use():
-            rows += [StudyRow(name, point, folder, with_value(order, key, point)) for point in points]
+            rows += [ReposeVariant(name, point, folder, with_value(order, key, point)) for point in points]
         if not points:
-            rows.append(StudyRow(name, folder.name, folder, order))
+            rows.append(ReposeVariant(name, folder.name, folder, order))
     done = follow(study_repose(rows, output, repeats))
     files = [path.name for path in write_repose_study(done, output)]
     if json:

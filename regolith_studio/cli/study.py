@@ -97,7 +97,7 @@ def lmax(
 ) -> None:
     """RMSRE of the descriptors against l_max (Fig. 3)."""
     from regolith_studio.cli.inputs import exit_code
-    from regolith_studio.jobs.studying import study_lmax
+    from regolith_studio.jobs.study_jobs import study_lmax
     from regolith_studio.session.choices import L_MAX_LIMIT, Choices
     from regolith_studio.studies.lmax import enough_degrees
 
@@ -131,7 +131,7 @@ def coarsening(
 ) -> None:
     """RMSRE of the descriptors for each set of loss weights (Fig. 8)."""
     from regolith_studio.cli.inputs import exit_code
-    from regolith_studio.jobs.studying import study_coarsening
+    from regolith_studio.jobs.study_jobs import study_coarsening
 
     check_box(box)
     wish = how.choices(n_facets=facets, seed=seed)
@@ -192,14 +192,14 @@ def population(
     from regolith_studio.cli.terminal import complain, print_table
     from regolith_studio.descriptors.catalogue import CATALOGUE
     from regolith_studio.errors import InputError
-    from regolith_studio.jobs.generating import GenerateOrder
-    from regolith_studio.jobs.studying import study_population
+    from regolith_studio.jobs.model_jobs import GenerationRequest
+    from regolith_studio.jobs.study_jobs import study_population
     from regolith_studio.shape_models.sample import Sample
     from regolith_studio.studies.population import KEYS
     from regolith_studio.studies.population_tables import target_table
 
     with as_bad_use():
-        order = GenerateOrder(l_max=l_max, seed=seed)
+        order = GenerationRequest(l_max=l_max, seed=seed)
     source = shape_source(sources, reading, order, jobs)
     complain(source.notes)
     if not isinstance(source.content, Sample):

@@ -65,7 +65,7 @@ class VariedOptions:
     ) -> None:
         """Do the study of this key and leave the program with its exit code."""
         from regolith_studio.cli.inputs import exit_code
-        from regolith_studio.jobs.studying import study_coarsening
+        from regolith_studio.jobs.study_jobs import study_coarsening
         from regolith_studio.session.variations import varied_rows
 
         check_box(self.box)

@@ -9,8 +9,7 @@ import typer
 if TYPE_CHECKING:
     from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
     from regolith_studio.imaging.volume import VolumeKind
-    from regolith_studio.jobs.extracting import VolumeInput
-    from regolith_studio.jobs.grain_recipe import GrainRecipe
+    from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
     from regolith_studio.readers.volumes.header import RawLayout
 
 
@@ -54,7 +53,7 @@ class VolumeOptions:
 
     def of(self, volume: Path) -> "VolumeInput":
         """The volume with what the options say of it; a wrong one is bad use."""
-        from regolith_studio.jobs.extracting import VolumeInput
+        from regolith_studio.jobs.extraction_settings import VolumeInput
         from regolith_studio.readers.units import unit_factor
 
         if self.unit:
@@ -123,19 +122,19 @@ class GrainOptions:
     ] = "grey"
 
     @property
-    def recipe(self) -> "GrainRecipe":
+    def recipe(self) -> "GrainSettings":
         """The settings that the options stand for; a wrong one is bad use."""
         from regolith_studio.imaging.extraction import ExtractionSettings
         from regolith_studio.imaging.segmentation.cleaning import CleaningSettings
         from regolith_studio.imaging.segmentation.denoising import DenoiseSettings
         from regolith_studio.imaging.segmentation.segment import SegmentationSettings
         from regolith_studio.imaging.segmentation.splitting import SplittingSettings
-        from regolith_studio.jobs.grain_recipe import GrainRecipe
+        from regolith_studio.jobs.extraction_settings import GrainSettings
 
         if self.border not in ("exclude", "keep"):
             raise typer.BadParameter(f"Grains at the border are to exclude or to keep, not {self.border!r}.")
         least = min(self.min_voxels, CleaningSettings.min_voxels)
-        return GrainRecipe(
+        return GrainSettings(
             SegmentationSettings(
                 DenoiseSettings(self.denoise),  # type: ignore[arg-type]  # checked by the settings
                 threshold_from(self.threshold, self.dark),

@@ -10,8 +10,8 @@ from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.fit import fit_harmonics
 from regolith_studio.harmonics.surface import reconstruct
 from regolith_studio.jobs.events import Job, Started, Steps
-from regolith_studio.jobs.examining import examine
 from regolith_studio.jobs.executor import Executor, call, open_executor, value_of
+from regolith_studio.jobs.particle_jobs import measure_particle
 from regolith_studio.jobs.thrift import load_runtime_of_kernels
 
 
@@ -41,7 +41,7 @@ def _body() -> Mesh:
 
 def _measure_and_fit(_name: str) -> None:
     load_runtime_of_kernels()
-    examine(Particle("body", _body()))
+    measure_particle(Particle("body", _body()))
     reconstruct(fit_harmonics(_body(), 4, sampling_degree=8), 2, level=1)
 
 

@@ -10,7 +10,7 @@ from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.descriptors.facts import BOX_METRICS
 from regolith_studio.errors import InputError
 from regolith_studio.harmonics.fit import DEFAULT_FIT_OPTIONS, FitOptions
-from regolith_studio.jobs.coarsening import CoarseningOrder
+from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
 from regolith_studio.readers.units import unit_factor
 
 Scalar = bool | int | float | str
@@ -148,9 +148,9 @@ class Choices:
         return (0, self.largest_error) if self.stop_at == "error" else (self.facet_count, None)
 
     @property
-    def order(self) -> CoarseningOrder:
+    def order(self) -> CoarseningRequest:
         """What is asked of a coarsening."""
-        return CoarseningOrder(
+        return CoarseningRequest(
             weights=self.weights,
             n_facets=self.facet_count,
             method=self.method,

@@ -4,9 +4,9 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, Protocol
 
 from regolith_studio.descriptors.comparison import relative_errors
-from regolith_studio.jobs.coarsening import coarsen_one
+from regolith_studio.jobs.coarsening_jobs import coarsen_one
 from regolith_studio.jobs.events import Failed, Job
-from regolith_studio.jobs.fitting import FitOrder, describe_meshes, draw_surface, fit_one
+from regolith_studio.jobs.particle_jobs import FitRequest, describe_meshes, draw_surface, fit_one
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.plan import LIVE, Kind, needs, plan
 from regolith_studio.session.results import ParticleEntry, Results
@@ -153,7 +153,7 @@ class LiveResults:
                 del self._fits[next(iter(self._fits))]
             self._owner.update("fit", fit=fit)
 
-        return Job(fit_one, (entry.particle.mesh, FitOrder(fit_options=fit_options))), keep, _ignore
+        return Job(fit_one, (entry.particle.mesh, FitRequest(fit_options=fit_options))), keep, _ignore
 
     def _surface(self) -> "_Work":
         choices = self._owner.choices

@@ -13,7 +13,7 @@ from regolith_studio.readers.particles import find_files, sample_particles
 from regolith_studio.session.recipe_inputs import Population, VolumeEntry
 
 if TYPE_CHECKING:  # what draws shapes takes a third of a second to import: the window begins without it
-    from regolith_studio.jobs.judging import DrawnShapes, FittedShapes
+    from regolith_studio.jobs.model_jobs import GenerationResult, ModelFitResult
     from regolith_studio.shape_models.protocol import FittedModel
 
 Known = tuple[str, str, str]
@@ -94,7 +94,7 @@ class Drawn:
     model: "FittedModel | None" = field(default=None, repr=False)
 
     @classmethod
-    def of(cls, drawn: "DrawnShapes", fitted: "FittedShapes", level: int) -> "Drawn":
+    def of(cls, drawn: "GenerationResult", fitted: "ModelFitResult", level: int) -> "Drawn":
         """The origin of particles that were drawn from `fitted`, or from what was edited in it.
 
         Parameters
@@ -104,7 +104,7 @@ class Drawn:
         """
         from regolith_studio.shape_models.materials import materials
 
-        name, wish = fitted.source.name, drawn.order
+        name, wish = fitted.source.name, drawn.request
         shipped = drawn.model is fitted.model and fitted.source.content == materials().get(name)
         population = Population(
             sources=[name],
@@ -119,7 +119,7 @@ class Drawn:
 
     def members(self) -> tuple[Known, ...]:
         """All that it gives, in order."""
-        from regolith_studio.jobs.generating import drawn_names
+        from regolith_studio.jobs.model_jobs import drawn_names
 
         names = drawn_names(self.population.name, self.population.n)
         return tuple((name, name, "") for name in names)

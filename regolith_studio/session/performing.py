@@ -21,13 +21,13 @@ from regolith_studio.errors import FileError, RegolithError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.io.atomic import staged_folder, write_bytes
 from regolith_studio.jobs.answers import Answers
-from regolith_studio.jobs.building import story
 from regolith_studio.jobs.chunked import JOURNAL, LOST, Batch, work_through
+from regolith_studio.jobs.dataset_jobs import dataset_provenance
 from regolith_studio.jobs.events import Job, Progress, Started, Step, Steps
 from regolith_studio.jobs.executor import Executor, open_executor
 from regolith_studio.jobs.journal import Journal
 from regolith_studio.jobs.shards import Record
-from regolith_studio.jobs.studying import study_coarsening, study_lmax
+from regolith_studio.jobs.study_jobs import study_coarsening, study_lmax
 from regolith_studio.readers.particles import unique_name
 from regolith_studio.session.batch.items import Items
 from regolith_studio.session.batch.prepared import Prepared, clear_prepared, prepare
@@ -203,7 +203,7 @@ def _worked(done: Performed, batch: Batch, executor: Executor) -> Part:
     shapes = wish.dataset and done.recipe.representatives is None
     coarse = wish.meshes or shapes or wish.summary
     asked = Wish(
-        examine=wish.descriptors or wish.summary,
+        measure=wish.descriptors or wish.summary,
         fit=wish.fits,
         order=done.choices.order if coarse else None,
         shapes=shapes,
@@ -282,7 +282,7 @@ def _write_dataset(done: Performed, batch: Batch) -> None:
             lambda: shapes_of(batch),
             done.tally.n_coarse,
             name=done.folder.resolve().name,
-            provenance=story(done.tally.fitted, done.choices.order, _preset(done)),
+            provenance=dataset_provenance(done.tally.fitted, done.choices.order, _preset(done)),
         )
     except RegolithError as error:
         if done.tally.n_coarse:

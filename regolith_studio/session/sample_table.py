@@ -11,7 +11,7 @@ from regolith_studio.descriptors.zingg import zingg_class
 from regolith_studio.errors import InputError
 from regolith_studio.imaging.extraction import is_remark
 from regolith_studio.io.tables import Column, Table
-from regolith_studio.jobs.examining import Examined
+from regolith_studio.jobs.particle_jobs import MeasuredParticle
 from regolith_studio.session.outputs.descriptors import descriptor_table
 from regolith_studio.session.results import ParticleEntry
 
@@ -139,7 +139,7 @@ def sample_table(entries: Iterable[ParticleEntry]) -> Table:
     """
     measured = [(entry, entry.health) for entry in entries if entry.health is not None]
     named = [replace(entry.particle, name=entry.id) for entry, _health in measured]
-    facts = [Examined(health, entry.descriptors, sight=entry.sight) for entry, health in measured]
+    facts = [MeasuredParticle(health, entry.descriptors, sight=entry.sight) for entry, health in measured]
     table = descriptor_table(named, facts)
     if not has_weights(entry for entry, _health in measured):
         return table

@@ -7,10 +7,14 @@ from typing import Any
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.jobs.building import Built, DatasetOptions, build_dataset_folder
+from regolith_studio.jobs.dataset_jobs import DatasetBuildResult, DatasetOptions, build_dataset_folder
 from regolith_studio.jobs.events import Failed, Job
-from regolith_studio.jobs.examining import Examined, examine_particles
-from regolith_studio.jobs.loading import load_particles, load_sample
+from regolith_studio.jobs.particle_jobs import (
+    MeasuredParticle,
+    load_particles,
+    load_sample,
+    measure_particles,
+)
 from regolith_studio.jobs.runners.protocol import Runner
 from regolith_studio.readers.particles import FileProblem, LoadedParticles, unique_names
 from regolith_studio.session.bringing import Brought, bring_back
@@ -270,7 +274,7 @@ class Session:
             wish = dataclasses.replace(wish, preset=self.choices.preset)
         job = Job(build_dataset_folder, (self._open_particles(), self.choices.order, Path(folder), wish))
 
-        def tell(built: Built) -> None:
+        def tell(built: DatasetBuildResult) -> None:
             failed = tuple(FileProblem(o.name, o.problem) for o in built.outcomes if not o.coarsened)
             if failed:
                 self.events.problems.emit(failed)
@@ -390,7 +394,7 @@ class Session:
         self._live.follow(None, self.choices)
 
     def _inspect(self) -> None:
-        def note(seen: tuple[Examined, ...]) -> None:
+        def note(seen: tuple[MeasuredParticle, ...]) -> None:
             rows = list(self.particles)
             for at, facts in enumerate(seen):
                 if rows[at].health is None:
@@ -400,7 +404,7 @@ class Session:
             self.particles = tuple(rows)
             self.events.particles.emit()
 
-        job = Job(examine_particles, (self._open_particles(),))
+        job = Job(measure_particles, (self._open_particles(),))
         title = "Measuring particles"
         reactions = Reactions(note, partial=note, failed=self.tell_failure(title))
         self._board.start("inspect", title, job, reactions)

@@ -10,7 +10,7 @@ from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.jobs.answers import Answers, fingerprint
-from regolith_studio.jobs.coarsening import CoarsenedParticle, CoarseningOrder, coarsen_particle
+from regolith_studio.jobs.coarsening_jobs import CoarsenedParticle, CoarseningRequest, coarsen_particle
 from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
 from regolith_studio.jobs.executor import Executor, open_executor
 from regolith_studio.session.choices import L_MAX_LIMIT
@@ -36,7 +36,7 @@ class Solid:
 
 
 def draw_solids(
-    particles: Sequence[Particle], order: CoarseningOrder, rows: Sequence[StudyRow] | None = None
+    particles: Sequence[Particle], order: CoarseningRequest, rows: Sequence[StudyRow] | None = None
 ) -> Steps:
     """Coarsen each particle by the loss of each row; partial results and the result are ``list[Solid]``.
 
@@ -64,7 +64,7 @@ def draw_solids(
 
 def study_solids(
     particles: Sequence[Particle],
-    order: CoarseningOrder,
+    order: CoarseningRequest,
     rows: Sequence[StudyRow] | None = None,
     workers: int | Executor = 1,
     answers: Answers | None = None,
@@ -95,7 +95,7 @@ def study_solids(
 
 
 def solids_of(
-    numbered: tuple[int, Particle], order: CoarseningOrder, rows: Sequence[StudyRow]
+    numbered: tuple[int, Particle], order: CoarseningRequest, rows: Sequence[StudyRow]
 ) -> dict[str, Any]:
     """The polyhedra of one particle, by row, as a document; a sentence where there is none.
 
@@ -120,7 +120,7 @@ def solid_study(solids: Sequence[Solid], labels: Sequence[str], names: Sequence[
     return SolidStudy(tuple(labels), tuple(names), cells)
 
 
-def _fit_of(particle: Particle, order: CoarseningOrder) -> HarmonicFit | str | None:
+def _fit_of(particle: Particle, order: CoarseningRequest) -> HarmonicFit | str | None:
     """The fit that is imitated, where one is; the sentence that says why there is none."""
     if order.target != "fit":
         return None
@@ -130,7 +130,7 @@ def _fit_of(particle: Particle, order: CoarseningOrder) -> HarmonicFit | str | N
         return str(error)
 
 
-def _by_row(order: CoarseningOrder, row: StudyRow) -> CoarseningOrder:
+def _by_row(order: CoarseningRequest, row: StudyRow) -> CoarseningRequest:
     plain = dataclasses.replace(order, weights=row.weights, largest_error=None)
     if row.weights.all_zero:  # the quadric start itself
         return dataclasses.replace(plain, method="quadric", settings=())
@@ -139,7 +139,7 @@ def _by_row(order: CoarseningOrder, row: StudyRow) -> CoarseningOrder:
 
 def _outcome(
     particle: Particle,
-    order: CoarseningOrder,
+    order: CoarseningRequest,
     index: int,
     fit: HarmonicFit | str | None,
     now: Progress,

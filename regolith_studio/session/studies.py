@@ -7,7 +7,7 @@ from typing import Any
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.events import Job
-from regolith_studio.jobs.studying import study_coarsening, study_lmax
+from regolith_studio.jobs.study_jobs import study_coarsening, study_lmax
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.plan import Kind
 

@@ -27,14 +27,16 @@ from regolith_studio.errors import FileError, InputError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.jobs.coarsening import CoarseningOrder
+from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
 from regolith_studio.jobs.events import Partial, Progress
-from regolith_studio.jobs.repose import ReposeOrder, simulate_prepared, simulate_repose
-from regolith_studio.jobs.repose_study import (
-    StudyRow,
-    StudyWish,
+from regolith_studio.jobs.repose_jobs import (
+    ReposeRequest,
+    ReposeStudyRequest,
+    ReposeVariant,
+    run_repose_study,
+    simulate_prepared,
+    simulate_repose,
     study_repose,
-    study_wish,
     values_in,
     with_value,
 )
@@ -43,7 +45,7 @@ from regolith_studio.studies.repose import write_repose_study
 TEST = LiftingCylinderTest(mass=0.003, lift_speed=0.15)
 CASE = ReposeCase(TEST, n_particles=40, seed=1)
 QUICK = MujocoSettings(time_step=0.04, iterations=15, calm=2e-3, calm_time=1.0, snapshots=20)
-ORDER = ReposeOrder(CASE, settings=QUICK)
+ORDER = ReposeRequest(CASE, settings=QUICK)
 COMMAND = ["-n", "40", "--seed", "1", "--test", "mass=0.003", "--test", "lift_speed=0.15"]
 COMMAND += [word for each in ("time_step=0.04", "iterations=15", "calm=0.002") for word in ("--set", each)]
 COMMAND += ["--set", "calm_time=1", "--set", "snapshots=20"]
@@ -102,7 +104,7 @@ def test_that_the_same_seed_gives_the_same_pile(finished: Path, boxes_folder: Pa
 def test_that_a_study_goes_on_where_it_was(finished: Path, boxes_folder: Path, tmp_path: Path) -> None:
     """The folder holds the run already, so nothing is simulated; a changed case would be."""
     shutil.copytree(finished, tmp_path / "static_friction_0.8_seed1")
-    row = StudyRow("static_friction", 0.8, boxes_folder, ORDER)
+    row = ReposeVariant("static_friction", 0.8, boxes_folder, ORDER)
     steps = study_repose([row], tmp_path)
     told = list(steps)
     assert not [step for step in told if isinstance(step, Progress) and "simulated" in step.message]
@@ -129,8 +131,8 @@ def test_that_a_wish_of_the_window_is_the_same_study(
     finished: Path, boxes_folder: Path, tmp_path: Path
 ) -> None:
     shutil.copytree(finished, tmp_path / "static_friction_0.8_seed1")
-    wish = StudyWish("static_friction", (0.8,), ORDER, boxes_folder)
-    told = list(study_wish(wish, tmp_path))
+    wish = ReposeStudyRequest("static_friction", (0.8,), ORDER, boxes_folder)
+    told = list(run_repose_study(wish, tmp_path))
     assert not [step for step in told if isinstance(step, Progress) and "simulated" in step.message]
     assert {f"repose_study.{kind}" for kind in ("csv", "json", "png", "svg")} <= {
         path.name for path in tmp_path.iterdir()
@@ -141,10 +143,10 @@ def test_that_shapes_are_varied_from_particles(tmp_path: Path) -> None:
     """A dataset a value, coarsened to it; the runs are not waited for."""
     ball = icosphere(2)
     particles = (Particle("ball", Mesh(40.0 * ball.vertices, ball.faces)),)
-    coarsening = CoarseningOrder(LossWeights.of(), method="quadric", target="particle")
+    coarsening = CoarseningRequest(LossWeights.of(), method="quadric", target="particle")
     order = replace(ORDER, case=replace(CASE, n_particles=20))
-    steps = study_wish(
-        StudyWish("n_facets", (8, 14), order, particles=particles, coarsening=coarsening), tmp_path
+    steps = run_repose_study(
+        ReposeStudyRequest("n_facets", (8, 14), order, particles=particles, coarsening=coarsening), tmp_path
     )
     for step in steps:
         if isinstance(step, Progress) and "simulated" in step.message:
@@ -167,7 +169,7 @@ def test_that_values_are_read_as_their_key_has_them() -> None:
             with_value(ORDER, key, value)
     for wish in (("static_friction", ()), ("static_friction", (0.2,)), ("n_facets", (8,))):
         with pytest.raises(InputError):
-            StudyWish(*wish, ORDER)
+            ReposeStudyRequest(*wish, ORDER)
 
 
 def test_that_a_crash_of_the_engine_is_one_sentence_and_keeps_the_last_snapshot(

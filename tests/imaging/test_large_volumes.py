@@ -21,7 +21,7 @@ from regolith_studio.imaging.segmentation.denoising import DenoiseSettings
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings, segmentation_steps
 from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
 from regolith_studio.imaging.slabs import Scratch
-from regolith_studio.jobs.extracting import VolumeInput
+from regolith_studio.jobs.extraction_settings import VolumeInput
 
 path, kind, limit = Path(sys.argv[1]), sys.argv[2], int(sys.argv[3])
 resource.setrlimit(resource.RLIMIT_DATA, (limit, limit))

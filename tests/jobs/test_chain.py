@@ -13,19 +13,17 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.fit import fit_harmonics
 from regolith_studio.io.stl import stl_bytes
-from regolith_studio.jobs.building import DatasetOptions, build_dataset_folder
-from regolith_studio.jobs.coarsening import CoarseningOrder, coarsen_one, coarsen_sample
+from regolith_studio.jobs.coarsening_jobs import CoarseningRequest, coarsen_one, coarsen_sample
+from regolith_studio.jobs.dataset_jobs import DatasetOptions, build_dataset_folder
 from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
-from regolith_studio.jobs.examining import examine, examine_particles
-from regolith_studio.jobs.fitting import FIT_DEGREE
-from regolith_studio.jobs.loading import load_particles
+from regolith_studio.jobs.particle_jobs import FIT_DEGREE, load_particles, measure_particle, measure_particles
 from regolith_studio.jobs.warming import warm_up
 from regolith_studio.readers.particles import unique_names
 
 SPHERE = icosphere(3)
 GRAIN = Mesh(SPHERE.vertices * [30.0, 20.0, 15.0], SPHERE.faces)
 FLAT = Mesh([[0, 0, 0], [9, 0, 0], [0, 9, 0], [9, 9, 0]], [[0, 1, 2], [0, 2, 1], [1, 3, 2], [1, 2, 3]])
-ORDER = CoarseningOrder(LossWeights.from_preset("all"), method="quadric", l_max=4, level=2)
+ORDER = CoarseningRequest(LossWeights.from_preset("all"), method="quadric", l_max=4, level=2)
 
 
 def played(steps: Steps) -> tuple[list[Step], Any]:
@@ -70,24 +68,24 @@ def test_that_names_become_unique_by_group_and_then_by_number() -> None:
 
 
 def test_that_a_flat_mesh_is_examined_and_its_trouble_named() -> None:
-    facts = examine(Particle("flat", FLAT))
+    facts = measure_particle(Particle("flat", FLAT))
     assert facts.descriptors is None
     assert facts.problem.endswith(".")
     assert not facts.health.sound
 
 
 def test_that_partial_results_grow_to_the_result() -> None:
-    heard, seen = played(examine_particles([Particle("a", GRAIN), Particle("b", GRAIN)]))
+    heard, seen = played(measure_particles([Particle("a", GRAIN), Particle("b", GRAIN)]))
     parts = [step.value for step in heard if isinstance(step, Partial)]
     assert [len(part) for part in parts] == [1, 2]
     assert parts[-1] == seen
 
 
 def test_that_what_is_copied_grows_as_the_number_of_particles(monkeypatch: pytest.MonkeyPatch) -> None:
-    known = examine(Particle("a", GRAIN))
-    monkeypatch.setattr("regolith_studio.jobs.examining.examine", lambda *_: known)
+    known = measure_particle(Particle("a", GRAIN))
+    monkeypatch.setattr("regolith_studio.jobs.particle_jobs.measure_particle", lambda *_: known)
     for count in (500, 5000):
-        heard, seen = played(examine_particles([Particle("a", GRAIN)] * count))
+        heard, seen = played(measure_particles([Particle("a", GRAIN)] * count))
         copied = sum(len(step.value) for step in heard if isinstance(step, Partial))
         assert copied < 10 * count
         assert len(seen) == count
@@ -123,7 +121,7 @@ def test_that_warming_up_covers_every_method() -> None:
 
 
 def test_that_an_order_asks_for_the_method_of_the_coarsening_itself() -> None:
-    assert CoarseningOrder(LossWeights.from_preset("all")).method == DEFAULT_METHOD
+    assert CoarseningRequest(LossWeights.from_preset("all")).method == DEFAULT_METHOD
 
 
 def test_that_a_particle_carries_the_warnings_of_the_fit_at_the_degree_that_is_coarsened() -> None:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from regolith_studio.harmonics.coefficients import ShCoefficients
-from regolith_studio.jobs.comparing import compare_distributions
+from regolith_studio.jobs.model_evaluation import compare_distributions
 from regolith_studio.shape_models.draws import Draws
 from regolith_studio.shape_models.sample import Sample
 

@@ -12,8 +12,8 @@ import pytest
 
 from regolith_studio.dataset.folder import read_dataset, validate_dataset
 from regolith_studio.errors import RegolithError
-from regolith_studio.jobs.grain_recipe import read_grain_recipe
-from regolith_studio.jobs.loading import load_particles
+from regolith_studio.jobs.extraction_settings import read_grain_settings
+from regolith_studio.jobs.particle_jobs import load_particles
 from regolith_studio.readers.coefficient_tables import read_coefficients
 from regolith_studio.readers.particles import FileProblem, read_mesh
 from regolith_studio.readers.positions import read_positions
@@ -34,7 +34,7 @@ READERS: dict[str, Callable[[Path], object]] = {
     "fit.json": lambda path: read_shape_source(str(path)),
     "recipe.json": read_recipe,
     "a.regolith": read_project,
-    "extraction.json": read_grain_recipe,
+    "extraction.json": read_grain_settings,
     "dataset.json": lambda path: read_dataset(path.parent),
 }
 

@@ -14,12 +14,16 @@ from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings
 from regolith_studio.imaging.segmentation.splitting import SplittingSettings
 from regolith_studio.io.stl import stl_bytes
-from regolith_studio.jobs.extracting import ExtractionSettings, VolumeInput, extract_file, extract_labels
-from regolith_studio.jobs.generating import GenerateOrder, make_particles
-from regolith_studio.jobs.grain_recipe import GrainRecipe
-from regolith_studio.jobs.judging import draw_shapes, fit_shapes
+from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
+from regolith_studio.jobs.model_jobs import GenerationRequest, draw_shapes, fit_shapes, make_particles
 from regolith_studio.jobs.runners.inline import InlineRunner
-from regolith_studio.jobs.scanning import find_grains, read_scan
+from regolith_studio.jobs.volume_jobs import (
+    ExtractionSettings,
+    extract_file,
+    extract_labels,
+    find_grains,
+    read_scan,
+)
 from regolith_studio.readers.shape_files import ShapeSource
 from regolith_studio.session.batch.prepared import entry_of
 from regolith_studio.session.choices import Choices
@@ -149,7 +153,7 @@ def labels(tmp_path: Path) -> Path:
     return tmp_path / "labels.npy"
 
 
-def extracted(session: Session, given: VolumeInput, settings: GrainRecipe) -> None:
+def extracted(session: Session, given: VolumeInput, settings: GrainSettings) -> None:
     """What the page of scans does."""
     scan = ended(read_scan(given))
     found, grey = scan.volume, None
@@ -162,7 +166,7 @@ def extracted(session: Session, given: VolumeInput, settings: GrainRecipe) -> No
 def test_that_grains_of_a_label_volume_are_the_same_in_a_run(
     session: Session, tmp_path: Path, labels: Path
 ) -> None:
-    settings = GrainRecipe(extraction=ExtractionSettings(min_voxels=200, iterations=5))
+    settings = GrainSettings(extraction=ExtractionSettings(min_voxels=200, iterations=5))
     extracted(session, VolumeInput(labels, 0.002, "mm"), settings)
     assert len(session.particles) == 3
     assert_that_a_run_gives_the_dataset_of(session, tmp_path)
@@ -171,7 +175,7 @@ def test_that_grains_of_a_label_volume_are_the_same_in_a_run(
 def test_that_chosen_grains_and_a_mesh_beside_them_are_the_same_in_a_run(
     session: Session, tmp_path: Path, labels: Path
 ) -> None:
-    extracted(session, VolumeInput(labels, (2.0, 2.0, 2.5), "um"), GrainRecipe())
+    extracted(session, VolumeInput(labels, (2.0, 2.0, 2.5), "um"), GrainSettings())
     session.keep({entry.id for entry in session.particles[1:]})
     session.open([write_grains(tmp_path / "more", "a.stl")], add=True)
     portrait = assert_that_a_run_gives_the_dataset_of(session, tmp_path)
@@ -182,7 +186,7 @@ def test_that_chosen_grains_and_a_mesh_beside_them_are_the_same_in_a_run(
 def test_that_grains_of_the_shipped_scan_are_the_same_in_a_run(session: Session, tmp_path: Path) -> None:
     from regolith_studio.imaging.sample_volumes import sample_file
 
-    settings = GrainRecipe(SegmentationSettings(splitting=SplittingSettings(h_maxima=1.0)))
+    settings = GrainSettings(SegmentationSettings(splitting=SplittingSettings(h_maxima=1.0)))
     extracted(session, VolumeInput(sample_file("grey")), settings)
     session.keep({entry.id for entry in session.particles[:6]})
     portrait = assert_that_a_run_gives_the_dataset_of(session, tmp_path)
@@ -194,7 +198,7 @@ def test_that_grains_of_the_shipped_scan_are_the_same_in_a_run(session: Session,
 def drawn(
     session: Session,
     source: ShapeSource | tuple[Particle, ...],
-    order: GenerateOrder,
+    order: GenerationRequest,
     edit: Callable[[Any], Any] = lambda model: model,
 ) -> None:
     """What the page of models does."""
@@ -214,14 +218,14 @@ def of_card() -> ShapeSource:
 
 
 def test_that_particles_of_a_card_are_the_same_in_a_run(session: Session, tmp_path: Path) -> None:
-    drawn(session, of_card(), GenerateOrder(l_max=6, n=4, seed=8, size_range=(20.0, 60.0)))
+    drawn(session, of_card(), GenerationRequest(l_max=6, n=4, seed=8, size_range=(20.0, 60.0)))
     portrait = assert_that_a_run_gives_the_dataset_of(session, tmp_path)
     assert portrait.model is None
     assert not list(tmp_path.glob("recipe-model*"))
 
 
 def test_that_particles_of_an_edited_card_are_the_same_in_a_run(session: Session, tmp_path: Path) -> None:
-    drawn(session, of_card(), GenerateOrder(l_max=5, n=3, seed=8), rougher)
+    drawn(session, of_card(), GenerationRequest(l_max=5, n=3, seed=8), rougher)
     assert_that_a_run_gives_the_dataset_of(session, tmp_path)
     assert (tmp_path / "recipe-model.npz").is_file()
 
@@ -232,7 +236,7 @@ def test_that_particles_of_a_fitted_model_are_the_same_in_a_run(
 ) -> None:
     session.open([write_grains(tmp_path / "measured", *(f"{i}.stl" for i in range(8)))])
     measured = tuple(entry.particle for entry in session.particles)
-    drawn(session, measured, GenerateOrder(model, l_max=4, n=4, seed=2))
+    drawn(session, measured, GenerationRequest(model, l_max=4, n=4, seed=2))
     session.open([tmp_path / "measured" / "3.stl"], add=True)
     assert_that_a_run_gives_the_dataset_of(session, tmp_path)
 
@@ -244,12 +248,12 @@ def test_that_a_project_brings_grains_and_drawn_particles_back(
         drawn(
             session,
             of_card(),
-            GenerateOrder(l_max=6, n=3, seed=8),
+            GenerationRequest(l_max=6, n=3, seed=8),
             rougher,
         )
 
     def grains() -> None:
-        extracted(session, VolumeInput(labels, 2.0, "um"), GrainRecipe())
+        extracted(session, VolumeInput(labels, 2.0, "um"), GrainSettings())
 
     begin: Callable[[], None]
     for number, begin in enumerate((virtual, grains)):

@@ -14,8 +14,8 @@ from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.fit import fit_harmonics
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.jobs.events import Progress, Started
-from regolith_studio.jobs.extracting import VolumeInput, extract_file
-from regolith_studio.jobs.grain_recipe import GrainRecipe
+from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
+from regolith_studio.jobs.volume_jobs import extract_file
 from regolith_studio.readers.particles import read_mesh
 from regolith_studio.resources import resource
 from regolith_studio.session.batch.prepared import read_grain, read_index
@@ -78,7 +78,7 @@ def scan(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
 
 def extracted(scan: dict[str, Any]) -> Any:
     given = VolumeInput(Path(scan["file"]), scan["voxel_size"], scan["unit"])
-    return ended(extract_file(given, GrainRecipe())).extraction.particles
+    return ended(extract_file(given, GrainSettings())).extraction.particles
 
 
 def test_that_the_grains_of_a_volume_are_those_that_extract_finds(

@@ -15,7 +15,7 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.io.stl import stl_bytes
-from regolith_studio.jobs.building import DatasetOptions
+from regolith_studio.jobs.dataset_jobs import DatasetOptions
 from regolith_studio.jobs.runners.inline import InlineRunner
 from regolith_studio.jobs.runners.thread import ThreadRunner
 from regolith_studio.session import live
@@ -323,7 +323,7 @@ def test_that_a_degree_without_a_solid_clears_the_old_picture(
     def refuse(*_: object, **__: object) -> None:
         raise InputError("The expansion has a negative radius.")
 
-    monkeypatch.setattr("regolith_studio.jobs.fitting.reconstruct", refuse)
+    monkeypatch.setattr("regolith_studio.jobs.particle_jobs.reconstruct", refuse)
     opened.choose(l_max=7)
     results = opened.results
     assert results.fit is not None

@@ -8,7 +8,7 @@ import pytest
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.jobs.coarsening import CoarseningOrder
+from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
 from regolith_studio.jobs.events import Partial, Progress, Steps
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.solids import draw_solids, solid_study, study_solids
@@ -17,11 +17,11 @@ from regolith_studio.studies.solid_study import solid_table
 
 
 @pytest.fixture(scope="module")
-def order() -> CoarseningOrder:
+def order() -> CoarseningRequest:
     return Choices(method="quadric", n_facets=12, l_max=4, level=2, target="particle").order
 
 
-def test_that_each_particle_is_coarsened_once_for_each_row(order: CoarseningOrder) -> None:
+def test_that_each_particle_is_coarsened_once_for_each_row(order: CoarseningRequest) -> None:
     sphere = icosphere(3)
     eggs = [Particle(f"egg-{n}", Mesh(sphere.vertices * [n, 2, 3], sphere.faces)) for n in (1, 2)]
     told, story = [], draw_solids(eggs, order)
@@ -40,7 +40,7 @@ def test_that_each_particle_is_coarsened_once_for_each_row(order: CoarseningOrde
 
 
 def test_that_a_particle_that_cannot_be_coarsened_does_not_stop_the_rest(
-    order: CoarseningOrder,
+    order: CoarseningRequest,
 ) -> None:
     sphere = icosphere(2)
     flat = Particle("flat", Mesh(sphere.vertices * [1, 1, 0], sphere.faces))
@@ -64,7 +64,7 @@ def ended(story: Steps) -> Any:
 
 
 @pytest.mark.parametrize("workers", [1, 2])
-def test_that_the_study_has_the_polyhedra_of_the_gallery(order: CoarseningOrder, workers: int) -> None:
+def test_that_the_study_has_the_polyhedra_of_the_gallery(order: CoarseningRequest, workers: int) -> None:
     sphere = icosphere(2)
     eggs = [Particle(f"egg-{n}", Mesh(sphere.vertices * [n, 2, 3], sphere.faces)) for n in (1, 2, 0)]
     rows, names = paper_rows()[:3], [egg.name for egg in eggs]

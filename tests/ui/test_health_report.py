@@ -12,7 +12,7 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.repair import repair
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.jobs.examining import examine, find_faults
+from regolith_studio.jobs.particle_jobs import find_faults, measure_particle
 from regolith_studio.scene.faults import COLOURS, show_faults
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.ui.pages.sample.health import KINDS, HealthPanel
@@ -25,7 +25,7 @@ def entry(mesh, mended=True):
     done = repair(mesh) if mended else None
     notes = done.health_before.problems + done.actions if done else ()
     particle = Particle("one", done.mesh if done else mesh, notes=notes, repair=done)
-    known = examine(particle)
+    known = measure_particle(particle)
     return ParticleEntry("one", particle, known.health, known.descriptors, sight=known.sight)
 
 

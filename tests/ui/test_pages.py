@@ -11,7 +11,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QLabel, QVBoxLayout, QWidget
 
 from regolith_studio.jobs.events import Job, Partial, Progress, Started
-from regolith_studio.jobs.loading import load_sample
+from regolith_studio.jobs.particle_jobs import load_sample
 from regolith_studio.jobs.runners.inline import InlineRunner
 from regolith_studio.resources import resource
 from regolith_studio.session.session import Session

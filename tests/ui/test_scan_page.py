@@ -11,9 +11,8 @@ from regolith_studio.imaging import sections
 from regolith_studio.imaging.sample_volumes import sample_volume
 from regolith_studio.imaging.segmentation.segment import segment
 from regolith_studio.imaging.volume import Volume
-from regolith_studio.jobs import scanning
-from regolith_studio.jobs.extracting import VolumeInput
-from regolith_studio.jobs.grain_recipe import GrainRecipe, read_grain_recipe
+from regolith_studio.jobs import volume_jobs
+from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput, read_grain_settings
 from regolith_studio.jobs.runners.thread import ThreadRunner
 from regolith_studio.readers.volumes.header import RawLayout
 from regolith_studio.session.session import Session
@@ -183,9 +182,9 @@ def test_that_settings_are_saved_and_come_back(page, tmp_path, monkeypatch):
     kept = page.controls.value()
     monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (str(tmp_path / "s.json"), ""))
     page.save_settings()
-    assert read_grain_recipe(tmp_path / "s.json") == kept
+    assert read_grain_settings(tmp_path / "s.json") == kept
     page.restore({})
-    assert page.controls.value() == GrainRecipe()
+    assert page.controls.value() == GrainSettings()
     monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (str(tmp_path / "s.json"), ""))
     page.ask_for_settings()
     assert page.controls.value() == kept
@@ -235,8 +234,8 @@ def test_that_a_raw_file_that_is_gone_costs_one_sentence(page, tmp_path, wait):
 def test_that_a_large_volume_stays_on_the_disk_and_gives_the_same_grains(
     suffix, page, tmp_path, monkeypatch, wait
 ):
-    monkeypatch.setattr(scanning, "IN_MEMORY", 100_000)
-    monkeypatch.setattr(scanning, "roomy_folder", lambda: tmp_path)
+    monkeypatch.setattr(volume_jobs, "IN_MEMORY", 100_000)
+    monkeypatch.setattr(volume_jobs, "scratch_folder", lambda: tmp_path)
     monkeypatch.setattr(sections, "COARSE_BYTES", 100_000)
     array = sample_volume("grey").array[:90, :80, :70]
     if suffix == "npy":

@@ -9,7 +9,7 @@ from typing import Any, Protocol, Self
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.jobs.generating import PAPER_DEGREE, drawn_names, groups_of
+from regolith_studio.jobs.model_jobs import PAPER_DEGREE, drawn_names, groups_of
 from regolith_studio.readers.particles import (
     FileProblem,
     MeshFile,

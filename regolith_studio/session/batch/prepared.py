@@ -24,10 +24,10 @@ from regolith_studio.io.atomic import staged_folder
 from regolith_studio.io.json_text import json_bytes
 from regolith_studio.jobs.events import Steps
 from regolith_studio.jobs.executor import Executor
-from regolith_studio.jobs.extracting import VolumeInput, extract_each, fingerprint
-from regolith_studio.jobs.generating import GenerateOrder, expansion_of, fit_model, sample_of_meshes
-from regolith_studio.jobs.grain_recipe import GrainRecipe, read_grain_recipe
-from regolith_studio.jobs.loading import load_particles
+from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput, read_grain_settings
+from regolith_studio.jobs.model_jobs import GenerationRequest, fit_model, fit_request_for, sample_of_meshes
+from regolith_studio.jobs.particle_jobs import load_particles
+from regolith_studio.jobs.volume_jobs import extract_each, volume_sha256
 from regolith_studio.readers.file_bytes import sha256_of
 from regolith_studio.readers.particles import FileProblem, find_files
 from regolith_studio.readers.shape_files import is_shape_source, read_shape_source
@@ -105,7 +105,7 @@ def resolved(entry: VolumeEntry, base: Path) -> VolumeEntry:
     return entry.model_copy(update={"file": file, "recipe": settings})
 
 
-def entry_of(given: VolumeInput, settings: GrainRecipe) -> VolumeEntry:
+def entry_of(given: VolumeInput, settings: GrainSettings) -> VolumeEntry:
     """What a recipe says of a volume and of the way from its voxels to particles."""
     sizes, raw = given.voxel_size, given.raw
     shipped = (name for name, kind in SAMPLE_VOLUMES.items() if given.path == sample_file(kind))
@@ -149,7 +149,7 @@ def _grains(entry: VolumeEntry, base: Path, place: Path, over: bool) -> Steps:
     if not given.path.exists():
         raise InputError(f"There is no volume {given.path}.")
     told = entry.model_dump(mode="json", exclude={"recipe"})
-    folder = place / f"volume-{_digest(told, settings.as_document(), fingerprint(given.path))}"
+    folder = place / f"volume-{_digest(told, settings.as_document(), volume_sha256(given.path))}"
     if (folder / INDEX).is_file() and (over or _is_whole(folder)):
         return folder
     with _tidy(place), staged_folder(folder) as stage:
@@ -183,7 +183,7 @@ def _stored(stage: Path, found: Extracted) -> dict[str, Any]:
 
 
 def _model(recipe: Recipe, population: Population, base: Path, place: Path, executor: Executor) -> Steps:
-    order = GenerateOrder(
+    order = GenerationRequest(
         population.model,
         tuple(population.settings.items()),
         population.l_max,
@@ -210,7 +210,7 @@ def _model(recipe: Recipe, population: Population, base: Path, place: Path, exec
     if not (folder / f"{MODEL}.npz").is_file():
         if not named:
             loaded = yield from load_particles(paths, recipe.unit, recipe.repair)
-            source = yield from sample_of_meshes(loaded.particles, expansion_of(order), executor)
+            source = yield from sample_of_meshes(loaded.particles, fit_request_for(order), executor)
         fitted = yield from fit_model(source, order)
         with _tidy(place), staged_folder(folder) as stage:
             write_model(stage / MODEL, fitted, {"source": source.name, "notes": list(source.notes)})
@@ -252,12 +252,12 @@ def _volume_input(entry: VolumeEntry, base: Path) -> VolumeInput:
     )
 
 
-def _settings(entry: VolumeEntry, base: Path) -> GrainRecipe:
+def _settings(entry: VolumeEntry, base: Path) -> GrainSettings:
     if entry.recipe is not None:
-        return read_grain_recipe(base / entry.recipe)
+        return read_grain_settings(base / entry.recipe)
     given = {"segmentation": entry.segmentation, "extraction": entry.extraction}
-    _check_names(given, GrainRecipe().as_document(), "")
-    return GrainRecipe.from_document(given)
+    _check_names(given, GrainSettings().as_document(), "")
+    return GrainSettings.from_document(given)
 
 
 def _check_names(given: Mapping[str, Any], known: Mapping[str, Any], place: str) -> None:

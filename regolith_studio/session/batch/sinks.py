@@ -18,7 +18,7 @@ from regolith_studio.io.atomic import staged_file, staged_folder, write_bytes
 from regolith_studio.io.json_text import JsonListWriter
 from regolith_studio.io.tables import csv_bytes
 from regolith_studio.jobs.chunked import LOST, Batch
-from regolith_studio.jobs.coarsening import CoarseningOrder
+from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
 from regolith_studio.jobs.shards import Record
 from regolith_studio.session.batch.working import COEFFICIENTS, CUT, MESH, SHAPE, STAGES
 from regolith_studio.session.outputs.coarsening import document_head
@@ -106,7 +106,7 @@ class _Meshes:
 
 
 @contextmanager
-def mesh_sink(folder: Path, order: CoarseningOrder) -> Iterator[Sink]:
+def mesh_sink(folder: Path, order: CoarseningRequest) -> Iterator[Sink]:
     """Writes one STL a polyhedron, and ``coarsening.json``."""
     with staged_folder(folder) as stage, (stage / "coarsening.json").open("wb") as stream:
         sink = _Meshes(stage, JsonListWriter(stream, document_head(order), "particles"))

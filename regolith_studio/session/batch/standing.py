@@ -8,12 +8,16 @@ from regolith_studio.dataset.exporting import ExportOptions, check_consent
 from regolith_studio.dataset.size_spec import parse_sizes
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.jobs.building import DatasetOptions, build_dataset_folder
-from regolith_studio.jobs.coarsening import CoarseningOrder
+from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
+from regolith_studio.jobs.dataset_jobs import (
+    DatasetOptions,
+    build_dataset_folder,
+    chosen_exporters,
+    export_dataset_folder,
+)
 from regolith_studio.jobs.events import Steps
 from regolith_studio.jobs.executor import Executor
-from regolith_studio.jobs.exporting import chosen_exporters, export_dataset_folder
-from regolith_studio.jobs.representing import RepresentativesOrder
+from regolith_studio.jobs.representatives_jobs import RepresentativesRequest
 from regolith_studio.session.recipe import Recipe
 from regolith_studio.session.recipe_dataset import Exports, Representatives
 
@@ -47,17 +51,17 @@ def build_standing(
     recipe: Recipe,
     wish: Representatives,
     particles: Sequence[Particle],
-    order: CoarseningOrder,
+    order: CoarseningRequest,
     preset: str | None,
     folder: Path,
     workers: int | Executor,
 ) -> Steps:
-    """Write ``dataset`` below `folder`; returns :class:`regolith_studio.jobs.building.Built`.
+    """Write ``dataset`` in `folder`; returns :class:`~regolith_studio.jobs.dataset_jobs.DatasetBuildResult`.
 
     Raises
     ------
     RegolithError
-        As :func:`regolith_studio.jobs.building.build_dataset_folder`.
+        As :func:`regolith_studio.jobs.dataset_jobs.build_dataset_folder`.
     """
     name = wish.name or folder.resolve().name
     options = DatasetOptions(
@@ -72,7 +76,7 @@ def export_standing(wish: Exports, seed: int, folder: Path) -> Steps:
     Raises
     ------
     RegolithError
-        As :func:`regolith_studio.jobs.exporting.export_dataset_folder`.
+        As :func:`regolith_studio.jobs.dataset_jobs.export_dataset_folder`.
     """
     return (
         yield from export_dataset_folder(
@@ -81,12 +85,12 @@ def export_standing(wish: Exports, seed: int, folder: Path) -> Steps:
     )
 
 
-def representatives_order(wish: Representatives, seed: int) -> RepresentativesOrder | None:
+def representatives_order(wish: Representatives, seed: int) -> RepresentativesRequest | None:
     """How those that stand for all are chosen; ``None`` where each stands for itself."""
     if not wish.count:
         return None
     chosen = seed if wish.seed is None else wish.seed
-    return RepresentativesOrder.of(wish.count, wish.weighting, wish.size_importance, chosen)
+    return RepresentativesRequest.of(wish.count, wish.weighting, wish.size_importance, chosen)
 
 
 def export_options(wish: Exports, seed: int) -> ExportOptions:

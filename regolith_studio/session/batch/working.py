@@ -14,11 +14,10 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.files import fits_document
 from regolith_studio.harmonics.fit import DEFAULT_FIT_OPTIONS, FitOptions, HarmonicFit
 from regolith_studio.io.stl import stl_bytes
-from regolith_studio.jobs.coarsening import CoarsenedParticle, CoarseningOrder, coarsen_particle
+from regolith_studio.jobs.coarsening_jobs import CoarsenedParticle, CoarseningRequest, coarsen_particle
 from regolith_studio.jobs.events import Failed, Finished, Job, JobResult, Progress, Started, Step, Steps
-from regolith_studio.jobs.examining import Examined, examine
 from regolith_studio.jobs.executor import call
-from regolith_studio.jobs.fitting import FitOrder, fit_one
+from regolith_studio.jobs.particle_jobs import FitRequest, MeasuredParticle, fit_one, measure_particle
 from regolith_studio.jobs.runners.run_job import iterate_job
 from regolith_studio.jobs.shards import Record
 from regolith_studio.session.batch.items import Item
@@ -47,9 +46,9 @@ class Wish:
         How fits are made.
     """
 
-    examine: bool
+    measure: bool
     fit: bool
-    order: CoarseningOrder | None
+    order: CoarseningRequest | None
     shapes: bool
     box_metric: str
     fit_options: FitOptions = DEFAULT_FIT_OPTIONS
@@ -103,14 +102,14 @@ def _record(index: int, item: Item, wish: Wish) -> Generator[Step, None, Record]
 
 
 def _results(entry: _Entry, particle: Particle, wish: Wish) -> Generator[Step, None, None]:
-    if wish.examine:
+    if wish.measure:
         facts = yield from entry.attempt("measuring", Job(_examined, (particle, wish.box_metric)))
         if facts is not None:
             entry.values["described"] = facts
     fit = None
     if wish.fit or (wish.order and wish.order.target == "fit"):
         fit = yield from entry.attempt(
-            "fitting", Job(fit_one, (particle.mesh, FitOrder(fit_options=wish.fit_options)))
+            "fitting", Job(fit_one, (particle.mesh, FitRequest(fit_options=wish.fit_options)))
         )
         if fit is not None and wish.fit:
             _keep_fit(entry, particle, fit)
@@ -131,7 +130,7 @@ def _particle(item: Item) -> Particle:
 def _examined(particle: Particle, box_metric: str) -> Steps:
     """What ``descriptors.json`` says of the particle; a number that is not finite is a mistake here."""
     yield Started("Measuring")
-    facts: Examined = examine(particle, box_metric)
+    facts: MeasuredParticle = measure_particle(particle, box_metric)
     return _finite(described(particle, facts))
 
 

@@ -13,12 +13,12 @@ from regolith_studio.io.atomic import write_bytes
 from regolith_studio.io.json_text import json_bytes
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.io.tables import Cell, Column, Table
-from regolith_studio.jobs.coarsening import CoarsenedParticle, CoarseningOrder
+from regolith_studio.jobs.coarsening_jobs import CoarsenedParticle, CoarseningRequest
 
 STL_HEADER = "Regolith Studio, convex polyhedron, micrometres"
 
 
-def write_coarsening(folder: Path, order: CoarseningOrder, done: Sequence[CoarsenedParticle]) -> None:
+def write_coarsening(folder: Path, order: CoarseningRequest, done: Sequence[CoarsenedParticle]) -> None:
     """Write ``<name>.stl`` for each particle that succeeded, in its own frame, and ``coarsening.json``."""
     for each in done:
         if each.coarsened:
@@ -26,7 +26,7 @@ def write_coarsening(folder: Path, order: CoarseningOrder, done: Sequence[Coarse
     write_bytes(folder / "coarsening.json", json_bytes(coarsening_document(order, done)))
 
 
-def coarsening_document(order: CoarseningOrder, done: Sequence[CoarsenedParticle]) -> dict[str, Any]:
+def coarsening_document(order: CoarseningRequest, done: Sequence[CoarsenedParticle]) -> dict[str, Any]:
     """What ``coarsening.json`` holds."""
     return document_head(order) | {
         "particles": [
@@ -38,7 +38,7 @@ def coarsening_document(order: CoarseningOrder, done: Sequence[CoarsenedParticle
     }
 
 
-def document_head(order: CoarseningOrder) -> dict[str, Any]:
+def document_head(order: CoarseningRequest) -> dict[str, Any]:
     """What ``coarsening.json`` says before it comes to the particles."""
     return {
         "format": "regolith-studio coarsening",
@@ -48,7 +48,7 @@ def document_head(order: CoarseningOrder) -> dict[str, Any]:
     }
 
 
-def order_document(order: CoarseningOrder) -> dict[str, Any]:
+def order_document(order: CoarseningRequest) -> dict[str, Any]:
     """An order as plain JSON values; the largest error only where one was asked for."""
     values = asdict(order) | {"weights": dict(order.weights), "settings": dict(order.settings)}
     if order.largest_error is None:

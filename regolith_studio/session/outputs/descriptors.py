@@ -6,7 +6,7 @@ from typing import Any, Protocol
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.io.tables import Column, Table
-from regolith_studio.jobs.examining import Examined
+from regolith_studio.jobs.particle_jobs import MeasuredParticle
 
 SHARES = ("hidden_surface_share", "unrepresentable_volume_share")
 """What no radius function keeps, of :class:`~regolith_studio.harmonics.sight.Sight`."""
@@ -15,7 +15,7 @@ UNSEEN = dict.fromkeys((*SHARES, "star_point", "star_point_rule"))
 _POWERS = {0: "", 1: "um", 2: "um^2", 3: "um^3", 5: "um^5"}
 
 
-def described(particle: Particle, facts: Examined) -> dict[str, Any]:
+def described(particle: Particle, facts: MeasuredParticle) -> dict[str, Any]:
     """One particle as ``describe --json`` prints it: name, descriptors by key, health, source.
 
     ``health`` is that of the mesh that was measured, with what its star point cannot see;
@@ -41,13 +41,13 @@ def described(particle: Particle, facts: Examined) -> dict[str, Any]:
     return entry
 
 
-def _mended(particle: Particle, facts: Examined) -> dict[str, Any]:
+def _mended(particle: Particle, facts: MeasuredParticle) -> dict[str, Any]:
     done = particle.repair
     before = done.health_before if done else facts.health
     return {"health_before_repair": before.as_dict(), "repair": done.as_dict() if done else None}
 
 
-def short_table(particles: Sequence[Particle], facts: Sequence[Examined]) -> Table:
+def short_table(particles: Sequence[Particle], facts: Sequence[MeasuredParticle]) -> Table:
     """The descriptors of section 2.2 by their symbols, narrow enough for a terminal."""
     keys = ("volume", "equivalent_radius", "surface_area", *(key for key in LOSS_KEYS if key != "volume"))
     columns = [Column(CATALOGUE[key].symbol, _POWERS[CATALOGUE[key].dimension]) for key in keys]
@@ -58,7 +58,7 @@ def short_table(particles: Sequence[Particle], facts: Sequence[Examined]) -> Tab
     return Table("", (Column("name"), *columns, Column("sound")), tuple(rows))
 
 
-def _soundness(particle: Particle, facts: Examined) -> str:
+def _soundness(particle: Particle, facts: MeasuredParticle) -> str:
     if not facts.health.sound:
         return "no"
     return "mended" if particle.repair is not None and particle.repair.actions else "yes"
@@ -76,7 +76,7 @@ class Named(Protocol):
         """That it belongs to; may be empty."""
 
 
-def descriptor_table(particles: Sequence[Named], facts: Sequence[Examined]) -> Table:
+def descriptor_table(particles: Sequence[Named], facts: Sequence[MeasuredParticle]) -> Table:
     """One row a particle, one column a descriptor with its unit."""
     keys = [key for key in CATALOGUE if any(key in (each.descriptors or ()) for each in facts)]
     rows = [
@@ -112,5 +112,5 @@ def table_row(entry: Mapping[str, Any], keys: Sequence[str]) -> list[Any]:
     return [entry["name"], entry["group"], *numbers, *shares, health["sound"], problems, repairs]
 
 
-def _value(facts: Examined, key: str) -> float | None:
+def _value(facts: MeasuredParticle, key: str) -> float | None:
     return facts.descriptors.get(key) if facts.descriptors else None

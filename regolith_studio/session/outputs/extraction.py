@@ -12,9 +12,9 @@ from regolith_studio.io.atomic import write_bytes
 from regolith_studio.io.json_text import json_bytes
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.io.tables import Cell, Column, Table, csv_text
-from regolith_studio.jobs.examining import Examined
-from regolith_studio.jobs.extracting import ExtractedFile, VolumeInput
-from regolith_studio.jobs.grain_recipe import GrainRecipe
+from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
+from regolith_studio.jobs.particle_jobs import MeasuredParticle
+from regolith_studio.jobs.volume_jobs import ExtractedFile
 from regolith_studio.session.outputs.descriptors import described, descriptor_table
 from regolith_studio.session.outputs.particles import STL_HEADER
 
@@ -36,7 +36,7 @@ class ExtractionFolder:
         self._rows: dict[int, dict[Column, Cell]] = {}
         self._entries: dict[int, dict[str, Any]] = {}
 
-    def add(self, found: Extracted, facts: Examined) -> None:
+    def add(self, found: Extracted, facts: MeasuredParticle) -> None:
         """Write one particle's STL and remember its row."""
         particle = found.particle
         write_bytes(self._folder / f"{particle.name}.stl", stl_bytes(particle.mesh.triangles, STL_HEADER))
@@ -56,7 +56,7 @@ class ExtractionFolder:
             "surface": found.surface,
         }
 
-    def finish(self, given: VolumeInput, recipe: GrainRecipe, done: ExtractedFile) -> dict[str, Any]:
+    def finish(self, given: VolumeInput, recipe: GrainSettings, done: ExtractedFile) -> dict[str, Any]:
         """Write ``particles.csv`` and the recipe; returns what ``--json`` prints."""
         rows = [self._rows[label] for label in sorted(self._rows)]
         columns = next(tuple(row) for row in rows if len(row) == max(map(len, rows)))
@@ -69,7 +69,7 @@ class ExtractionFolder:
         return {"particles": [self._entries[label] for label in sorted(self._entries)]} | document
 
 
-def recipe_document(given: VolumeInput, recipe: GrainRecipe, done: ExtractedFile) -> dict[str, Any]:
+def recipe_document(given: VolumeInput, recipe: GrainSettings, done: ExtractedFile) -> dict[str, Any]:
     """Everything that is needed to make the same particles again, and what was left out."""
     document: dict[str, Any] = {
         "volume": {

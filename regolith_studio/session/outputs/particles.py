@@ -7,7 +7,7 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.io.atomic import write_bytes
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.io.tables import Cell, Column, Table, csv_text
-from regolith_studio.jobs.examining import Examined
+from regolith_studio.jobs.particle_jobs import MeasuredParticle
 from regolith_studio.session.outputs.descriptors import descriptor_table
 
 STL_HEADER = "Regolith Studio, particle, micrometres"
@@ -16,7 +16,7 @@ STL_HEADER = "Regolith Studio, particle, micrometres"
 def write_particles(
     folder: Path,
     particles: Sequence[Particle],
-    facts: Sequence[Examined],
+    facts: Sequence[MeasuredParticle],
     extra: Mapping[str, Sequence[Cell]] | None = None,
 ) -> None:
     """Write ``<name>.stl`` for each particle and ``particles.csv``.

@@ -13,8 +13,8 @@ from regolith_studio.harmonics.coefficients import CONVENTION
 from regolith_studio.io.atomic import write_bytes
 from regolith_studio.io.json_text import json_bytes
 from regolith_studio.io.tables import Cell, Column, Table, csv_text
-from regolith_studio.jobs.examining import Examined
-from regolith_studio.jobs.generating import GenerateOrder, particle_names
+from regolith_studio.jobs.model_jobs import GenerationRequest, particle_names
+from regolith_studio.jobs.particle_jobs import MeasuredParticle
 from regolith_studio.readers.shape_files import ShapeSource
 from regolith_studio.session.outputs.descriptors import descriptor_table
 from regolith_studio.shape_models.draws import Draws
@@ -46,13 +46,13 @@ class Generated:
     """
 
     source: ShapeSource
-    order: GenerateOrder
+    order: GenerationRequest
     model: FittedModel
     draws: Draws
     groups: tuple[str, ...]
 
 
-def write_table_of_meshes(folder: Path, made: Generated, facts: Sequence[Examined]) -> None:
+def write_table_of_meshes(folder: Path, made: Generated, facts: Sequence[MeasuredParticle]) -> None:
     """Write ``particles.csv`` of particles whose meshes lie in `folder`: all descriptors, and the origin."""
     named = [_Named(*each) for each in zip(particle_names(len(made.draws)), made.groups, strict=True)]
     _write_table(folder, descriptor_table(named, facts), made.draws)

@@ -21,7 +21,7 @@ from PySide6.QtWidgets import (
 from regolith_studio.coarsening.methods import METHODS
 from regolith_studio.coarsening.weights import JACCARD, presets
 from regolith_studio.descriptors.catalogue import CATALOGUE
-from regolith_studio.jobs.building import DatasetOptions
+from regolith_studio.jobs.dataset_jobs import DatasetOptions
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.tasks import Task
 from regolith_studio.ui.dialogs.folder import FolderDialog

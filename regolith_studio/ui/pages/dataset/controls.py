@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLineEdit, QPushButton, QV
 
 from regolith_studio.dataset.size_spec import Sizing, parse_sizes
 from regolith_studio.errors import InputError
-from regolith_studio.jobs.representing import RepresentativesOrder
+from regolith_studio.jobs.representatives_jobs import RepresentativesRequest
 from regolith_studio.session.recipe_dataset import Representatives, Standing
 from regolith_studio.ui.pages.dataset.export_panel import ExportPanel
 from regolith_studio.ui.translation import mark, tr, tr_count
@@ -80,9 +80,9 @@ class RepresentativesPanel(QWidget):
         self.weighting.currentIndexChanged.connect(lambda _: self.orderChanged.emit())
         self.start.clicked.connect(self.findRequested)
 
-    def order(self) -> RepresentativesOrder:
+    def order(self) -> RepresentativesRequest:
         """What is asked for."""
-        return RepresentativesOrder.of(int(self.count.value()), self.weighting.currentData())
+        return RepresentativesRequest.of(int(self.count.value()), self.weighting.currentData())
 
     def wish(self, sizes: str, name: str) -> Representatives:
         """What a recipe says of them and of their dataset."""

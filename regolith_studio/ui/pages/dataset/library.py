@@ -19,7 +19,7 @@ from PySide6.QtWidgets import (
 )
 
 from regolith_studio.dataset.library import LibraryEntry, provenance_tree
-from regolith_studio.jobs.datasets import list_library
+from regolith_studio.jobs.dataset_jobs import list_library
 from regolith_studio.jobs.events import Job
 from regolith_studio.ui.layout import side_by_side
 from regolith_studio.ui.page import PageContext

@@ -14,11 +14,21 @@ from regolith_studio.dataset.exporting import Exported
 from regolith_studio.dataset.quality import QualityPoint
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.jobs.building import Built, DatasetOptions, build_dataset_folder
-from regolith_studio.jobs.datasets import open_dataset_folder, validate_dataset_folder
+from regolith_studio.jobs.dataset_jobs import (
+    DatasetBuildResult,
+    DatasetOptions,
+    build_dataset_folder,
+    export_dataset_folder,
+    open_dataset_folder,
+    validate_dataset_folder,
+)
 from regolith_studio.jobs.events import Job
-from regolith_studio.jobs.exporting import export_dataset_folder
-from regolith_studio.jobs.representing import ChosenParticles, Survey, choose_one, survey
+from regolith_studio.jobs.representatives_jobs import (
+    ChosenParticles,
+    RepresentativesSurvey,
+    choose_job,
+    survey_representatives,
+)
 from regolith_studio.session.recipe_dataset import Standing
 from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.layout import equal_parts, padded, scrolled_column, side_by_side, stacked, tabs
@@ -56,7 +66,7 @@ class DatasetPage(PageWidget):
         self.setObjectName("dataset")
         self._context = context
         self._particles: tuple[Particle, ...] = ()
-        self._survey: Survey | None = None
+        self._survey: RepresentativesSurvey | None = None
         self._chosen: ChosenParticles | None = None
         self._points: list[QualityPoint] = []
         self._dataset: Dataset | None = None
@@ -131,7 +141,7 @@ class DatasetPage(PageWidget):
             return
         self._points = []
         known = self._survey.population if self._survey else None
-        job = Job(survey, (self._particles, self.representatives.order(), known))
+        job = Job(survey_representatives, (self._particles, self.representatives.order(), known))
         self._context.start(
             tr("Finding representatives"), job, self._show_survey, partial=self._show_point, lane=FIND
         )
@@ -256,7 +266,7 @@ class DatasetPage(PageWidget):
         self._points.append(point)
         self.quality.show_points(self._points)
 
-    def _show_survey(self, found: Survey) -> None:
+    def _show_survey(self, found: RepresentativesSurvey) -> None:
         self._survey = found
         self.quality.show_curve(found.curve)
         if found.population.omitted:
@@ -275,7 +285,7 @@ class DatasetPage(PageWidget):
             self._take_chosen(known)
             return
         order = replace(self.representatives.order(), count=count)
-        job = Job(choose_one, (self._survey.population, order))
+        job = Job(choose_job, (self._survey.population, order))
         self._context.start(tr("Choosing representatives"), job, self._take_chosen, lane="choice")
 
     def _take_chosen(self, chosen: ChosenParticles) -> None:
@@ -310,7 +320,7 @@ class DatasetPage(PageWidget):
             return []
         return [own_class(particle) for particle in self._particles if particle.mesh.volume > 0.0]
 
-    def _take_built(self, built: Built) -> None:
+    def _take_built(self, built: DatasetBuildResult) -> None:
         self._take_dataset(built.folder, built.dataset)
         self._context.toast.note(
             tr("{count} shapes in {folder}.", count=len(built.dataset), folder=built.folder)

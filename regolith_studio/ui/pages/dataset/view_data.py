@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from regolith_studio.coarsening.methods import METHODS
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.jobs.representing import ChosenParticles
+from regolith_studio.jobs.representatives_jobs import ChosenParticles
 from regolith_studio.session.choices import Choices
 from regolith_studio.ui.fineness import fineness_words
 from regolith_studio.ui.pages.dataset.gallery import GalleryItem

@@ -13,7 +13,7 @@ def build(context: PageContext) -> PageWidget:
 
 def prepare() -> None:
     """Load what sets formulas, and what draws fields."""
-    from regolith_studio.jobs.lecturing import first_field
+    from regolith_studio.jobs.lecture_jobs import first_field
     from regolith_studio.ui.widgets.formula import outline
 
     outline(r"$\sqrt{A_\ell}\,/\,\bar r = \sum_{m} c_{\ell m}^{2}$")

@@ -9,7 +9,7 @@ from PySide6.QtCore import QEvent
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QLabel, QSplitter, QVBoxLayout, QWidget
 
-from regolith_studio.jobs.lecturing import AnnealingLesson, AnnealingStep
+from regolith_studio.jobs.lecture_jobs import AnnealingLesson, AnnealingStep
 from regolith_studio.scene import surfaces
 from regolith_studio.scene.comparing import OTHER, show_other
 from regolith_studio.scene.moves import show_move

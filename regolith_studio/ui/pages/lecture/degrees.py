@@ -6,7 +6,7 @@ from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.jobs.lecturing import DegreeStep
+from regolith_studio.jobs.lecture_jobs import DegreeStep
 from regolith_studio.scene import surfaces
 from regolith_studio.scene.palette import DESCRIPTOR_COLOURS
 from regolith_studio.ui.layout import side_by_side

@@ -8,7 +8,7 @@ from PySide6.QtWidgets import QPushButton, QVBoxLayout, QWidget
 
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.jobs.events import Job
-from regolith_studio.jobs.lecturing import DrawnField, draw_field_later
+from regolith_studio.jobs.lecture_jobs import DrawnField, draw_field_later
 from regolith_studio.scene.fields import show_field
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.ui.following import Following

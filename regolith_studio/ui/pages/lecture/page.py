@@ -8,7 +8,7 @@ from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QTabWidget, QVBoxLayout
 
 from regolith_studio.jobs.events import Failed, Job
-from regolith_studio.jobs.lecturing import anneal_slowly, grow_fit
+from regolith_studio.jobs.lecture_jobs import trace_annealing, trace_degrees
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.ui.following import Following
 from regolith_studio.ui.page import PageContext, PageWidget
@@ -187,7 +187,7 @@ class LecturePage(PageWidget):
         )
         self.annealing.wait()
         show = self.annealing.show_lesson
-        job = Job(anneal_slowly, (mesh, order, index))
+        job = Job(trace_annealing, (mesh, order, index))
         self._context.start(
             tr("Annealing step by step"),
             job,
@@ -212,7 +212,7 @@ class LecturePage(PageWidget):
         self._made_for["degrees"] = (fit,)
         self.degrees.show_particle(entry.particle.mesh, entry.id)
         show = self.degrees.show_steps
-        job = Job(grow_fit, (entry.particle.mesh, fit))
+        job = Job(trace_degrees, (entry.particle.mesh, fit))
         self._context.start(tr("Growing the fit"), job, show, partial=show, lane="degrees")
 
     def _show_particles(self) -> None:

@@ -6,7 +6,7 @@ from regolith_studio.coarsening.evaluation import Evaluation
 from regolith_studio.coarsening.methods.annealing import AnnealingSettings
 from regolith_studio.coarsening.weights import JACCARD, LossWeights
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
-from regolith_studio.jobs.lecturing import AnnealingLesson, AnnealingStep, DegreeStep
+from regolith_studio.jobs.lecture_jobs import AnnealingLesson, AnnealingStep, DegreeStep
 from regolith_studio.ui.translation import tr
 
 TERMS = (JACCARD, *LOSS_KEYS)

@@ -21,7 +21,7 @@ from PySide6.QtWidgets import (
 )
 
 from regolith_studio.errors import InputError
-from regolith_studio.jobs.generating import CARD_MODEL, GenerateOrder
+from regolith_studio.jobs.model_jobs import CARD_MODEL, GenerationRequest
 from regolith_studio.shape_models.models import DEFAULT_MODEL, MODELS
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
@@ -284,7 +284,7 @@ class DrawControls(QWidget):
         layout.addLayout(parts)
 
 
-def order_from(source: Mapping[str, Any], drawing: Mapping[str, Any], brings_model: str) -> GenerateOrder:
+def order_from(source: Mapping[str, Any], drawing: Mapping[str, Any], brings_model: str) -> GenerationRequest:
     """The order that the controls stand for.
 
     Raises
@@ -304,7 +304,7 @@ def order_from(source: Mapping[str, Any], drawing: Mapping[str, Any], brings_mod
     key = "" if brings_model else str(source["model"])
     settings = tuple(source["settings"].get(key, {}).items()) if key else ()
     degree = None if brings_model not in ("", CARD_MODEL) else int(source["l_max"])
-    return GenerateOrder(
+    return GenerationRequest(
         key, settings, degree, drawing["n"], drawing["seed"], None if bounds is None else tuple(bounds)
     )
 

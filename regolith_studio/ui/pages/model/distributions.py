@@ -5,7 +5,7 @@ from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.descriptors.distributions import Distribution, wasserstein_1
-from regolith_studio.jobs.comparing import Compared
+from regolith_studio.jobs.model_evaluation import DistributionComparison
 from regolith_studio.studies.population import KEYS
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import mark, tr
@@ -34,7 +34,7 @@ class DistributionsPanel(QWidget):
         self.plot = CurvePlot("", tr(SHARE), tr(WAITING))
         self.words = ElidedLabel(role="remark")
         self.weighting.setMinimumContentsLength(26)
-        self._compared: Compared | None = None
+        self._compared: DistributionComparison | None = None
         row = QHBoxLayout()
         row.setContentsMargins(8, 6, 8, 0)
         row.setSpacing(10)
@@ -49,7 +49,7 @@ class DistributionsPanel(QWidget):
             box.currentIndexChanged.connect(lambda _: self._show())
         self._show()
 
-    def show_compared(self, compared: Compared | None) -> None:
+    def show_compared(self, compared: DistributionComparison | None) -> None:
         """Draw these distributions, or none."""
         self._compared = compared if compared is not None and len(compared.drawn) else None
         self._show()

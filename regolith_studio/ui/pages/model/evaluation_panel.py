@@ -22,7 +22,7 @@ from PySide6.QtWidgets import (
 )
 
 from regolith_studio.io.tables import Table
-from regolith_studio.jobs.judging import JudgedShapes
+from regolith_studio.jobs.model_evaluation import ModelEvaluationResult
 from regolith_studio.session.tasks import Task
 from regolith_studio.shape_models.models import MODELS
 from regolith_studio.studies.population import PopulationStudy
@@ -198,7 +198,7 @@ class EvaluationPanel(QWidget):
         self.splits.setValue(int(value.get("splits", 5)))
         self.repeats.setValue(int(value.get("repeats", 1)))
 
-    def show_judged(self, judged: JudgedShapes | None) -> None:
+    def show_judged(self, judged: ModelEvaluationResult | None) -> None:
         """Show a study, finished or not, or nothing."""
         for name, label in self.pictures.items():
             label.set_picture(judged.pictures.get(name) if judged else None)

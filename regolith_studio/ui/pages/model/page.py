@@ -11,16 +11,16 @@ from PySide6.QtWidgets import QFileDialog, QHBoxLayout
 from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.jobs.comparing import compare_distributions
 from regolith_studio.jobs.events import Job
-from regolith_studio.jobs.generating import GenerateOrder, make_particles
-from regolith_studio.jobs.judging import (
-    DrawnShapes,
-    FittedShapes,
+from regolith_studio.jobs.model_evaluation import compare_distributions, evaluate_models
+from regolith_studio.jobs.model_jobs import (
+    GenerationRequest,
+    GenerationResult,
+    ModelFitResult,
     draw_live,
     draw_shapes,
     fit_shapes,
-    judge_shapes,
+    make_particles,
 )
 from regolith_studio.readers.shape_files import ShapeSource, read_shape_source
 from regolith_studio.session.origins import Drawn
@@ -57,9 +57,9 @@ class ModelPage(PageWidget):
         self.setObjectName("model")
         self._context = context
         self._sources = SourceBox(context.session)
-        self._fitted: FittedShapes | None = None
+        self._fitted: ModelFitResult | None = None
         self._model: FittedModel | None = None
-        self._drawn: DrawnShapes | None = None
+        self._drawn: GenerationResult | None = None
         self._live_seed = 0
         self._following = Following(context, tr("Drawing particles"), "live")
 
@@ -224,16 +224,16 @@ class ModelPage(PageWidget):
             "n_repeats": chosen["repeats"],
             "seed": order.seed,
         }
-        job = Job(judge_shapes, (sample, None if chosen["all_models"] else (key,)), options)
+        job = Job(evaluate_models, (sample, None if chosen["all_models"] else (key,)), options)
         show = self.evaluation.show_judged
         self._context.start(tr("Judging models"), job, show, partial=show, lane=JUDGE)
 
-    def _order(self) -> GenerateOrder:
+    def _order(self) -> GenerationRequest:
         return order_from(self.source.value(), self.drawing.value(), self._brings())
 
     # --- results -------------------------------------------------------------------------------
 
-    def _show_fitted(self, fitted: FittedShapes) -> None:
+    def _show_fitted(self, fitted: ModelFitResult) -> None:
         self._fitted, self._model, self._drawn = fitted, fitted.model, None
         model = fitted.model
         self.live.spectrum.setValue(relative_amplitudes(model), editable=can_be_edited(model))
@@ -253,7 +253,7 @@ class ModelPage(PageWidget):
         if fitted.source.notes:
             self._context.toast.problem(fitted.source.notes[0], "\n".join(fitted.source.notes))
 
-    def _show_drawn(self, drawn: DrawnShapes) -> None:
+    def _show_drawn(self, drawn: GenerationResult) -> None:
         self._drawn = drawn
         words = tr("{count:,} particles", count=len(drawn.draws))
         if drawn.radii is not None:
@@ -280,7 +280,7 @@ class ModelPage(PageWidget):
             lambda sentence: self.live.frame.set_texts(tr(DRAWN), sentence),
         )
 
-    def _show_live(self, fitted: FittedShapes, mesh: Mesh, again: bool) -> None:
+    def _show_live(self, fitted: ModelFitResult, mesh: Mesh, again: bool) -> None:
         if fitted is self._fitted:
             radius = float(np.cbrt(3 * mesh.volume / (4 * np.pi)))
             self.live.show_mesh(mesh, tr("equivalent radius {radius:.3g} µm", radius=radius), again)

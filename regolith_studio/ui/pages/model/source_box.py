@@ -4,9 +4,8 @@ from dataclasses import dataclass
 from math import exp
 
 from regolith_studio.errors import InputError
-from regolith_studio.jobs.fitting import FIT_DEGREE
-from regolith_studio.jobs.generating import CARD_MODEL
-from regolith_studio.jobs.judging import Origin
+from regolith_studio.jobs.model_jobs import CARD_MODEL, ModelOrigin
+from regolith_studio.jobs.particle_jobs import FIT_DEGREE
 from regolith_studio.readers.shape_files import ShapeSource
 from regolith_studio.session.session import Session
 from regolith_studio.shape_models.materials import MaterialCard, materials
@@ -74,7 +73,7 @@ class SourceBox:
                 words = tr("A fitted model: {name}.", name=_inside(MODELS[content.key].label))
                 return SourceKind(content.key, content.l_max, words)
 
-    def origin(self, key: str) -> Origin:
+    def origin(self, key: str) -> ModelOrigin:
         """What a job is given.
 
         Raises

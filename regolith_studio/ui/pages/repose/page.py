@@ -18,9 +18,9 @@ from regolith_studio.dem.pile import Pile, read_pile
 from regolith_studio.dem.repose import ReposeMeasurement
 from regolith_studio.dem.run_folder import FINAL, RunSummary, find_runs, read_shapes, snapshot_files
 from regolith_studio.errors import RegolithError
-from regolith_studio.jobs.building import DatasetOptions, build_dataset_folder
+from regolith_studio.jobs.dataset_jobs import DatasetOptions, build_dataset_folder
 from regolith_studio.jobs.events import Failed, Job
-from regolith_studio.jobs.repose import ReposeRun, preview_repose, remeasure, simulate_repose
+from regolith_studio.jobs.repose_jobs import ReposeRun, preview_repose, remeasure, simulate_repose
 from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.layout import padded, scrolled_column, side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget

@@ -20,7 +20,7 @@ from regolith_studio.dem.case import ReposeCase
 from regolith_studio.dem.engines import ENGINES, engine_named
 from regolith_studio.dem.evaluation.settings import EvaluationSettings
 from regolith_studio.errors import InputError
-from regolith_studio.jobs.repose import ReposeOrder
+from regolith_studio.jobs.repose_jobs import ReposeRequest
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.collapsible import Collapsible
 from regolith_studio.ui.widgets.combo_box import ElidedComboBox
@@ -110,7 +110,7 @@ class SetupPanel(QWidget):
         self.dataset_label.setText(str(folder) if folder else tr("No dataset yet"))
         self.valueChanged.emit()
 
-    def order(self) -> ReposeOrder:
+    def order(self) -> ReposeRequest:
         """What the panel says.
 
         Raises
@@ -128,7 +128,7 @@ class SetupPanel(QWidget):
             seed=self.seed.value(),
         )
         settings = engine.Settings(**self.numerics.value())
-        return ReposeOrder(case, engine.key, settings, self.evaluation_settings())
+        return ReposeRequest(case, engine.key, settings, self.evaluation_settings())
 
     def evaluation_settings(self) -> EvaluationSettings:
         """How piles are measured.

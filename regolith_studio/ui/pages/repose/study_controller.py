@@ -6,7 +6,7 @@ from pathlib import Path
 from regolith_studio.dem.run_folder import RunSummary
 from regolith_studio.errors import RegolithError
 from regolith_studio.jobs.events import Failed, Job
-from regolith_studio.jobs.repose_study import SHAPE_KEYS, StudyWish, study_wish
+from regolith_studio.jobs.repose_jobs import SHAPE_KEYS, ReposeStudyRequest, run_repose_study
 from regolith_studio.studies.repose import ReposeStudy, ReposeStudyRun
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.repose.setup import SetupPanel
@@ -64,7 +64,7 @@ class ReposeStudyController:
         self._panel.tell(tr("Every run is kept in {folder}.", folder=self._folder))
         self._context.start(
             tr("Angle of repose: study"),
-            Job(study_wish, (wish, self._folder)),
+            Job(run_repose_study, (wish, self._folder)),
             self._finished,
             partial=self._panel.show_study,
             failed=self._failed,
@@ -76,13 +76,13 @@ class ReposeStudyController:
         """Stop; starting it again goes on after what is finished."""
         self._context.stop(LANE)
 
-    def _wish(self) -> StudyWish:
+    def _wish(self) -> ReposeStudyRequest:
         key, values, repeats = self._panel.wish()
         session, order = self._context.session, self._setup.order()
         if key not in SHAPE_KEYS:
-            return StudyWish(key, values, order, self._setup.dataset, repeats)
+            return ReposeStudyRequest(key, values, order, self._setup.dataset, repeats)
         particles = tuple(entry.particle for entry in session.particles)
-        return StudyWish(key, values, order, None, repeats, particles, session.choices.order)
+        return ReposeStudyRequest(key, values, order, None, repeats, particles, session.choices.order)
 
     def _finished(self, study: ReposeStudy) -> None:
         self._panel.show_study(study)

@@ -13,7 +13,7 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.io.atomic import write_bytes
 from regolith_studio.io.tables import csv_text
 from regolith_studio.jobs.events import Job
-from regolith_studio.jobs.examining import find_faults
+from regolith_studio.jobs.particle_jobs import find_faults
 from regolith_studio.scene import faults, surfaces
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import filter_of, sample_table

@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QCheckBox, QComboBox, QDoubleSpinBox, QFormLayout,
 from regolith_studio.imaging.extraction import voxel_diameter
 from regolith_studio.imaging.segmentation.cleaning import CleaningSettings
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings
-from regolith_studio.jobs.grain_recipe import GrainRecipe
+from regolith_studio.jobs.extraction_settings import GrainSettings
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.labels import heading, remark
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec, align_labels
@@ -51,14 +51,14 @@ _LABEL_WIDTH = 62
 
 
 class SegmentationControls(QWidget):
-    """Edits a :class:`GrainRecipe`. ``valueChanged`` is for changes by the user only."""
+    """Edits a :class:`GrainSettings`. ``valueChanged`` is for changes by the user only."""
 
     valueChanged = Signal(object)  # noqa: N815
 
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("segmentation")
-        self._recipe = GrainRecipe()
+        self._recipe = GrainSettings()
         self.denoise = choice("denoise", tr("Denoise"), DENOISE)
         self.threshold = choice("threshold", tr("Threshold"), THRESHOLD)
         self.level = QDoubleSpinBox()
@@ -93,7 +93,7 @@ class SegmentationControls(QWidget):
         self._connect()
         self.setValue(self._recipe)
 
-    def value(self) -> GrainRecipe:
+    def value(self) -> GrainSettings:
         """What is chosen."""
         method = str(self.threshold.currentData())
         before = self._recipe.segmentation
@@ -121,9 +121,9 @@ class SegmentationControls(QWidget):
             fill_pores=self.pores.isChecked(),
             surface=self.surface.currentData(),
         )
-        return GrainRecipe(segmentation, extraction)
+        return GrainSettings(segmentation, extraction)
 
-    def setValue(self, recipe: GrainRecipe) -> None:
+    def setValue(self, recipe: GrainSettings) -> None:
         """Show other choices; announces nothing."""
         self._recipe = recipe
         how, what = recipe.segmentation, recipe.extraction

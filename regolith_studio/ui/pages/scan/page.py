@@ -17,14 +17,14 @@ from regolith_studio.imaging.segmentation.segment import Segmentation, Segmentat
 from regolith_studio.io.atomic import write_bytes
 from regolith_studio.io.json_text import json_bytes
 from regolith_studio.jobs.events import Job
-from regolith_studio.jobs.extracting import VolumeInput, extract_labels
-from regolith_studio.jobs.grain_recipe import GrainRecipe, read_grain_recipe
-from regolith_studio.jobs.scanning import (
-    FoundGrains,
+from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput, read_grain_settings
+from regolith_studio.jobs.volume_jobs import (
+    GrainSegmentation,
     Scan,
+    extract_labels,
     find_grains,
-    look_at_file,
     preview_part,
+    read_header,
     read_sample_scan,
     read_scan,
 )
@@ -60,7 +60,7 @@ class ScanPage(PageWidget):
         self._context = context
         self.scan: Scan | None = None
         self._given = VolumeInput(Path())
-        self._whole: FoundGrains | None = None
+        self._whole: GrainSegmentation | None = None
         self.preview: Segmentation | None = None
         self._found_with: SegmentationSettings | None = None
 
@@ -102,7 +102,7 @@ class ScanPage(PageWidget):
 
     def restore(self, state: Mapping[str, Any]) -> None:
         with contextlib.suppress(RegolithError):
-            self._use(GrainRecipe.from_document(state))
+            self._use(GrainSettings.from_document(state))
 
     def release(self) -> None:
         self._timer.stop()
@@ -133,7 +133,7 @@ class ScanPage(PageWidget):
         if path.suffix.lower() in RAW_SUFFIXES:
             self._ask_layout(path)
             return
-        job = Job(look_at_file, (VolumeInput(path),))
+        job = Job(read_header, (VolumeInput(path),))
         self._context.start(
             tr("Looking at the volume"), job, lambda header: self._looked(path, header), lane="read"
         )
@@ -205,7 +205,7 @@ class ScanPage(PageWidget):
         if not name:
             return
         try:
-            self._use(read_grain_recipe(Path(name)))
+            self._use(read_grain_settings(Path(name)))
         except RegolithError as error:
             self._context.toast.problem(str(error))
 
@@ -223,7 +223,7 @@ class ScanPage(PageWidget):
         command = f"regolith-studio extract --recipe {Path(name).name}"
         self._context.toast.note(tr("Saved; use it with: {command}", command=command))
 
-    def _use(self, recipe: GrainRecipe) -> None:
+    def _use(self, recipe: GrainSettings) -> None:
         self.controls.setValue(recipe)
         self._changed(recipe)
 
@@ -249,13 +249,13 @@ class ScanPage(PageWidget):
         if labels is None or self.scan is None:
             self._context.toast.note(tr("Find the grains first."))
             return
-        settings = GrainRecipe(self._found_with or SegmentationSettings(), self.controls.value().extraction)
+        settings = GrainSettings(self._found_with or SegmentationSettings(), self.controls.value().extraction)
         entry = entry_of(self._given, settings)
         grey = self.scan.volume if self.scan.volume.kind == "grey" else None
         job = Job(extract_labels, (labels, settings.extraction, self._given.path, grey))
         self._context.start(tr("Making particles"), job, lambda made: self._adopt(made, entry), lane="grains")
 
-    def _found(self, found: FoundGrains, settings: SegmentationSettings) -> None:
+    def _found(self, found: GrainSegmentation, settings: SegmentationSettings) -> None:
         self._forget_grains()
         self._whole, self.preview, self._found_with = found, None, settings
         self.overview.show_whole(found.segmentation, found.sections)
@@ -284,7 +284,7 @@ class ScanPage(PageWidget):
         self._context.toast.note(summary)
         self.steps.set_particles(summary)
 
-    def _changed(self, recipe: GrainRecipe) -> None:
+    def _changed(self, recipe: GrainSettings) -> None:
         """Forget grains that were found with other settings, and begin a preview with these."""
         if self.grains is not None and recipe.segmentation == self._found_with:
             self._show_state()

@@ -7,7 +7,7 @@ from PySide6.QtWidgets import QStackedLayout, QVBoxLayout, QWidget
 from regolith_studio.imaging.boxes import Box, box_between
 from regolith_studio.imaging.sections import Sections
 from regolith_studio.imaging.segmentation.segment import Segmentation
-from regolith_studio.jobs.scanning import Scan
+from regolith_studio.jobs.volume_jobs import Scan
 from regolith_studio.ui.layout import equal_parts
 from regolith_studio.ui.pages.scan.histogram_plot import HistogramPlot
 from regolith_studio.ui.pages.scan.slice_view import SliceView

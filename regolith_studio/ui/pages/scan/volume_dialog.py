@@ -17,7 +17,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from regolith_studio.jobs.extracting import VolumeInput
+from regolith_studio.jobs.extraction_settings import VolumeInput
 from regolith_studio.readers.volume_formats import WITH_AXES
 from regolith_studio.readers.volumes.header import RawLayout, VolumeHeader
 from regolith_studio.ui.pages.scan.controls import choice

@@ -4,7 +4,7 @@ from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout, QWidget
 
 from regolith_studio.imaging.segmentation.segment import Segmentation
-from regolith_studio.jobs.scanning import Scan
+from regolith_studio.jobs.volume_jobs import Scan
 from regolith_studio.ui.translation import tr, tr_count
 from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText

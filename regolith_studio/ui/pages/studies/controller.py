@@ -5,7 +5,7 @@ from functools import partial
 
 from regolith_studio.errors import RegolithError
 from regolith_studio.jobs.events import Job
-from regolith_studio.jobs.studying import study_coarsening
+from regolith_studio.jobs.study_jobs import study_coarsening
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.plan import Kind, depends
 from regolith_studio.session.variations import varied_rows

@@ -13,23 +13,22 @@ from regolith_studio.imaging.sample_volumes import sample_file, sample_volume
 from regolith_studio.imaging.segmentation.denoising import DenoiseSettings
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings
 from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
-from regolith_studio.jobs import extracting
+from regolith_studio.jobs import volume_jobs
 from regolith_studio.jobs.events import Progress, Started, Step, Steps
-from regolith_studio.jobs.extracting import (
-    VolumeInput,
+from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput, read_grain_settings
+from regolith_studio.jobs.volume_jobs import (
     extract_file,
     extract_labels,
     extract_measured,
-    fingerprint,
     segment_volume,
+    volume_sha256,
 )
-from regolith_studio.jobs.grain_recipe import GrainRecipe, read_grain_recipe
 from regolith_studio.readers.file_bytes import sha256_of
 from regolith_studio.resources import resource
 
 GREY = resource("samples", "ct", "synthetic-grey.tif")
 PART = (slice(0, 80), slice(0, 80), slice(0, 80))
-QUICK = GrainRecipe(SegmentationSettings(DenoiseSettings("none")))
+QUICK = GrainSettings(SegmentationSettings(DenoiseSettings("none")))
 
 
 def played(steps: Steps) -> tuple[list[Step], Any]:
@@ -72,7 +71,7 @@ def test_that_temporary_files_give_the_same_particles_and_vanish(
 ) -> None:
     scratch = part.path.parent / "scratch"
     _, memory = played(extract_file(part, QUICK))
-    monkeypatch.setattr(extracting, "IN_MEMORY", 0)
+    monkeypatch.setattr(volume_jobs, "IN_MEMORY", 0)
     steps = extract_file(part, QUICK, scratch)
     while next(steps) != Started("Extracting particles"):
         pass
@@ -87,7 +86,7 @@ def test_that_temporary_files_give_the_same_particles_and_vanish(
 def test_that_a_cancelled_run_leaves_no_temporary_files(
     part: VolumeInput, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(extracting, "IN_MEMORY", 0)
+    monkeypatch.setattr(volume_jobs, "IN_MEMORY", 0)
     steps = extract_file(part, QUICK, part.path.parent / "scratch")
     for _ in range(4):
         next(steps)
@@ -124,13 +123,13 @@ def test_that_the_fingerprint_of_a_folder_depends_on_every_slice(tmp_path: Path)
     tifffile = pytest.importorskip("tifffile")
     for number in range(4):
         tifffile.imwrite(tmp_path / f"slice_{number}.tif", np.full((5, 5), number, dtype=np.uint8))
-    before = fingerprint(tmp_path)
+    before = volume_sha256(tmp_path)
     tifffile.imwrite(tmp_path / "slice_2.tif", np.full((5, 5), 9, dtype=np.uint8))
-    assert fingerprint(tmp_path) != before
+    assert volume_sha256(tmp_path) != before
 
 
 def test_that_a_recipe_survives_being_written_and_read(tmp_path: Path) -> None:
-    recipe = GrainRecipe(
+    recipe = GrainSettings(
         SegmentationSettings(
             DenoiseSettings("non-local-means", reach=4),
             ThresholdSettings("multi-otsu", classes=4, boundary=3),
@@ -138,8 +137,8 @@ def test_that_a_recipe_survives_being_written_and_read(tmp_path: Path) -> None:
         ExtractionSettings(exclude_border=False, min_voxels=7),
     )
     (tmp_path / "r.json").write_text(json.dumps(recipe.as_document() | {"software": {}}))
-    assert read_grain_recipe(tmp_path / "r.json") == recipe
-    assert GrainRecipe.from_document({"extraction": {"unknown": 3}}) == GrainRecipe()
+    assert read_grain_settings(tmp_path / "r.json") == recipe
+    assert GrainSettings.from_document({"extraction": {"unknown": 3}}) == GrainSettings()
 
 
 @pytest.mark.parametrize(
@@ -157,9 +156,9 @@ def test_that_a_recipe_survives_being_written_and_read(tmp_path: Path) -> None:
 def test_that_a_bad_recipe_is_one_sentence(tmp_path: Path, text: str, sentence: str) -> None:
     (tmp_path / "r.json").write_text(text)
     with pytest.raises(InputError, match=sentence):
-        read_grain_recipe(tmp_path / "r.json")
+        read_grain_settings(tmp_path / "r.json")
 
 
 def test_that_a_missing_recipe_is_one_sentence(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="cannot be opened"):
-        read_grain_recipe(tmp_path / "r.json")
+        read_grain_settings(tmp_path / "r.json")

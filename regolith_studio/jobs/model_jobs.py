@@ -1,40 +1,58 @@
-"""Virtual particles (sections 2.3 and 3.1): from a source to a fitted model, to draws, to meshes."""
+"""Jobs for virtual particles (sections 2.3 and 3.1): fit a shape model, draw particles, make meshes."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from regolith_studio.errors import InputError
+from regolith_studio.errors import GeometryError, RegolithError
+from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
+from regolith_studio.harmonics.surface import reconstruct
+from regolith_studio.jobs.events import Progress, Started, Steps
+from regolith_studio.readers.shape_files import ShapeSource
+from regolith_studio.shape_models.draws import Draws, virtual_mesh
+from regolith_studio.shape_models.models import MODELS
+from regolith_studio.shape_models.protocol import FittedModel
+from regolith_studio.shape_models.sample import Sample
+
+if TYPE_CHECKING:  # matplotlib: the page is opened more often than models are draw_evaluation_figures on it
+    pass
+
+from pathlib import Path
+
+from regolith_studio.errors import InputError
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.surface import DEFAULT_LEVEL
 from regolith_studio.io.stl import stl_bytes
-from regolith_studio.jobs.events import Job, Progress, Started, Steps
-from regolith_studio.jobs.examining import Examined, examine
+from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.executor import Executor, open_executor, value_of
-from regolith_studio.jobs.fitting import FIT_DEGREE, FitOrder, fit_sample
-from regolith_studio.readers.shape_files import ShapeSource, radius_of
+from regolith_studio.jobs.particle_jobs import (
+    FIT_DEGREE,
+    FitRequest,
+    MeasuredParticle,
+    fit_sample,
+    measure_particle,
+)
+from regolith_studio.readers.shape_files import radius_of
 from regolith_studio.shape_models.chunks import joined
-from regolith_studio.shape_models.draws import Draws, virtual_mesh
 from regolith_studio.shape_models.materials import MaterialCard
-from regolith_studio.shape_models.models import DEFAULT_MODEL, MODELS
-from regolith_studio.shape_models.protocol import FittedModel, SizeRange
-from regolith_studio.shape_models.sample import Sample
+from regolith_studio.shape_models.models import DEFAULT_MODEL
+from regolith_studio.shape_models.protocol import SizeRange
 from regolith_studio.shape_models.settings import model_settings
 from regolith_studio.shape_models.size_law import checked_bounds
 
 STL_HEADER = "Regolith Studio, virtual particle, micrometres"
 CARD_MODEL = "log_field"
 PAPER_DEGREE = 10
-BATCH = 20
+BATCH_SIZE = 20
 """Particles that one process makes at a time."""
 
 
 @dataclass(frozen=True)
-class GenerateOrder:
+class GenerationRequest:
     """Which model is to draw which particles.
 
     Parameters
@@ -77,13 +95,15 @@ class GenerateOrder:
             model_settings(self.model or DEFAULT_MODEL, dict(self.settings))
 
 
-def expansion_of(order: GenerateOrder | None = None) -> FitOrder:
+def fit_request_for(request: GenerationRequest | None = None) -> FitRequest:
     """How meshes are expanded for an order: to twice its degree, which ``sample_matched`` likes."""
-    degree = PAPER_DEGREE if order is None or order.l_max is None else order.l_max
-    return FitOrder(min(FIT_DEGREE, 2 * degree))
+    degree = PAPER_DEGREE if request is None or request.l_max is None else request.l_max
+    return FitRequest(min(FIT_DEGREE, 2 * degree))
 
 
-def sample_of_meshes(particles: Sequence[Particle], order: FitOrder, workers: int | Executor = 1) -> Steps:
+def sample_of_meshes(
+    particles: Sequence[Particle], request: FitRequest, workers: int | Executor = 1
+) -> Steps:
     """Expand particles for a model; returns a :class:`ShapeSource`, its notes name those left out.
 
     Raises
@@ -91,7 +111,7 @@ def sample_of_meshes(particles: Sequence[Particle], order: FitOrder, workers: in
     InputError
         If fewer than two can be expanded.
     """
-    fits = yield from fit_sample(particles, order, workers)
+    fits = yield from fit_sample(particles, request, workers)
     return source_of_fits(particles, fits)
 
 
@@ -106,7 +126,7 @@ def source_of_fits(particles: Sequence[Particle], fits: Sequence[HarmonicFit | s
     return ShapeSource(sample, ", ".join(groups) or "meshes", notes=notes)
 
 
-def fit_model(source: ShapeSource, order: GenerateOrder) -> Steps:
+def fit_model(source: ShapeSource, request: GenerationRequest) -> Steps:
     """The fitted model that an order asks for of a source; returns a ``FittedModel``.
 
     Raises
@@ -117,36 +137,36 @@ def fit_model(source: ShapeSource, order: GenerateOrder) -> Steps:
     content = source.content
     yield Started("Fitting the model")
     if isinstance(content, MaterialCard):
-        return _of_card(content, order)
+        return _model_of_card(content, request)
     if not isinstance(content, Sample):
-        return _as_it_is(content, order)
-    key = order.model or DEFAULT_MODEL
-    degree = min(PAPER_DEGREE, content.l_max) if order.l_max is None else order.l_max
-    settings = replace(model_settings(key, dict(order.settings)), l_max=degree)
+        return _given_model(content, request)
+    key = request.model or DEFAULT_MODEL
+    degree = min(PAPER_DEGREE, content.l_max) if request.l_max is None else request.l_max
+    settings = replace(model_settings(key, dict(request.settings)), l_max=degree)
     return MODELS[key].fit(content, settings)
 
 
-def draw(model: FittedModel, order: GenerateOrder) -> Steps:
+def draw(model: FittedModel, request: GenerationRequest) -> Steps:
     """The particles of an order, chunk by chunk; returns :class:`Draws`."""
-    yield Started("Drawing", order.n)
+    yield Started("Drawing", request.n)
     parts: list[Draws] = []
-    for part in model.parts(order.n, order.seed, order.size_range):
+    for part in model.parts(request.n, request.seed, request.size_range):
         parts.append(part)
-        yield Progress(sum(map(len, parts)), order.n)
+        yield Progress(sum(map(len, parts)), request.n)
     return joined(parts)
 
 
-def _of_card(card: MaterialCard, order: GenerateOrder) -> FittedModel:
-    if order.model not in ("", CARD_MODEL) or order.settings:
+def _model_of_card(card: MaterialCard, request: GenerationRequest) -> FittedModel:
+    if request.model not in ("", CARD_MODEL) or request.settings:
         raise InputError(
             f"The card {card.name} holds no particles, so that no other model can be fitted to it: it brings "
             f"{CARD_MODEL} with settings of its own."
         )
-    return card.model(min(PAPER_DEGREE, card.l_max) if order.l_max is None else order.l_max)
+    return card.model(min(PAPER_DEGREE, card.l_max) if request.l_max is None else request.l_max)
 
 
-def _as_it_is(model: FittedModel, order: GenerateOrder) -> FittedModel:
-    if order.model not in ("", model.key) or order.settings or order.l_max not in (None, model.l_max):
+def _given_model(model: FittedModel, request: GenerationRequest) -> FittedModel:
+    if request.model not in ("", model.key) or request.settings or request.l_max not in (None, model.l_max):
         raise InputError(
             f"The file holds a fitted model ({model.key}, l_max = {model.l_max}); for another one begin with "
             "the fit of the sample."
@@ -214,23 +234,23 @@ def write_meshes(
     """Write ``<name>.stl`` of each particle into `folder`; returns what is known of each, in order.
 
     Each process makes, measures and writes particles of its own, so that memory does not grow with their
-    number. Returns a tuple of :class:`Examined`.
+    number. Returns a tuple of :class:`MeasuredParticle`.
     """
     yield Started("Writing particles", len(draws))
     jobs = (
         Job(
-            _write_some,
+            _write_batch,
             (
-                draws.chosen(range(first, min(first + BATCH, len(draws)))),
-                tuple(groups[first : first + BATCH]),
+                draws.chosen(range(first, min(first + BATCH_SIZE, len(draws)))),
+                tuple(groups[first : first + BATCH_SIZE]),
                 level,
                 folder,
                 first,
             ),
         )
-        for first in range(0, len(draws), BATCH)
+        for first in range(0, len(draws), BATCH_SIZE)
     )
-    facts: list[Examined] = []
+    facts: list[MeasuredParticle] = []
     with open_executor(workers) as executor:
         for result in executor.results(jobs):
             facts += value_of(result) if result is not None else ()
@@ -238,10 +258,127 @@ def write_meshes(
     return tuple(facts)
 
 
-def _write_some(draws: Draws, groups: tuple[str, ...], level: int, folder: Path, first: int) -> Steps:
+def _write_batch(draws: Draws, groups: tuple[str, ...], level: int, folder: Path, first: int) -> Steps:
     yield Started("Writing particles", len(draws))
     facts = []
     for particle in particles_of(draws, groups, level, first):
         (folder / f"{particle.name}.stl").write_bytes(stl_bytes(particle.mesh.triangles, STL_HEADER))
-        facts.append(examine(particle))
+        facts.append(measure_particle(particle))
     return tuple(facts)
+
+
+N_EXAMPLES = 6
+
+
+EXAMPLE_LEVEL = 4
+"""Icosphere level of the examples."""
+
+
+MAX_SIZED = 10_000
+"""Drawn particles whose sizes are told at once."""
+
+
+ModelOrigin = ShapeSource | tuple[Particle, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class ModelFitResult:
+    """A fitted model, what it was fitted to, and some of the measured particles at its degree.
+
+    Parameters
+    ----------
+    source
+        All that was known; a model fitted to a half has seen only that.
+    model
+        Fitted.
+    n_fitted
+        Particles that the model was fitted to; 0 where it came as a card or file.
+    examples
+        Meshes of measured particles, centred; none where there are none.
+    first
+        A drawn particle, that of seed 0; none where the model can draw none.
+    """
+
+    source: ShapeSource
+    model: FittedModel
+    n_fitted: int
+    examples: tuple[Mesh, ...]
+    first: Mesh | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class GenerationResult:
+    """Drawn particles, meshes of the first of them, what they were drawn from, and the ends of their r_eq.
+
+    `radii` is left out where there are more than :data:`MAX_SIZED`.
+    """
+
+    draws: Draws
+    examples: tuple[Mesh, ...]
+    model: FittedModel
+    request: GenerationRequest
+    radii: tuple[float, float] | None = None
+
+
+def fit_shapes(origin: ModelOrigin, request: GenerationRequest, half: bool = False) -> Steps:
+    """Expand particles where that is needed, and fit; returns :class:`ModelFitResult`.
+
+    Parameters
+    ----------
+    origin
+        Particles, or what a file or a material has to offer.
+    half
+        Fit to the random half that a study with the same seed fits to in its first split.
+    """
+    if isinstance(origin, tuple):
+        source: ShapeSource = yield from sample_of_meshes(origin, fit_request_for(request))
+    else:
+        source = origin
+    sample = source.content if isinstance(source.content, Sample) else None
+    seen = source
+    if sample is not None and half:
+        seen = ShapeSource(
+            sample.chosen(sample.halves(request.seed)[0]), source.name, source.sha256, source.notes
+        )
+    model: FittedModel = yield from fit_model(seen, request)
+    n_fitted = len(seen.content) if isinstance(seen.content, Sample) else 0
+    first: Mesh | None = None
+    with suppress(RegolithError):
+        first = live_mesh(model, 0)
+    examples = _example_meshes(sample, model.l_max) if sample else ()
+    if sample is not None:
+        _ = sample.equivalent_radii  # kept by the sample; the window asks for them
+    return ModelFitResult(source, model, n_fitted, examples, first)
+
+
+def draw_shapes(model: FittedModel, request: GenerationRequest) -> Steps:
+    """Draw the particles of an order; returns :class:`GenerationResult`."""
+    draws: Draws = yield from draw(model, request)
+    meshes = [virtual_mesh(draws, i, EXAMPLE_LEVEL) for i in range(min(N_EXAMPLES, len(draws)))]
+    radii = draws.equivalent_radii() if 0 < len(draws) <= MAX_SIZED else None
+    ends = None if radii is None else (float(radii.min()), float(radii.max()))
+    return GenerationResult(draws, tuple(meshes), model, request, ends)
+
+
+def draw_live(model: FittedModel, seed: int) -> Steps:
+    """:func:`live_mesh` as a job; returns the mesh."""
+    yield Started("Drawing a particle", 1)
+    return live_mesh(model, seed)
+
+
+def live_mesh(model: FittedModel, seed: int, level: int = 4) -> Mesh:
+    """One particle; the same seed gives the same random numbers, so that it changes with the spectrum."""
+    return virtual_mesh(model.draw(1, seed), 0, level)
+
+
+def _example_meshes(sample: Sample, l_max: int) -> tuple[Mesh, ...]:
+    """Particles from all over the sample, in their own places of its order."""
+    picks = np.unique(np.linspace(0, len(sample) - 1, N_EXAMPLES).astype(int))
+    cut = sample.truncated(min(l_max, sample.l_max))
+    meshes = []
+    for index in picks:
+        try:
+            meshes.append(reconstruct(cut.particle(int(index)), level=EXAMPLE_LEVEL))
+        except GeometryError:
+            continue
+    return tuple(meshes)

@@ -1,28 +1,33 @@
-"""Coarsens a sample and writes it as a dataset folder (section 2.5)."""
+"""Jobs that write, export, read, check and list dataset folders (section 2.5)."""
 
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 from regolith_studio.dataset.build import ShapeClass, build_dataset, own_class
 from regolith_studio.dataset.dataset import CoarseningRecord, Dataset, Provenance
-from regolith_studio.dataset.folder import write_dataset
+from regolith_studio.dataset.exporters import EXPORTERS
+from regolith_studio.dataset.exporting import Exported, Exporter, ExportOptions, check_consent, write_export
+from regolith_studio.dataset.folder import read_dataset, write_dataset
+from regolith_studio.dataset.library import LibraryEntry, scan_library
+from regolith_studio.dataset.reading import dataset_hash
 from regolith_studio.dataset.size_distribution import Weighting
 from regolith_studio.dataset.size_spec import Sizing, parse_sizes
 from regolith_studio.dataset.streaming import check_count
-from regolith_studio.errors import DatasetError
+from regolith_studio.dataset.validation import validate_dataset
+from regolith_studio.errors import DatasetError, InputError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.fit import DEFAULT_FIT_OPTIONS, FitOptions
 from regolith_studio.harmonics.sample_spectrum import sample_spectrum
-from regolith_studio.jobs.coarsening import CoarsenedParticle, CoarseningOrder, coarsen_sample
-from regolith_studio.jobs.events import Progress, Started, Step, Steps
+from regolith_studio.jobs.coarsening_jobs import CoarsenedParticle, CoarseningRequest, coarsen_sample
+from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
 from regolith_studio.jobs.executor import Executor
-from regolith_studio.jobs.representing import (
+from regolith_studio.jobs.representatives_jobs import (
     ChosenParticles,
-    Population,
-    RepresentativesOrder,
-    choose,
+    MeasuredPopulation,
+    RepresentativesRequest,
+    choose_particles,
     measure_population,
 )
 
@@ -51,12 +56,12 @@ class DatasetOptions:
     preset: str | None = None
     overwrite: bool = False
     workers: int | Executor = 1
-    representatives: RepresentativesOrder | None = None
+    representatives: RepresentativesRequest | None = None
     sizes: str = "measured"
 
 
 @dataclass(frozen=True)
-class Built:
+class DatasetBuildResult:
     """A dataset on disk, and what became of each particle."""
 
     folder: Path
@@ -66,12 +71,14 @@ class Built:
 
 def build_dataset_folder(
     particles: Sequence[Particle],
-    order: CoarseningOrder,
+    request: CoarseningRequest,
     folder: Path,
     options: DatasetOptions,
-    population: Population | None = None,
+    population: MeasuredPopulation | None = None,
 ) -> Steps:
-    """Coarsen the particles, or those that stand for all, and write a dataset; returns :class:`Built`.
+    """Coarsen all particles or their representatives and write a dataset.
+
+    Returns :class:`DatasetBuildResult`.
 
     Parameters
     ----------
@@ -88,24 +95,27 @@ def build_dataset_folder(
     """
     check_place(folder, options.overwrite)
     chosen_count = len(particles) if options.representatives is None else options.representatives.count
-    check_count(chosen_count, order.max_facets)
+    check_count(chosen_count, request.max_facets)
     sizing = parse_sizes(options.sizes)
     if options.representatives is None:
-        chosen, outcomes = None, (yield from coarsen_sample(particles, order, options.workers))
+        chosen, outcomes = None, (yield from coarsen_sample(particles, request, options.workers))
     else:
         if population is None:
             population = yield from measure_population(particles, options.workers)
-        chosen, outcomes = yield from coarsen_chosen(particles, population, order, options)
+        chosen, outcomes = yield from coarsen_chosen(particles, population, request, options)
     yield Started("Writing the dataset")
     name = options.name or folder.name
-    dataset = dataset_of(particles, outcomes, order, name, options.preset, chosen, sizing)
+    dataset = dataset_of(particles, outcomes, request, name, options.preset, chosen, sizing)
     write_dataset(folder, dataset, overwrite=options.overwrite)
     yield Progress(1, 1, folder.name)
-    return Built(folder, dataset, outcomes)
+    return DatasetBuildResult(folder, dataset, outcomes)
 
 
 def coarsen_chosen(
-    particles: Sequence[Particle], population: Population, order: CoarseningOrder, options: DatasetOptions
+    particles: Sequence[Particle],
+    population: MeasuredPopulation,
+    request: CoarseningRequest,
+    options: DatasetOptions,
 ) -> Generator[Step, None, tuple[ChosenParticles, tuple[CoarsenedParticle, ...]]]:
     """Choose representatives and coarsen them; one that fails makes way, and the choice is made anew.
 
@@ -119,13 +129,13 @@ def coarsen_chosen(
     DatasetError
         If so many fail that too few particles are left.
     """
-    wish = options.representatives or RepresentativesOrder()
+    wish = options.representatives or RepresentativesRequest()
     known: dict[int, CoarsenedParticle] = {}
     while True:
-        chosen = choose(population, wish)
+        chosen = choose_particles(population, wish)
         fresh = [at for at in chosen.places if at not in known]
         wanted = [particles[at] for at in fresh]
-        outcomes = yield from coarsen_sample(wanted, order, options.workers, fresh)
+        outcomes = yield from coarsen_sample(wanted, request, options.workers, fresh)
         known |= {one.index: one for one in outcomes}
         failed = {at for at in chosen.places if known[at].coarsened is None}
         if not failed:
@@ -153,7 +163,7 @@ def check_place(folder: Path, overwrite: bool) -> None:
 def dataset_of(
     particles: Sequence[Particle],
     outcomes: Sequence[CoarsenedParticle],
-    order: CoarseningOrder,
+    request: CoarseningRequest,
     name: str,
     preset: str | None = None,
     chosen: ChosenParticles | None = None,
@@ -177,7 +187,7 @@ def dataset_of(
     if not good:
         first = next((each.problem for each in outcomes), "there are no particles")
         raise DatasetError(f"No particle could be coarsened, so there is no dataset: {first}")
-    told = provenance(outcomes, order, preset)
+    told = _provenance_of(outcomes, request, preset)
     weighting: Weighting = "number"
     classes: list[ShapeClass] = [own_class(particle) for particle, _ in good]
     if chosen is not None:
@@ -193,38 +203,40 @@ def dataset_of(
     return build_dataset(good, classes, name=name, weighting=weighting, provenance=told)
 
 
-def provenance(
-    outcomes: Sequence[CoarsenedParticle], order: CoarseningOrder, preset: str | None
+def _provenance_of(
+    outcomes: Sequence[CoarsenedParticle], request: CoarseningRequest, preset: str | None
 ) -> Provenance:
     """How the shapes came about, in the words of section 2.5."""
-    return story(
-        [each.coefficients for each in outcomes if each.coarsened and each.coefficients], order, preset
+    return dataset_provenance(
+        [each.coefficients for each in outcomes if each.coarsened and each.coefficients], request, preset
     )
 
 
-def story(fitted: Sequence[ShCoefficients], order: CoarseningOrder, preset: str | None) -> Provenance:
-    """As :func:`provenance`, from the coefficients of the particles that were fitted and coarsened."""
-    fit = (f"Spherical-harmonics surface up to l = {order.l_max}{_unusual(order.fit_options)}.",)
-    lengths = order.fit_options.reference == DEFAULT_FIT_OPTIONS.reference
+def dataset_provenance(
+    fitted: Sequence[ShCoefficients], request: CoarseningRequest, preset: str | None
+) -> Provenance:
+    """How the shapes were made, from the coefficients of the particles that were fitted and coarsened."""
+    fit = (f"Spherical-harmonics surface up to l = {request.l_max}{_changed_options(request.fit_options)}.",)
+    lengths = request.fit_options.reference == DEFAULT_FIT_OPTIONS.reference
     record = CoarseningRecord(
-        method=order.method,
-        n_facets=order.max_facets,
-        seed=order.seed,
-        target=order.target,
+        method=request.method,
+        n_facets=request.max_facets,
+        seed=request.seed,
+        target=request.target,
         preset=preset,
-        weights=dict(order.weights),
-        settings=dict(order.settings),
-        largest_error=order.largest_error,
+        weights=dict(request.weights),
+        settings=dict(request.settings),
+        largest_error=request.largest_error,
     )
     return Provenance(
         processing_steps=(
             "Meshes read and repaired.",
-            *(fit if order.target == "fit" else ()),
-            f"Coarsened to {order.fineness} by the method {order.method}.",
+            *(fit if request.target == "fit" else ()),
+            f"Coarsened to {request.fineness} by the method {request.method}.",
             "Turned to principal axes and scaled to unit volume.",
         ),
-        seed=order.seed,
-        l_max=order.l_max if fitted else None,
+        seed=request.seed,
+        l_max=request.l_max if fitted else None,
         angular_power_spectrum=(
             tuple(sample_spectrum(fitted).values) if len(fitted) > 1 and lengths else None
         ),
@@ -232,7 +244,7 @@ def story(fitted: Sequence[ShCoefficients], order: CoarseningOrder, preset: str 
     )
 
 
-def _unusual(fit_options: FitOptions) -> str:
+def _changed_options(fit_options: FitOptions) -> str:
     """What was not done as usual, to be put into a sentence."""
     told = [
         f"{name.replace('_', ' ')} {value}"
@@ -240,3 +252,94 @@ def _unusual(fit_options: FitOptions) -> str:
         if value != getattr(DEFAULT_FIT_OPTIONS, name)
     ]
     return f" ({', '.join(told)})" if told else ""
+
+
+def export_dataset_folder(
+    source: Path, keys: Sequence[str], target: Path, options: ExportOptions, accept_loss: bool = False
+) -> Steps:
+    """Export the dataset in `source` to ``target/<key>`` for each key; returns the exports.
+
+    Between two formats the work can be stopped; each format's folder is written as a whole.
+
+    Raises
+    ------
+    InputError
+        If there is no such format.
+    DatasetError
+        If a format changes shapes and that was not accepted (before anything is written), the dataset
+        is broken, or something cannot be written.
+    """
+    exporters = chosen_exporters(keys)
+    yield Started("Exporting", len(exporters))
+    for exporter in exporters:
+        check_consent(exporter, accept_loss)
+    dataset, digest = read_dataset(source), dataset_hash(source)
+    done: list[Exported] = []
+    for number, exporter in enumerate(exporters):
+        yield Progress(number, len(exporters), exporter.label)
+        place = target / exporter.key
+        done.append(
+            write_export(dataset, exporter, place, options, dataset_hash=digest, accept_loss=accept_loss)
+        )
+        yield Partial(done[-1])
+    yield Progress(len(exporters), len(exporters), str(target))
+    return tuple(done)
+
+
+def chosen_exporters(keys: Sequence[str]) -> tuple[Exporter, ...]:
+    """The formats of these keys, each once; all of them for ``all``.
+
+    Raises
+    ------
+    InputError
+        If there is no such format.
+    """
+    wanted = list(EXPORTERS) if "all" in keys else list(dict.fromkeys(keys))
+    for key in wanted:
+        if key not in EXPORTERS:
+            raise InputError(f"There is no format {key!r}; there are {', '.join(sorted(EXPORTERS))}.")
+    if not wanted:
+        raise InputError("No format was chosen.")
+    return tuple(EXPORTERS[key] for key in wanted)
+
+
+def open_dataset_folder(folder: Path) -> Steps:
+    """Returns the folder and its dataset."""
+    yield Started("Reading the dataset")
+    return folder, read_dataset(folder)
+
+
+def validate_dataset_folder(folder: Path) -> Steps:
+    """Returns the problems of the folder, one sentence each."""
+    yield Started("Checking the dataset")
+    return tuple(validate_dataset(folder))
+
+
+def list_library(root: Path, results: Path | None = None) -> Steps:
+    """Datasets, exports and results below a folder; partial results are single ones, the result all.
+
+    Parameters
+    ----------
+    results
+        Where simulations are kept if not below `root`; those of its datasets are listed too.
+    """
+    yield Started("Looking for datasets")
+    found: list[LibraryEntry] = []
+    for entry in _entries(root, results):
+        found.append(entry)
+        yield Partial(entry)
+        yield Progress(len(found), 0, entry.name)
+    return tuple(found)
+
+
+def _entries(root: Path, results: Path | None) -> Iterator[LibraryEntry]:
+    seen, known = set(), set()
+    for entry in scan_library(root):
+        seen.add(entry.folder)
+        known.add(entry.sha256)
+        yield entry
+    if results is None or not results.is_dir():
+        return
+    for entry in scan_library(results):
+        if entry.kind == "result" and entry.sha256 in known - {""} and entry.folder not in seen:
+            yield entry

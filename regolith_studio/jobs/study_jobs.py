@@ -1,4 +1,4 @@
-"""The studies of sections 3.1 and 3.2 over a whole sample."""
+"""Jobs for the studies of sections 3.1 and 3.2 over a whole sample."""
 
 from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from functools import partial
@@ -6,7 +6,7 @@ from typing import Any
 
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.answers import Answers, Mapper, fingerprint, fingerprint_of_rows
-from regolith_studio.jobs.coarsening import CoarseningOrder
+from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
 from regolith_studio.jobs.events import Job, Partial, Progress, Started, Step, Steps
 from regolith_studio.jobs.executor import Executor, call, open_executor, value_of
 from regolith_studio.shape_models.sample import Sample
@@ -38,8 +38,8 @@ def study_lmax(
     if answers is not None:
         answers.about("lmax", (seed, sorted(options.items())), fingerprint(particles))
     with open_executor(workers) as executor:
-        mapper = _kept(executor.map, answers)
-        return (yield from told(lmax_study(particles, mapper=mapper, seed=seed, **options)))
+        mapper = _with_answers(executor.map, answers)
+        return (yield from as_job_steps(lmax_study(particles, mapper=mapper, seed=seed, **options)))
 
 
 def study_population(
@@ -67,11 +67,13 @@ def study_population(
         inputs = fingerprint_of_rows(sample.coefficients, (*sample.names, sample.unit))
         answers.about("population", (models, sorted(options.items())), inputs)
     with open_executor(workers) as executor:
-        mapper = _kept(partial(_mapped, executor), answers)
-        return (yield from told(population_study(sample, models, mapper=mapper, **options)))
+        mapper = _with_answers(partial(_map_with_pauses, executor), answers)
+        return (yield from as_job_steps(population_study(sample, models, mapper=mapper, **options)))
 
 
-def _mapped(executor: Executor, function: Callable[[Any], Any], items: Iterable[Any]) -> Iterator[Any]:
+def _map_with_pauses(
+    executor: Executor, function: Callable[[Any], Any], items: Iterable[Any]
+) -> Iterator[Any]:
     """As :meth:`Executor.map`, with ``None`` while waiting, so that the study can be stopped."""
     for result in executor.results(Job(call, (function, item)) for item in items):
         yield None if result is None else value_of(result)
@@ -79,7 +81,7 @@ def _mapped(executor: Executor, function: Callable[[Any], Any], items: Iterable[
 
 def study_coarsening(
     particles: Sequence[Particle],
-    order: CoarseningOrder,
+    request: CoarseningRequest,
     workers: int | Executor = 1,
     answers: Answers | None = None,
     title: str = "RMSRE against loss weights",
@@ -89,7 +91,7 @@ def study_coarsening(
 
     Parameters
     ----------
-    order
+    request
         Method, face count, settings, seed and target; its weights do not matter, the rows bring theirs.
     workers
         Processes at a time; 0 for one a core.
@@ -102,26 +104,26 @@ def study_coarsening(
     """
     yield Started(title, len(particles))
     if answers is not None:
-        answers.about("coarsening", (order, sorted(options.items())), fingerprint(particles))
+        answers.about("coarsening", (request, sorted(options.items())), fingerprint(particles))
     with open_executor(workers) as executor:
         study = coarsening_study(
             particles,
-            n_facets=order.n_facets,
-            method=order.method,
-            seed=order.seed,
-            settings=dict(order.settings),
-            target=TargetChoice(order.target, order.l_max, order.level, order.fit_options),
-            mapper=_kept(executor.map, answers),
+            n_facets=request.n_facets,
+            method=request.method,
+            seed=request.seed,
+            settings=dict(request.settings),
+            target=TargetChoice(request.target, request.l_max, request.level, request.fit_options),
+            mapper=_with_answers(executor.map, answers),
             **options,
         )
-        return (yield from told(study))
+        return (yield from as_job_steps(study))
 
 
-def _kept(mapper: Mapper, answers: Answers | None) -> Mapper:
+def _with_answers(mapper: Mapper, answers: Answers | None) -> Mapper:
     return mapper if answers is None else answers.through(mapper)
 
 
-def told(steps: Generator[StudyProgress, None, Any]) -> Generator[Step, None, Any]:
+def as_job_steps(steps: Generator[StudyProgress, None, Any]) -> Generator[Step, None, Any]:
     """The story of a study in the events of jobs."""
     while True:
         try:

@@ -8,9 +8,9 @@ from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.fit import fit_harmonics
-from regolith_studio.jobs.coarsening import CoarseningOrder
+from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
 from regolith_studio.jobs.events import Partial
-from regolith_studio.jobs.lecturing import anneal_slowly, draw_field, grow_fit
+from regolith_studio.jobs.lecture_jobs import draw_field, trace_annealing, trace_degrees
 from regolith_studio.shape_models.materials import materials
 
 WEIGHTS = LossWeights.from_preset("all")
@@ -35,8 +35,8 @@ def egg():
 
 @pytest.fixture(scope="module")
 def lesson(egg):
-    order = CoarseningOrder(WEIGHTS, 12, "annealing", (("iterations", 60),), seed=5)
-    partial, made = told(anneal_slowly(egg, order, 2))
+    order = CoarseningRequest(WEIGHTS, 12, "annealing", (("iterations", 60),), seed=5)
+    partial, made = told(trace_annealing(egg, order, 2))
     assert partial[0].exact is None
     assert partial[0].steps is made.steps
     return made
@@ -80,13 +80,13 @@ def test_that_the_facet_of_the_moved_plane_is_found_before_and_after(lesson):
 
 def test_that_a_lesson_has_an_end_and_needs_a_weight(egg):
     with pytest.raises(InputError, match="at most 2,000"):
-        next(anneal_slowly(egg, CoarseningOrder(WEIGHTS, 12, "annealing", (("iterations", 9000),))))
+        next(trace_annealing(egg, CoarseningRequest(WEIGHTS, 12, "annealing", (("iterations", 9000),))))
     with pytest.raises(InputError, match="weights"):
-        next(anneal_slowly(egg, CoarseningOrder(LossWeights.of())))
+        next(trace_annealing(egg, CoarseningRequest(LossWeights.of())))
 
 
 def test_that_the_fit_grows_from_a_sphere_to_the_particle(egg):
-    partial, steps = told(grow_fit(egg, fit_harmonics(egg, 8)))
+    partial, steps = told(trace_degrees(egg, fit_harmonics(egg, 8)))
     assert [len(each) for each in partial] == list(range(1, 10))
     radii = np.linalg.norm(steps[0].mesh.vertices - steps[0].mesh.centroid, axis=1)
     assert np.ptp(radii) < 1e-3 * radii.mean()

@@ -12,13 +12,18 @@ from regolith_studio.errors import DatasetError, InputError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.jobs import building
-from regolith_studio.jobs.building import DatasetOptions, build_dataset_folder
-from regolith_studio.jobs.coarsening import CoarsenedParticle, CoarseningOrder
+from regolith_studio.jobs import dataset_jobs
+from regolith_studio.jobs.coarsening_jobs import CoarsenedParticle, CoarseningRequest
+from regolith_studio.jobs.dataset_jobs import DatasetOptions, build_dataset_folder
 from regolith_studio.jobs.events import Partial, Steps
-from regolith_studio.jobs.representing import RepresentativesOrder, choose, measure_population, survey
+from regolith_studio.jobs.representatives_jobs import (
+    RepresentativesRequest,
+    choose_particles,
+    measure_population,
+    survey_representatives,
+)
 
-ORDER = CoarseningOrder(LossWeights.from_preset("all"), method="quadric", target="particle")
+ORDER = CoarseningRequest(LossWeights.from_preset("all"), method="quadric", target="particle")
 FLAT = Mesh([[0, 0, 0], [9, 0, 0], [0, 9, 0], [9, 9, 0]], [[0, 1, 2], [0, 2, 1], [1, 3, 2], [1, 2, 3]])
 
 
@@ -46,17 +51,17 @@ def test_that_a_particle_without_descriptors_is_left_out_and_named() -> None:
     ((name, reason),) = population.omitted
     assert name == "flat"
     assert reason
-    chosen = choose(population, RepresentativesOrder(2))
+    chosen = choose_particles(population, RepresentativesRequest(2))
     assert 2 not in chosen.places
 
 
 def test_that_a_survey_tells_its_points_and_holds_every_choice() -> None:
-    heard, found = played(survey(sample(), RepresentativesOrder(3)))
+    heard, found = played(survey_representatives(sample(), RepresentativesRequest(3)))
     points = [each.value for each in heard if isinstance(each, Partial)]
     assert tuple(points) == found.curve.points
     assert found.chosen(3).representatives.chosen.shape == (3,)
     assert found.chosen(7) is None
-    again, _ = played(survey(sample(), RepresentativesOrder(3), found.population))
+    again, _ = played(survey_representatives(sample(), RepresentativesRequest(3), found.population))
     assert len(again) < len(heard)
 
 
@@ -64,12 +69,12 @@ def test_that_nothing_to_describe_is_told() -> None:
     with pytest.raises(InputError, match="No particle can be described"):
         played(measure_population([Particle("flat", FLAT)]))
     with pytest.raises(InputError, match="at least two"):
-        played(survey(sample(1)[:1], RepresentativesOrder(1)))
+        played(survey_representatives(sample(1)[:1], RepresentativesRequest(1)))
 
 
 def failing(names: set[str]):
     """A coarsening that fails for particles of these names."""
-    real = building.coarsen_sample
+    real = dataset_jobs.coarsen_sample
 
     def coarsen(particles, order, workers=1, indices=None) -> Steps:
         outcomes = yield from real(particles, order, workers, indices)
@@ -82,10 +87,10 @@ def failing(names: set[str]):
 
 
 def test_that_a_representative_that_cannot_be_coarsened_makes_way(tmp_path: Path, monkeypatch) -> None:
-    options = DatasetOptions(representatives=RepresentativesOrder(2))
+    options = DatasetOptions(representatives=RepresentativesRequest(2))
     _, first = played(build_dataset_folder(sample(), ORDER, tmp_path / "a", options))
     cursed = first.dataset.representatives[0].name
-    monkeypatch.setattr(building, "coarsen_sample", failing({cursed}))
+    monkeypatch.setattr(dataset_jobs, "coarsen_sample", failing({cursed}))
     _, built = played(build_dataset_folder(sample(), ORDER, tmp_path / "b", options))
     names = [one.name for one in built.dataset.representatives]
     assert len(names) == 2
@@ -94,8 +99,8 @@ def test_that_a_representative_that_cannot_be_coarsened_makes_way(tmp_path: Path
 
 
 def test_that_too_few_that_can_be_coarsened_are_told_with_the_reason(tmp_path: Path, monkeypatch) -> None:
-    monkeypatch.setattr(building, "coarsen_sample", failing({f"grain-{index}" for index in range(8)}))
-    options = DatasetOptions(representatives=RepresentativesOrder(6))
+    monkeypatch.setattr(dataset_jobs, "coarsen_sample", failing({f"grain-{index}" for index in range(8)}))
+    options = DatasetOptions(representatives=RepresentativesRequest(6))
     with pytest.raises(DatasetError, match="It is cursed"):
         played(build_dataset_folder(sample(), ORDER, tmp_path / "x", options))
     assert not (tmp_path / "x").exists()

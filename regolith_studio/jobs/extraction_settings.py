@@ -1,20 +1,26 @@
-"""All settings from voxels to particles as one value, and as the JSON that ``extract`` leaves behind."""
+"""Settings from voxels to particles, as one value and as the JSON that ``extract`` writes."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
 from typing import Any, TypeVar
 
 from regolith_studio.errors import FileError, InputError
-from regolith_studio.imaging.extraction import ExtractionSettings
+from regolith_studio.imaging.extraction import (
+    ExtractionSettings,
+)
 from regolith_studio.imaging.segmentation.cleaning import CleaningSettings
 from regolith_studio.imaging.segmentation.denoising import DenoiseSettings
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings
 from regolith_studio.imaging.segmentation.splitting import SplittingSettings
 from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
 from regolith_studio.imaging.segmentation.tiles import TileSettings
+from regolith_studio.imaging.volume import VolumeKind
 from regolith_studio.readers.file_bytes import read_bytes
+from regolith_studio.readers.volumes.header import RawLayout
+from regolith_studio.readers.volumes.read import SlabSource as FileSource
+from regolith_studio.readers.volumes.read import open_slabs
 
 S = TypeVar("S")
 _LARGEST = 64 * 2**20
@@ -28,7 +34,7 @@ _PARTS: dict[str, type[Any]] = {
 
 
 @dataclass(frozen=True)
-class GrainRecipe:
+class GrainSettings:
     """All settings from voxels to particles; the segmentation is not used where there are labels."""
 
     segmentation: SegmentationSettings = field(default_factory=SegmentationSettings)
@@ -39,7 +45,7 @@ class GrainRecipe:
         return {"segmentation": asdict(self.segmentation), "extraction": asdict(self.extraction)}
 
     @classmethod
-    def from_document(cls, document: Mapping[str, Any]) -> "GrainRecipe":
+    def from_document(cls, document: Mapping[str, Any]) -> "GrainSettings":
         """The recipe in a JSON document; what is missing stays at its default, what is not known is left out.
 
         Raises
@@ -48,13 +54,14 @@ class GrainRecipe:
             If a value is of the wrong type or out of its range.
         """
         segmentation = _section(document, "segmentation")
-        parts = {name: _settings(kind, _section(segmentation, name)) for name, kind in _PARTS.items()}
+        parts = {name: _parse_settings(kind, _section(segmentation, name)) for name, kind in _PARTS.items()}
         return cls(
-            SegmentationSettings(**parts), _settings(ExtractionSettings, _section(document, "extraction"))
+            SegmentationSettings(**parts),
+            _parse_settings(ExtractionSettings, _section(document, "extraction")),
         )
 
 
-def read_grain_recipe(path: Path) -> GrainRecipe:
+def read_grain_settings(path: Path) -> GrainSettings:
     """The recipe in an ``extraction.json``, or in a file saved by the window.
 
     Raises
@@ -62,7 +69,7 @@ def read_grain_recipe(path: Path) -> GrainRecipe:
     FileError
         If it cannot be read or holds no such recipe.
     InputError
-        As :meth:`GrainRecipe.from_document`.
+        As :meth:`GrainSettings.from_document`.
     """
     try:
         document = json.loads(read_bytes(path, _LARGEST))
@@ -70,7 +77,7 @@ def read_grain_recipe(path: Path) -> GrainRecipe:
         raise FileError(f"{path.name} is no recipe: it holds no JSON.") from None
     if not isinstance(document, dict) or not {"segmentation", "extraction"} & set(document):
         raise FileError(f"{path.name} is no recipe of a segmentation: it names neither of its settings.")
-    return GrainRecipe.from_document(document)
+    return GrainSettings.from_document(document)
 
 
 def _section(document: Mapping[str, Any], name: str) -> Mapping[str, Any]:
@@ -80,7 +87,7 @@ def _section(document: Mapping[str, Any], name: str) -> Mapping[str, Any]:
     return section
 
 
-def _settings(kind: type[S], values: Mapping[str, Any]) -> S:
+def _parse_settings(kind: type[S], values: Mapping[str, Any]) -> S:
     """Settings of a dataclass, each of the type of its default."""
     known: dict[str, Any] = {}
     for each in fields(kind):  # type: ignore[arg-type]
@@ -93,3 +100,54 @@ def _settings(kind: type[S], values: Mapping[str, Any]) -> S:
             raise InputError(f"“{each.name}” in a recipe is of the kind of {default!r}, got {value!r}.")
         known[each.name] = value
     return kind(**known)
+
+
+@dataclass(frozen=True)
+class VolumeInput:
+    """A volume as a user names it.
+
+    Parameters
+    ----------
+    path
+        File, or folder of slices.
+    voxel_size
+        One edge or three along x, y, z, in `unit`; by default what the file says.
+    unit
+        Of the voxel size.
+    kind
+        ``labels`` or ``grey``; by default guessed.
+    dataset
+        Which volume of a file that holds several.
+    raw
+        What a raw file does not say about itself.
+    axes
+        Of an NPY or HDF5 array, the slowest first: ``zyx`` by default.
+    """
+
+    path: Path
+    voxel_size: float | Sequence[float] | None = None
+    unit: str | None = None
+    kind: VolumeKind | None = None
+    dataset: str | None = None
+    raw: RawLayout | None = None
+    axes: str | None = None
+
+    def opened(self) -> FileSource:
+        """The volume, read slab by slab.
+
+        Raises
+        ------
+        FileError
+            If it cannot be read.
+        InputError
+            If nobody says how large a voxel is.
+        """
+        return open_slabs(
+            self.path,
+            dataset=self.dataset,
+            axes=self.axes,
+            voxel_size=self.voxel_size,
+            unit=self.unit,
+            kind=self.kind,
+            raw=self.raw,
+        )

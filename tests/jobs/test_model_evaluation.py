@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from regolith_studio.jobs.events import Partial, Progress, Started, Step
-from regolith_studio.jobs.generating import GenerateOrder, draw
-from regolith_studio.jobs.judging import JudgedShapes, judge_shapes
+from regolith_studio.jobs.model_evaluation import ModelEvaluationResult, evaluate_models
+from regolith_studio.jobs.model_jobs import GenerationRequest, draw
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.shape_models.sample import Sample
 
@@ -13,10 +13,10 @@ PNG = b"\x89PNG"
 
 
 @pytest.fixture(scope="module")
-def story() -> tuple[list[Step], JudgedShapes]:
+def story() -> tuple[list[Step], ModelEvaluationResult]:
     draws = materials()["ma165"].model(3).draw(24, 0)
     sample = Sample(np.stack([draws.particle(i).values for i in range(24)]))
-    steps, told = [], judge_shapes(sample, ("log_field",), l_max=3, n_splits=1, n_repeats=1, level=1)
+    steps, told = [], evaluate_models(sample, ("log_field",), l_max=3, n_splits=1, n_repeats=1, level=1)
     while True:
         try:
             steps.append(next(told))
@@ -24,7 +24,7 @@ def story() -> tuple[list[Step], JudgedShapes]:
             return steps, end.value
 
 
-def test_that_a_judgement_has_its_figures(story: tuple[list[Step], JudgedShapes]) -> None:
+def test_that_a_judgement_has_its_figures(story: tuple[list[Step], ModelEvaluationResult]) -> None:
     _, judged = story
     assert set(judged.pictures) == {"number", "volume", "pairs", "quantiles"}
     assert all(picture.startswith(PNG) for picture in judged.pictures.values())
@@ -32,7 +32,7 @@ def test_that_a_judgement_has_its_figures(story: tuple[list[Step], JudgedShapes]
 
 
 def test_that_it_can_be_stopped_between_figures_and_never_goes_back(
-    story: tuple[list[Step], JudgedShapes],
+    story: tuple[list[Step], ModelEvaluationResult],
 ) -> None:
     steps, _ = story
     progress = [step for step in steps if isinstance(step, Progress)]
@@ -46,11 +46,11 @@ def test_that_it_can_be_stopped_between_figures_and_never_goes_back(
 
 def test_that_drawing_can_be_stopped_between_chunks_and_says_how_far_it_is() -> None:
     model = materials()["ma165"].model(3)
-    steps = draw(model, GenerateOrder(n=1203, seed=2))
+    steps = draw(model, GenerationRequest(n=1203, seed=2))
     told = [next(steps) for _ in range(3)]
     assert told == [Started("Drawing", 1203), Progress(500, 1203), Progress(1000, 1203)]
     steps.close()
-    again, done = draw(model, GenerateOrder(n=1203, seed=2)), False
+    again, done = draw(model, GenerationRequest(n=1203, seed=2)), False
     while not done:
         try:
             next(again)

@@ -18,12 +18,12 @@ from regolith_studio.descriptors.describe import Descriptors
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.events import Partial, Progress, Started, Steps
-from regolith_studio.jobs.examining import examine_sample
 from regolith_studio.jobs.executor import Executor
+from regolith_studio.jobs.particle_jobs import measure_sample
 
 
 @dataclass(frozen=True)
-class RepresentativesOrder:
+class RepresentativesRequest:
     """What is asked of a choice; picklable.
 
     Parameters
@@ -46,7 +46,7 @@ class RepresentativesOrder:
     @classmethod
     def of(
         cls, count: int, weighting: str, size_importance: float = 0.0, seed: int = 0
-    ) -> "RepresentativesOrder":
+    ) -> "RepresentativesRequest":
         """From what a user has typed.
 
         Raises
@@ -63,7 +63,7 @@ class RepresentativesOrder:
 
 
 @dataclass(frozen=True)
-class Population:
+class MeasuredPopulation:
     """The particles of a sample that can be described.
 
     Parameters
@@ -80,17 +80,17 @@ class Population:
     descriptors: tuple[Descriptors, ...]
     omitted: tuple[tuple[str, str], ...] = ()
 
-    def without(self, places: set[int]) -> "Population":
+    def without(self, places: set[int]) -> "MeasuredPopulation":
         """The population without the particles at these places of the sample."""
         pairs = [pair for pair in zip(self.kept, self.descriptors, strict=True) if pair[0] not in places]
-        return Population(tuple(at for at, _ in pairs), tuple(one for _, one in pairs), self.omitted)
+        return MeasuredPopulation(tuple(at for at, _ in pairs), tuple(one for _, one in pairs), self.omitted)
 
 
 @dataclass(frozen=True)
-class Survey:
+class RepresentativesSurvey:
     """A measured population with the errors of its representatives over their number."""
 
-    population: Population
+    population: MeasuredPopulation
     curve: QualityCurve
 
     def chosen(self, count: int) -> "ChosenParticles | None":
@@ -111,12 +111,12 @@ class ChosenParticles:
     representation: Representation | None = None
 
     @classmethod
-    def of(cls, population: Population, found: Representatives) -> "ChosenParticles":
+    def of(cls, population: MeasuredPopulation, found: Representatives) -> "ChosenParticles":
         """With the places of the population's particles in the sample."""
         places = tuple(population.kept[index] for index in found.chosen)
         return cls(places, found, len(population.kept))
 
-    def measured(self, population: Population) -> "ChosenParticles":
+    def measured(self, population: MeasuredPopulation) -> "ChosenParticles":
         """With how well they stand for the population that they were chosen from."""
         rows, weighting = population.descriptors, self.representatives.weighting
         errors = representation_error(rows, self.representatives)
@@ -125,28 +125,28 @@ class ChosenParticles:
 
 
 def measure_population(particles: Sequence[Particle], workers: int | Executor = 1) -> Steps:
-    """Descriptors of every particle; returns :class:`Population`.
+    """Descriptors of every particle; returns :class:`MeasuredPopulation`.
 
     Raises
     ------
     InputError
         If no particle has descriptors.
     """
-    examined = yield from examine_sample(particles, workers=workers)
+    examined = yield from measure_sample(particles, workers=workers)
     kept: list[tuple[int, Descriptors]] = []
     omitted = []
     for at, (particle, one) in enumerate(zip(particles, examined, strict=True)):
-        problem = one.problem if one.descriptors is None else _unusable(one.descriptors)
+        problem = one.problem if one.descriptors is None else _problem_of(one.descriptors)
         if one.descriptors is None or problem:
             omitted.append((particle.name, problem))
         else:
             kept.append((at, one.descriptors))
     if not kept:
         raise InputError("No particle can be described, so none can stand for the others.")
-    return Population(tuple(at for at, _ in kept), tuple(found for _, found in kept), tuple(omitted))
+    return MeasuredPopulation(tuple(at for at, _ in kept), tuple(found for _, found in kept), tuple(omitted))
 
 
-def _unusable(descriptors: Descriptors) -> str:
+def _problem_of(descriptors: Descriptors) -> str:
     """Why a choice cannot look at these descriptors, or nothing."""
     for key in NEEDED:
         if not (math.isfinite(descriptors[key]) and descriptors[key] > 0.0):
@@ -154,16 +154,16 @@ def _unusable(descriptors: Descriptors) -> str:
     return ""
 
 
-def measure_quality(population: Population, order: RepresentativesOrder) -> Steps:
+def measure_quality(population: MeasuredPopulation, request: RepresentativesRequest) -> Steps:
     """Errors over the number of representatives; partial results are points, returns ``QualityCurve``."""
-    counts = curve_counts(len(population.kept), order.count)
+    counts = curve_counts(len(population.kept), request.count)
     yield Started("Choosing representatives", len(counts))
     steps = quality_steps(
         population.descriptors,
         counts,
-        weighting=order.weighting,
-        size_importance=order.size_importance,
-        seed=order.seed,
+        weighting=request.weighting,
+        size_importance=request.size_importance,
+        seed=request.seed,
     )
     done = 0
     while True:
@@ -177,7 +177,7 @@ def measure_quality(population: Population, order: RepresentativesOrder) -> Step
         yield Progress(done, len(counts), f"{point.count} representatives")
 
 
-def choose(population: Population, order: RepresentativesOrder) -> ChosenParticles:
+def choose_particles(population: MeasuredPopulation, request: RepresentativesRequest) -> ChosenParticles:
     """The particles that stand for a population.
 
     Raises
@@ -187,21 +187,21 @@ def choose(population: Population, order: RepresentativesOrder) -> ChosenParticl
     """
     found = choose_representatives(
         population.descriptors,
-        order.count,
-        weighting=order.weighting,
-        size_importance=order.size_importance,
-        seed=order.seed,
+        request.count,
+        weighting=request.weighting,
+        size_importance=request.size_importance,
+        seed=request.seed,
     )
     return ChosenParticles.of(population, found)
 
 
-def survey(
+def survey_representatives(
     particles: Sequence[Particle],
-    order: RepresentativesOrder,
-    population: Population | None = None,
+    request: RepresentativesRequest,
+    population: MeasuredPopulation | None = None,
     workers: int | Executor = 1,
 ) -> Steps:
-    """Measure a sample, unless that is done, and its quality curve; returns :class:`Survey`.
+    """Measure a sample, unless that is done, and its quality curve; returns :class:`RepresentativesSurvey`.
 
     Partial results are the points of the curve.
 
@@ -214,11 +214,11 @@ def survey(
         population = yield from measure_population(particles, workers)
     if len(population.kept) < 2:
         raise InputError("Representatives need at least two particles that can be described.")
-    curve = yield from measure_quality(population, order)
-    return Survey(population, curve)
+    curve = yield from measure_quality(population, request)
+    return RepresentativesSurvey(population, curve)
 
 
-def choose_one(population: Population, order: RepresentativesOrder) -> Steps:
-    """As :func:`choose`, for a runner."""
+def choose_job(population: MeasuredPopulation, request: RepresentativesRequest) -> Steps:
+    """As :func:`choose_particles`, for a runner."""
     yield Started("Choosing representatives")
-    return choose(population, order)
+    return choose_particles(population, request)

@@ -1,4 +1,4 @@
-"""Coarsens one particle, with every better polyhedron on the way, or a whole sample."""
+"""Jobs that coarsen one particle, with every improved polyhedron as a partial result, or a sample."""
 
 import time
 from collections.abc import Generator, Sequence
@@ -30,12 +30,12 @@ from regolith_studio.jobs.events import (
     Steps,
 )
 from regolith_studio.jobs.executor import Executor, open_executor
-from regolith_studio.jobs.fitting import FIT_DEGREE
+from regolith_studio.jobs.particle_jobs import FIT_DEGREE
 
 
 @dataclass(frozen=True)
-class CoarseningOrder:
-    """What is asked of a coarsening; picklable.
+class CoarseningRequest:
+    """Parameters of a coarsening; picklable.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ class CoarseningOrder:
 
 @dataclass(frozen=True)
 class CoarsenedParticle:
-    """What became of one particle of a sample.
+    """Result of coarsening one particle of a sample.
 
     Parameters
     ----------
@@ -103,14 +103,14 @@ class CoarsenedParticle:
     seconds: float = 0.0
 
 
-def coarsen_one(mesh: Mesh, order: CoarseningOrder, particle_index: int = 0) -> Steps:
+def coarsen_one(mesh: Mesh, request: CoarseningRequest, particle_index: int = 0) -> Steps:
     """Coarsen `mesh` as ordered; partial results are ``CoarseningProgress``, the result ``Coarsened``."""
     yield Started("Coarsening")
-    return (yield from _told(mesh, order, particle_index))
+    return (yield from _run_coarsening(mesh, request, particle_index))
 
 
 def coarsen_particle(
-    particle: Particle, order: CoarseningOrder, index: int, fit: HarmonicFit | None = None
+    particle: Particle, request: CoarseningRequest, index: int, fit: HarmonicFit | None = None
 ) -> Steps:
     """Fit (where the order says so) and coarsen one particle of a sample; returns `CoarsenedParticle`.
 
@@ -122,18 +122,18 @@ def coarsen_particle(
     yield Started(f"Coarsening {particle.name}")
     begun = time.perf_counter()
     mesh, notes, coefficients = particle.mesh, particle.notes, None
-    if order.target == "fit":
-        fit = (fit or order.fit_options.fit(mesh, max(order.l_max, FIT_DEGREE))).truncated(order.l_max)
-        mesh, notes = reconstruct(fit, order.l_max, level=order.level), notes + fit.warnings
+    if request.target == "fit":
+        fit = (fit or request.fit_options.fit(mesh, max(request.l_max, FIT_DEGREE))).truncated(request.l_max)
+        mesh, notes = reconstruct(fit, request.l_max, level=request.level), notes + fit.warnings
         coefficients = fit.coefficients
-    coarsened = yield from _told(mesh, order, index)
+    coarsened = yield from _run_coarsening(mesh, request, index)
     seconds = time.perf_counter() - begun
     return CoarsenedParticle(particle.name, index, coarsened, "", coefficients, notes, seconds)
 
 
 def coarsen_sample(
     particles: Sequence[Particle],
-    order: CoarseningOrder,
+    request: CoarseningRequest,
     workers: int | Executor = 1,
     indices: Sequence[int] | None = None,
 ) -> Steps:
@@ -146,13 +146,13 @@ def coarsen_sample(
     yield Started("Coarsening", len(particles))
     places = range(len(particles)) if indices is None else indices
     pairs = list(zip(particles, places, strict=True))
-    jobs = [Job(coarsen_particle, (particle, order, at)) for particle, at in pairs]
+    jobs = [Job(coarsen_particle, (particle, request, at)) for particle, at in pairs]
     with open_executor(workers) as executor:
         results = yield from executor.run_all(jobs, [particle.name for particle in particles])
-    return tuple(_outcome(at, p, result) for (p, at), result in zip(pairs, results, strict=True))
+    return tuple(_particle_result(at, p, result) for (p, at), result in zip(pairs, results, strict=True))
 
 
-def _outcome(at: int, particle: Particle, result: JobResult) -> CoarsenedParticle:
+def _particle_result(at: int, particle: Particle, result: JobResult) -> CoarsenedParticle:
     match result:
         case Finished(value) if isinstance(value, CoarsenedParticle):
             return value
@@ -168,19 +168,19 @@ def _target(mesh: Mesh) -> Target:
     return Target.of(mesh)
 
 
-def _told(mesh: Mesh, order: CoarseningOrder, index: int) -> Generator[Step, None, Any]:
+def _run_coarsening(mesh: Mesh, request: CoarseningRequest, index: int) -> Generator[Step, None, Any]:
     common: dict[str, Any] = {
-        "method": order.method,
-        "weights": order.weights,
-        "seed": order.seed,
+        "method": request.method,
+        "weights": request.weights,
+        "seed": request.seed,
         "particle_index": index,
-        "settings": dict(order.settings),
+        "settings": dict(request.settings),
     }
     steps: Generator[CoarseningProgress | Trial, None, Coarsened]
-    if order.largest_error is None:
-        steps = coarsening_steps(_target(mesh), order.n_facets, **common)
+    if request.largest_error is None:
+        steps = coarsening_steps(_target(mesh), request.n_facets, **common)
     else:
-        steps = fewest_facets(_target(mesh), order.largest_error, **common)
+        steps = fewest_facets(_target(mesh), request.largest_error, **common)
     tried = ""
     while True:
         try:

@@ -27,15 +27,15 @@ from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.surface import gallery
 from regolith_studio.harmonics.synthesis import radii_on_icosphere
-from regolith_studio.jobs.coarsening import CoarseningOrder
+from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
 from regolith_studio.jobs.events import Partial, Progress, Started, Steps
 from regolith_studio.shape_models.draws import virtual_mesh
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.shape_models.spectra import with_amplitudes
 
-MOST_STEPS = 2_000
+MAX_ITERATIONS = 2_000
 """Iterations of a lesson at most: every one of them keeps its polyhedra."""
-SAME = 1e-9
+PLANE_TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,7 +99,7 @@ class AnnealingLesson:
     exact: Coarsened | None = None
 
 
-def anneal_slowly(mesh: Mesh, order: CoarseningOrder, particle_index: int = 0) -> Steps:
+def trace_annealing(mesh: Mesh, request: CoarseningRequest, particle_index: int = 0) -> Steps:
     """Anneal and keep every iteration, then coarsen exactly; returns an :class:`AnnealingLesson`.
 
     The seed, weights and number of facets are those of the order, and its settings if they are those of the
@@ -110,41 +110,47 @@ def anneal_slowly(mesh: Mesh, order: CoarseningOrder, particle_index: int = 0) -
     InputError
         If more than 2,000 iterations are asked for, or all weights are 0.
     """
-    settings = settings_of("annealing", dict(order.settings) if order.method == "annealing" else None)
-    if settings.iterations > MOST_STEPS:
-        raise InputError(f"A lesson has at most {MOST_STEPS:,} iterations; choose fewer in the settings.")
-    if order.weights.all_zero:
+    settings = settings_of("annealing", dict(request.settings) if request.method == "annealing" else None)
+    if settings.iterations > MAX_ITERATIONS:
+        raise InputError(f"A lesson has at most {MAX_ITERATIONS:,} iterations; choose fewer in the settings.")
+    if request.weights.all_zero:
         raise InputError("All weights of the loss are 0, so there is nothing to optimise; raise one of them.")
     yield Started("Annealing step by step", settings.iterations)
     target = Target.of(mesh)
-    seed = np.random.SeedSequence(order.seed, spawn_key=(particle_index,))
-    run = METHODS["annealing"].run(target, order.n_facets, order.weights, seed, settings)
+    seed = np.random.SeedSequence(request.seed, spawn_key=(particle_index,))
+    run = METHODS["annealing"].run(target, request.n_facets, request.weights, seed, settings)
     raw = []
     for step in run:
         raw.append(step)
         yield Progress(step.step, step.steps)
     lesson = AnnealingLesson(
-        mesh, target.centre, target.scale, order.n_facets, order.weights, settings, _traced(target, raw)
+        mesh,
+        target.centre,
+        target.scale,
+        request.n_facets,
+        request.weights,
+        settings,
+        _trace_steps(target, raw),
     )
     yield Partial(lesson)
-    exact = coarsen(target, order.n_facets, "exact", order.weights, order.seed, particle_index)
+    exact = coarsen(target, request.n_facets, "exact", request.weights, request.seed, particle_index)
     return replace(lesson, exact=exact)
 
 
-def _traced(target: Target, raw: list[MethodStep]) -> tuple[AnnealingStep, ...]:
+def _trace_steps(target: Target, raw: list[MethodStep]) -> tuple[AnnealingStep, ...]:
     """The steps of the method with the polyhedra of all proposals, in the frame of the particle."""
     first = raw[0].half_spaces
     move = raw[1].move
     if first is None or move is None:
         raise ValueError("an annealing begins with a polyhedron and a move")
-    points, now = first.points, _solid(target, first)
+    points, now = first.points, _polyhedron(target, first)
     steps = [AnnealingStep(0, now, move.before)]
     for step in raw[1:]:
         move = step.move
         if move is None:
             raise ValueError("every iteration has a move")
         proposed = HalfSpaces.from_points(move.points) if move.proposed is not None else None
-        proposal = _solid(target, proposed) if proposed is not None else None
+        proposal = _polyhedron(target, proposed) if proposed is not None else None
         i = move.plane
         after = proposal if move.accepted and proposal is not None else now
         judged = move.proposed if move.accepted and move.proposed is not None else move.before
@@ -156,8 +162,10 @@ def _traced(target: Target, raw: list[MethodStep]) -> tuple[AnnealingStep, ...]:
                 move=move,
                 before=now,
                 proposal=proposal,
-                facet=_facet(now, target, points[i]),
-                proposed_facet=_facet(proposal, target, move.points[i]) if proposal is not None else None,
+                facet=_facet_in_plane(now, target, points[i]),
+                proposed_facet=_facet_in_plane(proposal, target, move.points[i])
+                if proposal is not None
+                else None,
                 distance=target.scale * float(np.linalg.norm(move.points[i] - points[i])),
             )
         )
@@ -166,16 +174,20 @@ def _traced(target: Target, raw: list[MethodStep]) -> tuple[AnnealingStep, ...]:
     return tuple(steps)
 
 
-def _solid(target: Target, half_spaces: HalfSpaces) -> ConvexPolyhedron:
+def _polyhedron(target: Target, half_spaces: HalfSpaces) -> ConvexPolyhedron:
     return polyhedron_of(target.in_particle_frame(half_spaces))
 
 
-def _facet(solid: ConvexPolyhedron, target: Target, point: FloatArray) -> int | None:
+def _facet_in_plane(solid: ConvexPolyhedron, target: Target, point: FloatArray) -> int | None:
     """The facet in the plane of a foot point of the unit-volume particle; ``None`` where it bounds none."""
     foot = target.scale * (point @ target.axes)
     gap = np.linalg.norm(solid.half_spaces.points - foot, axis=1)
     nearest = int(gap.argmin())
-    return nearest if gap[nearest] <= SAME * target.scale + SAME * float(np.linalg.norm(foot)) else None
+    return (
+        nearest
+        if gap[nearest] <= PLANE_TOLERANCE * target.scale + PLANE_TOLERANCE * float(np.linalg.norm(foot))
+        else None
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -201,7 +213,7 @@ class DegreeStep:
     mean_radius: float
 
 
-def grow_fit(mesh: Mesh, fit: HarmonicFit, level: int = 4) -> Steps:
+def trace_degrees(mesh: Mesh, fit: HarmonicFit, level: int = 4) -> Steps:
     """The fit at every degree from 0 on; partial results and the result are tuples of :class:`DegreeStep`."""
     degrees = range(fit.l_max + 1)
     yield Started("Growing the fit", len(degrees))

@@ -1,0 +1,160 @@
+"""Evaluates shape models against a sample: studies with their figures, distributions side by side."""
+
+from collections.abc import Callable, Generator, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
+from regolith_studio.jobs.study_jobs import study_population
+from regolith_studio.shape_models.draws import Draws
+from regolith_studio.shape_models.models import MODELS
+from regolith_studio.shape_models.sample import Sample
+from regolith_studio.studies.population import PopulationStudy, drawn_by_itself
+from regolith_studio.studies.population_distances import WEIGHTINGS
+
+if TYPE_CHECKING:  # imports matplotlib, which the page does not need before an evaluation
+    from matplotlib.figure import Figure
+from regolith_studio.descriptors.distributions import Distribution
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.studies.population import KEYS
+from regolith_studio.studies.population_work import STEP, descriptors_of
+
+DOTS_PER_INCH = 110
+FIGURE_COLUMNS = 5
+"""Panels in a row: a window is wider than a page."""
+
+MIN_FOR_PROCESSES = 400
+"""Particles to be measured beyond which processes are started: some seconds of work, and fits that this
+process could not be stopped at."""
+
+
+@dataclass(frozen=True, eq=False)
+class ModelEvaluationResult:
+    """A study, and its figures as PNG by name: number, volume, pairs, quantiles and maybe components."""
+
+    study: PopulationStudy
+    pictures: dict[str, bytes]
+
+
+def evaluate_models(sample: Sample, models: Sequence[str] | None, **options: Any) -> Steps:
+    """Evaluate models; partial results and the result are :class:`ModelEvaluationResult`.
+
+    Long studies use one process a core. The options are those of
+    :func:`~regolith_studio.studies.population.population_study`.
+    """
+    rounds = options.get("n_splits", 5) * options.get("n_repeats", 5) * len(models or MODELS)
+    n_measured = len(sample) + rounds * drawn_by_itself(len(sample))
+    steps = study_population(sample, models, 0 if n_measured > MIN_FOR_PROCESSES else 1, **options)
+    shown = Progress(0, n_measured, "")
+    while True:
+        try:
+            step: Step = next(steps)
+        except StopIteration as end:
+            return (yield from draw_evaluation_figures(end.value, shown))
+        if isinstance(step, Progress):
+            shown = step
+        if isinstance(step, Partial):
+            step = Partial((yield from draw_evaluation_figures(step.value, shown)))
+        yield step
+
+
+def draw_evaluation_figures(
+    study: PopulationStudy, shown: Progress
+) -> Generator[Step, None, ModelEvaluationResult]:
+    """The study with its figures, drawn one by one; how far the work is stays as `shown`."""
+    from regolith_studio.studies import population_figures as figures
+
+    drawings: dict[str, Callable[[], Figure | None]] = {
+        **{name: partial(figures.density_figure, study, name, FIGURE_COLUMNS) for name in WEIGHTINGS},
+        "quantiles": partial(figures.quantile_figure, study, FIGURE_COLUMNS),
+        "components": partial(figures.components_figure, study),
+    }
+    at_figures, pictures = replace(shown, message="figures"), {}
+    for name, draw_one in drawings.items():
+        figure = draw_one()
+        yield at_figures
+        if figure is not None:
+            pictures[name] = png_of(figure)
+            yield at_figures
+    panels = figures.pair_panels(study)
+    while True:
+        try:
+            next(panels)
+        except StopIteration as end:
+            pictures["pairs"] = png_of(end.value)
+            return ModelEvaluationResult(study, pictures)
+        yield at_figures
+
+
+def png_of(figure: "Figure") -> bytes:
+    """The figure as PNG."""
+    from regolith_studio.studies.figure_files import png_bytes
+
+    return png_bytes(figure, DOTS_PER_INCH)
+
+
+MAX_COMPARED = 1000
+"""Particles of either kind that are measured at most."""
+
+
+@dataclass(frozen=True, eq=False)
+class DistributionComparison:
+    """Descriptors of both kinds.
+
+    Parameters
+    ----------
+    keys
+        Of the columns.
+    measured, drawn
+        Shape (n, keys), without particles that bound no solid; `measured` is empty where the source of a
+        model holds no particles.
+    """
+
+    keys: tuple[str, ...]
+    measured: FloatArray
+    drawn: FloatArray
+
+    def distributions(self, key: str, weighting: str = "number") -> tuple[Distribution | None, Distribution]:
+        """One descriptor of the measured, if there are any, and of the drawn particles.
+
+        Parameters
+        ----------
+        weighting
+            ``number``, or ``volume``: each particle counts by its volume.
+        """
+        drawn = self._distribution(self.drawn, key, weighting)
+        return (self._distribution(self.measured, key, weighting) if len(self.measured) else None), drawn
+
+    def _distribution(self, table: FloatArray, key: str, weighting: str) -> Distribution:
+        sizes = table[:, self.keys.index("equivalent_radius")]
+        weights = sizes**3 if weighting == "volume" else np.ones(len(table))
+        return Distribution(table[:, self.keys.index(key)], weights)
+
+
+def compare_distributions(sample: Sample | None, draws: Draws) -> Steps:
+    """Measure both at the degree of the draws; returns :class:`DistributionComparison`. A job."""
+    kinds = [draws.chosen(range(min(len(draws), MAX_COMPARED)))]
+    if sample is not None:
+        rows = sample.truncated(min(draws.l_max, sample.l_max)).coefficients[:MAX_COMPARED]
+        kinds.append(Draws(rows, "radius", "measured", draws.seed, sample.unit))
+    total = sum(len(each) for each in kinds)
+    yield Started("Comparing distributions", total)
+    tables, done = [], 0
+    for each in kinds:
+        tables.append((yield from _descriptor_table(each, done, total)))
+        done += len(each)
+    drawn, measured = tables[0], tables[1] if len(tables) > 1 else np.empty((0, len(KEYS)))
+    return DistributionComparison(KEYS, measured, drawn)
+
+
+def _descriptor_table(draws: Draws, done: int, total: int) -> Generator[Progress, None, FloatArray]:
+    tables = []
+    for first in range(0, len(draws), STEP):
+        last = min(first + STEP, len(draws))
+        tables.append(descriptors_of(draws.chosen(range(first, last)), KEYS))
+        yield Progress(done + last, total)
+    table = np.concatenate(tables)
+    return table[np.isfinite(table).all(axis=1)]

@@ -1,0 +1,202 @@
+"""Jobs for particles: read files, measure descriptors and mesh health, fit spherical harmonics."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from regolith_studio.descriptors.describe import Descriptors, describe
+from regolith_studio.errors import RegolithError
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.mesh_health import MeshHealth, inspect
+from regolith_studio.geometry.particle import Particle, defect_triangles
+from regolith_studio.harmonics.coefficients import checked_degree
+from regolith_studio.harmonics.fit import DEFAULT_FIT_OPTIONS, FitOptions, HarmonicFit
+from regolith_studio.harmonics.sight import Sight, sight
+from regolith_studio.harmonics.surface import reconstruct
+from regolith_studio.harmonics.visibility import hidden_faces
+from regolith_studio.jobs.events import Failed, Job, Partial, Progress, Started, Steps
+from regolith_studio.jobs.executor import Executor, open_executor, value_of
+from regolith_studio.readers.particles import (
+    FileProblem,
+    LoadedParticles,
+    collect_particles,
+    find_files,
+    read_each,
+    sample_particles,
+)
+
+
+def load_particles(paths: Sequence[Path], unit: str = "um", repair: bool = True) -> Steps:
+    """Read the meshes in `paths` (files and folders); returns :class:`LoadedParticles`.
+
+    Raises
+    ------
+    FileError
+        If nothing could be read: the first file's message.
+    """
+    problems: list[FileProblem] = []
+    results: list[Particle | FileProblem] = []
+    files = find_files(paths, problems)
+    yield Started("Reading particles", len(files))
+    for done, (file, result) in enumerate(read_each(files, unit, repair), start=1):
+        results.append(result)
+        yield Progress(done, len(files), file.path.name)
+    return collect_particles(results, problems)
+
+
+def load_sample() -> Steps:
+    """Read the particles that ship with the program; returns :class:`LoadedParticles`."""
+    yield Started("Reading the sample")
+    return LoadedParticles(tuple(sample_particles()))
+
+
+@dataclass(frozen=True)
+class MeasuredParticle:
+    """What is known of a particle before anything is fitted.
+
+    Parameters
+    ----------
+    descriptors
+        ``None`` where the mesh has none, for example because it is flat.
+    problem
+        Why, in one sentence.
+    sight
+        What its star point cannot see; ``None`` where the mesh has no inside, for example because it is open.
+    """
+
+    health: MeshHealth
+    descriptors: Descriptors | None
+    problem: str = ""
+    sight: Sight | None = None
+
+
+def measure_particle(particle: Particle, box_metric: str = "exact") -> MeasuredParticle:
+    """Health, descriptors and sight of one particle; never raises for what is wrong with the mesh."""
+    known = particle.repair
+    health = known.health_after if known and known.mesh is particle.mesh else inspect(particle.mesh)
+    seen = _seen(particle)
+    try:
+        return MeasuredParticle(health, describe(particle.mesh, box_metric=box_metric), "", seen)
+    except RegolithError as error:
+        return MeasuredParticle(health, None, str(error), seen)
+
+
+def _seen(particle: Particle) -> Sight | None:
+    try:
+        return sight(particle.mesh)
+    except RegolithError:
+        return None
+
+
+def find_faults(particle: Particle, seen: Sight | None = None) -> Steps:
+    """Where a mesh is wrong or was before it was mended, and what its star point cannot see.
+
+    Returns the corners (k, 3, 3) of the triangles of each kind, as ``defect_triangles`` names them, and
+    ``hidden``.
+    """
+    yield Started("Looking for faults")
+    found: dict[str, FloatArray] = defect_triangles(particle)
+    if seen is not None and seen.hidden_surface_share > 0.0:
+        hidden = hidden_faces(particle.mesh, np.array(seen.star_point))
+        found["hidden"] = particle.mesh.triangles[hidden]
+    return found
+
+
+def measure_one(particle: Particle, box_metric: str = "exact") -> Steps:
+    """As :func:`measure_particle`, for a runner."""
+    yield Started("Measuring")
+    return measure_particle(particle, box_metric)
+
+
+def measure_particles(particles: Sequence[Particle], box_metric: str = "exact") -> Steps:
+    """Each particle in order; partial results and the result are tuples of :class:`MeasuredParticle`, so far.
+
+    A partial result comes when an eighth more is known: what is copied grows as the number of particles
+    and not as its square.
+    """
+    yield Started("Measuring particles", len(particles))
+    seen: list[MeasuredParticle] = []
+    due = 1
+    for particle in particles:
+        seen.append(measure_particle(particle, box_metric))
+        if len(seen) >= due:
+            yield Partial(tuple(seen))
+            due = len(seen) + max(1, len(seen) // 8)
+        yield Progress(len(seen), len(particles), particle.name)
+    return tuple(seen)
+
+
+def measure_sample(
+    particles: Sequence[Particle], box_metric: str = "exact", workers: int | Executor = 1
+) -> Steps:
+    """As :func:`measure_particles`, by several processes; returns a tuple of :class:`MeasuredParticle`."""
+    yield Started("Measuring", len(particles))
+    jobs = [Job(measure_one, (particle, box_metric)) for particle in particles]
+    with open_executor(workers) as executor:
+        results = yield from executor.run_all(jobs, [particle.name for particle in particles])
+    return tuple(value_of(result) for result in results)
+
+
+FIT_DEGREE = 30
+"""Everything is fitted to this degree once; lower ones are truncations of that fit."""
+
+
+@dataclass(frozen=True)
+class FitRequest:
+    """How particles are to be expanded.
+
+    Parameters
+    ----------
+    l_max
+        Highest degree.
+    fit_options
+        Star point, radius rule and reference.
+
+    Raises
+    ------
+    InputError
+        If the degree is out of range.
+    """
+
+    l_max: int = FIT_DEGREE
+    fit_options: FitOptions = DEFAULT_FIT_OPTIONS
+
+    def __post_init__(self) -> None:
+        checked_degree(self.l_max, FIT_DEGREE)
+
+
+def fit_one(mesh: Mesh, request: FitRequest = FitRequest()) -> Steps:
+    """Fit `mesh`; returns a ``HarmonicFit``."""
+    yield Started("Fitting spherical harmonics")
+    return request.fit_options.fit(mesh, request.l_max)
+
+
+def draw_surface(fit: HarmonicFit, l_max: int, level: int) -> Steps:
+    """The fit's surface cut at `l_max`; returns a :class:`Mesh` in the particle's frame."""
+    yield Started("Drawing the fit")
+    return reconstruct(fit, l_max, level=level)
+
+
+def describe_meshes(meshes: Mapping[str, Mesh], box_metric: str = "exact") -> Steps:
+    """Descriptors of named meshes; partial results and the result are ``dict[name, Descriptors]``."""
+    yield Started("Measuring", len(meshes))
+    described: dict[str, Descriptors] = {}
+    for name, mesh in meshes.items():
+        described[name] = describe(mesh, box_metric=box_metric)
+        yield Partial(dict(described))
+        yield Progress(len(described), len(meshes), name)
+    return described
+
+
+def fit_sample(
+    particles: Sequence[Particle], request: FitRequest = FitRequest(), workers: int | Executor = 1
+) -> Steps:
+    """Fit every particle; returns a tuple of ``HarmonicFit``, or the sentence where that is impossible."""
+    yield Started("Fitting spherical harmonics", len(particles))
+    jobs = [Job(fit_one, (particle.mesh, request)) for particle in particles]
+    with open_executor(workers) as executor:
+        results = yield from executor.run_all(jobs, [particle.name for particle in particles])
+    return tuple(e.sentence if isinstance(e, Failed) else value_of(e) for e in results)

@@ -1,0 +1,433 @@
+"""Jobs for volumes (section 2.1): read, preview, segment, and extract particles."""
+
+import hashlib
+import os
+import tempfile
+from collections import deque
+from collections.abc import Callable, Generator, Iterator
+from dataclasses import dataclass, field
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from regolith_studio.errors import InputError, RegolithError
+from regolith_studio.geometry.particle import Source
+from regolith_studio.imaging.boxes import Box
+from regolith_studio.imaging.extraction import (
+    Extracted,
+    Extraction,
+    ExtractionProgress,
+    ExtractionSettings,
+    extraction_steps,
+)
+from regolith_studio.imaging.sample_volumes import SampleVolume, sample_volume
+from regolith_studio.imaging.sections import Sections, coarse_copy
+from regolith_studio.imaging.segmentation.segment import (
+    Segmentation,
+    SegmentationSettings,
+    preview,
+    segmentation_steps,
+)
+from regolith_studio.imaging.segmentation.thresholding import Histogram, histogram, level_of
+from regolith_studio.imaging.slabs import Scratch, SlabSource, slab_ranges
+from regolith_studio.imaging.volume import Volume, VolumeKind
+from regolith_studio.jobs.events import Job, Progress, Started, Step, Steps
+from regolith_studio.jobs.executor import Executor, open_executor, value_of
+from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
+from regolith_studio.jobs.particle_jobs import MeasuredParticle, measure_one
+from regolith_studio.readers.file_bytes import sha256_of
+from regolith_studio.readers.volumes.files import slice_names
+from regolith_studio.readers.volumes.read import SlabSource as FileSource
+from regolith_studio.readers.volumes.read import describe_volume, read_volume
+
+IN_MEMORY = 2**30
+"""Bytes of a volume, or of what is computed from it, beyond which it stays on the disk."""
+_LABEL_BYTES = 4
+_SAMPLED = 4_000_000
+_CONTRAST = (0.002, 0.998)
+
+
+@dataclass(frozen=True, eq=False)
+class Scan:
+    """A volume with what is needed to show it; a large one is mapped from a file, not in memory.
+
+    Parameters
+    ----------
+    volume
+        Grey values or labels.
+    seen
+        Histogram of its values, of some of them where there are many; none of labels.
+    contrast
+        Values to be shown black and white.
+    sections
+        Pictures of its slices.
+    scratch
+        Holds the temporary files that it is mapped from, if there are any.
+    """
+
+    volume: Volume
+    seen: Histogram | None
+    contrast: tuple[float, float]
+    sections: Sections
+    scratch: Scratch = field(default_factory=Scratch)
+
+    def level(self, settings: SegmentationSettings) -> float | None:
+        """Where the threshold lies by the volume as it was scanned; none where there is no answer."""
+        if self.seen is None:
+            return None
+        try:
+            return level_of(self.seen, settings.threshold, self.volume.dtype)
+        except RegolithError:
+            return None
+
+
+@dataclass(frozen=True, eq=False)
+class GrainSegmentation:
+    """The grains of a whole volume: what the segmentation says, pictures of the labels, and their files."""
+
+    segmentation: Segmentation
+    sections: Sections
+    scratch: Scratch
+
+
+def scan_of(volume: Volume, sections: Sections | None = None, scratch: Scratch | None = None) -> Scan:
+    """Histogram and contrast of a volume."""
+    sections, scratch = sections or Sections(volume.array), scratch or Scratch()
+    if volume.kind == "labels":
+        return Scan(volume, None, (0.0, 1.0), sections, scratch)
+    seen = histogram(_subsample(sections.sample))
+    share = np.cumsum(seen.counts) / seen.counts.sum()
+    low, high = (float(seen.centres[np.searchsorted(share, at)]) for at in _CONTRAST)
+    return Scan(volume, seen, (low, high if high > low else low + 1.0), sections, scratch)
+
+
+def read_header(given: VolumeInput) -> Steps:
+    """Read what a file says about itself; returns a ``VolumeHeader``."""
+    yield Started(f"Looking at {given.path.name}")
+    return describe_volume(given.path, dataset=given.dataset, axes=given.axes, raw=given.raw)
+
+
+def read_scan(given: VolumeInput) -> Steps:
+    """Read a volume into memory, or map it beyond :data:`IN_MEMORY`; returns a :class:`Scan`.
+
+    What lies in the file as it is, is mapped there; packed voxels are unpacked into a temporary file.
+    """
+    yield Started(f"Reading {given.path.name}")
+    source = given.opened()
+    if _n_bytes(source) > IN_MEMORY:
+        return (yield from _map_volume(source))
+    volume = read_volume(
+        given.path,
+        dataset=given.dataset,
+        axes=given.axes,
+        voxel_size=given.voxel_size,
+        unit=given.unit,
+        kind=given.kind,
+        raw=given.raw,
+    )
+    yield Progress(1, 2, "Counting grey values")
+    return scan_of(volume)
+
+
+def find_grains(scan: Scan, settings: SegmentationSettings) -> Steps:
+    """Segment a volume, a large one in temporary files; returns :class:`GrainSegmentation`."""
+    large = scan.volume.array.size * (_LABEL_BYTES + scan.volume.dtype.itemsize) > IN_MEMORY
+    scratch = Scratch(scratch_folder() if large else None)
+    try:
+        found: Segmentation = yield from segment_volume(scan.volume, settings, scratch)
+        if not large:
+            return GrainSegmentation(found, Sections(found.labels.array), scratch)
+        yield Started("Preparing the view")
+        return GrainSegmentation(found, (yield from _slice_images(found.labels)), scratch)
+    except BaseException:
+        scratch.close()
+        raise
+
+
+def scratch_folder() -> Path:
+    """Where temporary files of many gigabytes go: on a disk, where the system tells disks from memory."""
+    there = Path("/var/tmp")
+    return there if there.is_dir() and os.access(there, os.W_OK) else Path(tempfile.gettempdir())
+
+
+def read_sample_scan(kind: SampleVolume = "grey") -> Steps:
+    """Read the shipped synthetic scan; returns a :class:`Scan`."""
+    yield Started("Reading the sample scan")
+    return scan_of(sample_volume(kind))
+
+
+def preview_part(volume: Volume, box: Box, settings: SegmentationSettings, level: float | None) -> Steps:
+    """Segment a small part; returns a ``Segmentation``, or ``None`` where no grain is in it."""
+    yield Started("Preview")
+    try:
+        found: Segmentation = preview(volume, box, settings, level)
+    except RegolithError:
+        return None
+    return found
+
+
+def _map_volume(source: FileSource) -> Generator[Step, None, Scan]:
+    array, scratch = source.mapped(), Scratch()
+    try:
+        if array is None:
+            scratch = Scratch(scratch_folder())
+            array = scratch.zeros(source.shape, source.dtype)
+            ranges = slab_ranges(source.shape)
+            for done, (first, stop) in enumerate(ranges, start=1):
+                array[:, :, first:stop] = source.read(first, stop)
+                yield Progress(done, len(ranges), "Unpacking into a temporary file")
+        volume = Volume(array, np.array(source.voxel_size), source.kind, source.name)
+        return scan_of(volume, (yield from _slice_images(volume)), scratch)
+    except BaseException:
+        scratch.close()
+        raise
+
+
+def _slice_images(volume: Volume) -> Generator[Step, None, Sections]:
+    steps = coarse_copy(volume)
+    while True:
+        try:
+            done, total = next(steps)
+        except StopIteration as end:
+            return Sections(volume.array, *end.value)
+        if done % 16 == 0:
+            yield Progress(done, total, "Looking through the slices")
+
+
+def _n_bytes(source: FileSource) -> int:
+    return int(np.prod([int(edge) for edge in source.shape])) * source.dtype.itemsize
+
+
+def _subsample(array: NDArray[Any]) -> NDArray[Any]:
+    """Every n-th voxel of each axis, so that not many more than `_SAMPLED` remain."""
+    step = max(1, int(np.ceil((array.size / _SAMPLED) ** (1 / 3))))
+    return array[::step, ::step, ::step]
+
+
+_WORKING_BYTES = 4
+
+ParticleCallback = Callable[[Extracted, MeasuredParticle], None]
+
+
+@dataclass(frozen=True)
+class SegmentationSummary:
+    """What is worth keeping of a segmentation once its labels are gone."""
+
+    level: float
+    n_bodies: int
+    n_grains: int
+    n_small: int
+
+
+@dataclass(frozen=True)
+class ExtractedFile:
+    """What came out of a file.
+
+    Parameters
+    ----------
+    extraction
+        The particles, where they were collected.
+    facts
+        Of the segmentation, where there was one.
+    sha256
+        Of the file, or of its slices one after the other.
+    shape, dtype, voxel_size, kind
+        Of the volume; micrometres.
+    """
+
+    extraction: Extraction
+    facts: SegmentationSummary | None
+    sha256: str
+    shape: tuple[int, int, int]
+    dtype: str
+    voxel_size: tuple[float, ...]
+    kind: VolumeKind
+
+
+def extract_file(given: VolumeInput, recipe: GrainSettings, scratch: Path | None = None) -> Steps:
+    """Read a volume, segment it if it is grey, and make its particles; returns :class:`ExtractedFile`.
+
+    Parameters
+    ----------
+    scratch
+        Folder for temporary files where the volume is too large for the memory.
+
+    Raises
+    ------
+    FileError
+        If the file is no volume.
+    InputError
+        If there is no particle in it, or the voxel size is not known.
+    """
+    return (yield from _extract(given, recipe, scratch, _collect, collect=True))
+
+
+def extract_each(
+    given: VolumeInput, recipe: GrainSettings, scratch: Path | None, sink: Callable[[Extracted], None]
+) -> Steps:
+    """As :func:`extract_file`, but each particle is handed to `sink` and forgotten, in the order of slabs."""
+    return (yield from _extract(given, recipe, scratch, partial(_pass_on, sink=sink)))
+
+
+def extract_measured(
+    given: VolumeInput,
+    recipe: GrainSettings,
+    scratch: Path | None,
+    sink: ParticleCallback,
+    workers: int | Executor = 1,
+) -> Steps:
+    """As :func:`extract_file`, but each particle is measured, handed to `sink` and forgotten.
+
+    Parameters
+    ----------
+    sink
+        Called in this process with each particle in the order of slabs.
+    workers
+        Processes that measure.
+    """
+    return (
+        yield from _extract(given, recipe, scratch, partial(_measure_and_pass_on, sink=sink, workers=workers))
+    )
+
+
+def segment_volume(
+    source: SlabSource, settings: SegmentationSettings, scratch: Scratch | None = None
+) -> Steps:
+    """Find the grains in grey values; returns a ``Segmentation``."""
+    steps = segmentation_steps(source, settings, scratch)
+    stage = ""
+    while True:
+        try:
+            step = next(steps)
+        except StopIteration as end:
+            return end.value
+        if step.stage != stage:
+            stage = step.stage
+            yield Started(stage, step.total)
+        yield Progress(step.done, step.total)
+
+
+def extract_labels(
+    labels: SlabSource, settings: ExtractionSettings, path: Path, grey: SlabSource | None = None
+) -> Steps:
+    """Particles of a label volume, in memory or not, that `path` has led to; returns an ``Extraction``.
+
+    They are what :func:`extract_file` makes of the file, if it held the values `grey`.
+    """
+    yield Started("Extracting particles")
+    source = _source_of(path, labels)
+    return (yield from _collect(extraction_steps(labels, settings, path.stem, source, grey=grey)))
+
+
+def _source_of(path: Path, volume: SlabSource) -> Source:
+    edges = "x".join(f"{float(edge):g}" for edge in np.ravel(np.asarray(volume.voxel_size)))
+    return Source(str(path), volume_sha256(path), f"voxel:{edges}")
+
+
+def volume_sha256(path: Path) -> str:
+    """SHA-256 of a file, or of the slices of a folder one after the other."""
+    names = slice_names(path) if path.is_dir() else ()
+    if not names:
+        return sha256_of(path)
+    digest = hashlib.sha256()
+    for name in names:
+        digest.update(bytes.fromhex(sha256_of(path / name)))
+    return digest.hexdigest()
+
+
+_Extraction = Generator[ExtractionProgress, None, Extraction]
+_Consumer = Callable[[_Extraction], Generator[Step, None, Extraction]]
+
+
+def _extract(
+    given: VolumeInput,
+    recipe: GrainSettings,
+    folder: Path | None,
+    consume: _Consumer,
+    *,
+    collect: bool = False,
+) -> Steps:
+    yield Started(f"Reading {given.path.name}")
+    volume = given.opened()
+    sizes = tuple(float(edge) for edge in np.ravel(np.asarray(volume.voxel_size)))
+    source = _source_of(given.path, volume)
+    with Scratch(folder if _working_bytes(volume) > IN_MEMORY else None) as scratch:
+        facts: SegmentationSummary | None = None
+        labels: SlabSource = volume
+        if volume.kind == "grey":
+            segmentation: Segmentation = yield from segment_volume(volume, recipe.segmentation, scratch)
+            facts, labels = _summary_of(segmentation), segmentation.labels
+            del segmentation
+        yield Started("Extracting particles")
+        grey = volume if volume.kind == "grey" else None
+        steps = extraction_steps(labels, recipe.extraction, given.path.stem, source, collect, grey)
+        extraction = yield from consume(steps)
+    if not extraction.n_found:
+        raise InputError(_no_particle_message(given.path, extraction))
+    return ExtractedFile(
+        extraction, facts, source.sha256, volume.shape, str(volume.dtype), sizes, volume.kind
+    )
+
+
+def _pass_on(steps: _Extraction, sink: Callable[[Extracted], None]) -> Generator[Step, None, Extraction]:
+    while True:
+        try:
+            step = next(steps)
+        except StopIteration as end:
+            found: Extraction = end.value
+            return found
+        sink(step.extracted)
+        yield Progress(step.done, step.total, step.extracted.particle.name)
+
+
+def _collect(steps: _Extraction) -> Generator[Step, None, Extraction]:
+    return (yield from _pass_on(steps, lambda _particle: None))
+
+
+def _measure_and_pass_on(
+    steps: _Extraction, sink: ParticleCallback, workers: int | Executor
+) -> Generator[Step, None, Extraction]:
+    """Measure particles by other processes while the next ones are extracted."""
+    waiting: deque[ExtractionProgress] = deque()
+    ended: list[Extraction] = []
+
+    def jobs() -> Iterator[Job]:
+        while True:
+            try:
+                step = next(steps)
+            except StopIteration as end:
+                ended.append(end.value)
+                return
+            waiting.append(step)
+            yield Job(measure_one, (step.extracted.particle,))
+
+    with open_executor(workers) as executor:
+        for result in executor.results(jobs()):
+            if result is None:
+                continue
+            step = waiting.popleft()
+            sink(step.extracted, value_of(result))
+            yield Progress(step.done, step.total, step.extracted.particle.name)
+    return ended[0]
+
+
+def _working_bytes(volume: SlabSource) -> int:
+    voxels = int(np.prod([int(edge) for edge in volume.shape]))
+    return voxels * (_WORKING_BYTES + volume.dtype.itemsize) if volume.kind == "grey" else 0
+
+
+def _summary_of(segmentation: Segmentation) -> SegmentationSummary:
+    return SegmentationSummary(
+        segmentation.level, segmentation.n_bodies, segmentation.n_grains, segmentation.n_small
+    )
+
+
+def _no_particle_message(path: Path, extraction: Extraction) -> str:
+    counts = f"{len(extraction.border)} touch the border, {len(extraction.small)} are too small"
+    return (
+        f"None of the grains of {path.name} became a particle ({counts}); keep grains at the border, "
+        "take smaller ones, or say whether the volume holds labels or grey values."
+    )
