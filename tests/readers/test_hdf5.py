@@ -11,7 +11,6 @@ import pytest
 from regolith_studio.errors import FileError
 from regolith_studio.readers.volume_formats.hdf5 import open_hdf5
 from regolith_studio.readers.volumes.read import datasets_in, describe_volume, open_slabs, read_volume
-from regolith_studio.readers.voxels.hdf5 import ChunkLayers
 
 SLICES = np.random.default_rng(8).integers(0, 60_000, (9, 11, 13)).astype(np.uint16)
 
@@ -202,13 +201,17 @@ class Watched(io.FileIO):
 
 
 def unpackings(path, monkeypatch, use) -> set[int]:
-    """How often each chunk is unpacked while `use` has the file, without HDF5's own cache."""
+    """How often each chunk is unpacked while `use` has the file."""
     with h5py.File(path) as file:
         stored = file["data"].id
         offsets = [stored.get_chunk_info(k).byte_offset for k in range(stored.get_num_chunks())]
     opened = h5py.File
     with Watched(path) as raw, monkeypatch.context() as patch:
-        patch.setattr(h5py, "File", lambda *_, **__: opened(raw, "r", rdcc_nbytes=0))
+        patch.setattr(
+            h5py,
+            "File",
+            lambda *_, **options: opened(raw, "r", **{k: options[k] for k in options if "rdcc" in k}),
+        )
         use()
         return {raw.places[offset] for offset in offsets}
 
@@ -233,16 +236,3 @@ def test_that_each_chunk_is_unpacked_once_however_thin_the_slabs(axes, depth, pa
         assert np.array_equal(np.concatenate(parts), DEEP)
 
     assert unpackings(path, monkeypatch, read) == {1}
-
-
-def test_that_only_what_does_not_fit_the_memory_is_unpacked_again(path, monkeypatch) -> None:
-    """Layers of 6 x 24 x 18 bytes, of which 13 of the 24 rows may be kept: two of four chunks."""
-    with h5py.File(path, "w") as file:
-        file.create_dataset("data", data=DEEP, chunks=(6, 6, 18), compression="gzip")
-
-    def read() -> None:
-        with h5py.File(path) as file:
-            layers = ChunkLayers(file["data"], "zyx", 0, kept_bytes=6 * 13 * 18)
-            assert np.array_equal(np.concatenate([layers.read(z, z + 2) for z in range(0, 20, 2)]), DEEP)
-
-    assert unpackings(path, monkeypatch, read) == {1, 3}

@@ -14,13 +14,13 @@ from regolith_studio.readers.error_messages import printable
 from regolith_studio.readers.volume_formats import VolumeFormat
 from regolith_studio.readers.voxels.hdf5 import (
     Candidate,
-    ChunkLayers,
     candidates_in,
     check_storage,
     element_size,
     shown_names,
 )
 from regolith_studio.readers.voxels.header import (
+    KEPT_BYTES,
     DatasetEntry,
     VoxelHeader,
     stated_axes,
@@ -29,26 +29,39 @@ from regolith_studio.readers.voxels.header import (
 )
 
 LARGEST_CHUNK = 1 << 29
+_CACHE = {"rdcc_nbytes": KEPT_BYTES + (1 << 25), "rdcc_nslots": 1_000_003, "rdcc_w0": 1.0}
+"""Of unpacked chunks; many slots, since two chunks in one slot expel each other."""
 
 
 class Hdf5Voxels:
-    """A dataset whose slices are read layer of chunks by layer of chunks."""
+    """A dataset of an open ``h5py.File``, read in slices.
+
+    `layer` is the depth of a chunk along z. HDF5's cache of unpacked chunks holds a layer of up to
+    `KEPT_BYTES`, so that its chunks are unpacked once even where it is asked for in parts.
+    """
 
     def __init__(self, file: Any, dataset: Any, candidate: Candidate, header: VoxelHeader) -> None:
         self.header = header
-        self._file, self._layers = file, ChunkLayers(dataset, candidate.axes, candidate.channel)
-        self.layer = self._layers.depth
+        self._file, self._dataset, self._candidate = file, dataset, candidate
+        axes = candidate.axes
+        self.layer = int(dataset.chunks[axes.index("z")]) if dataset.chunks and "z" in axes else 1
 
     def read(self, z0: int, z1: int) -> NDArray[Any]:
         """Slices z0 to z1, shape (z1 - z0, ny, nx)."""
+        axes, every = self._candidate.axes, slice(None)
+        picked = {"z": slice(z0, z1), "y": every, "x": every, "c": self._candidate.channel, "t": 0}
         try:
-            part = self._layers.read(z0, z1)
+            part = self._dataset[tuple(picked[axis] for axis in axes)]
         except (OSError, ValueError, RuntimeError):
             raise FileError(f"is damaged: its slices {z0 + 1} to {z1} cannot be unpacked.") from None
-        return np.ascontiguousarray(part, dtype=self.header.dtype)
+        kept = [axis for axis in axes if axis in "zyx"]
+        if "z" not in kept:
+            part, kept = part[np.newaxis], ["z", *kept]
+        ordered = part.transpose([kept.index(axis) for axis in "zyx"])
+        return np.ascontiguousarray(ordered, dtype=self.header.dtype)
 
     def close(self) -> None:
-        """Let go of the file."""
+        """Close the file."""
         self._file.close()
 
 
@@ -64,7 +77,7 @@ def open_hdf5(path: Path, options: Mapping[str, Any]) -> Hdf5Voxels:
 
     file: Any = None
     try:
-        file = h5py.File(path, "r", locking=False)
+        file = h5py.File(path, "r", locking=False, **_CACHE)
         return _chosen(file, options.get("dataset"), str(options.get("axes") or ""))
     except Exception as error:
         if file is not None:

@@ -22,7 +22,7 @@ LONGEST_EDGE = 1 << 20
 LARGEST_SLICE = 1 << 30
 """Bytes of the largest slice that is read; a detector of 16,384 pixels' width gives half of that."""
 KEPT_BYTES = 1 << 29
-"""Bytes of a layer of chunks that stay unpacked while its slices are asked for."""
+"""Bytes of a layer of HDF5 chunks that stay unpacked while its slices are asked for."""
 
 
 @dataclass(frozen=True)
