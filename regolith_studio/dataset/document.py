@@ -15,7 +15,6 @@ from regolith_studio.dataset.dataset import (
     Representation,
     Representative,
 )
-from regolith_studio.dataset.migrations import migrated
 from regolith_studio.dataset.schema import FORMAT, SCHEMA_VERSION, DatasetDocument, RepresentativeRecord
 from regolith_studio.dataset.size_distribution import Weighting
 from regolith_studio.errors import DatasetError, FileError, RegolithError, of_the_entry
@@ -100,7 +99,11 @@ def parsed_document(text: str, where: str) -> DatasetDocument:
         raise DatasetError(str(error)) from error
     if not isinstance(content, dict) or content.get("format") != FORMAT:
         raise DatasetError(f"{where} is not a dataset of Regolith Studio: its format is not {FORMAT!r}.")
-    text = migrated(content, text, where)
+    if content.get("schema_version") != SCHEMA_VERSION:
+        raise DatasetError(
+            f"{where} has the schema version {content.get('schema_version')!r}, but this program reads only "
+            f"version {SCHEMA_VERSION}; build the dataset again."
+        )
     try:
         return DatasetDocument.model_validate_json(text)
     except ValidationError as error:

@@ -13,7 +13,6 @@ import regolith_studio
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest, ScriptTimes
 from regolith_studio.dataset.reading import UNASKED
-from regolith_studio.dataset.simulation_case import today_named
 from regolith_studio.errors import DatasetError, FileError, InputError
 from regolith_studio.io.atomic import recover_folder, replace_folder
 from regolith_studio.io.json_text import canonical_json, parse_strict_json
@@ -74,7 +73,7 @@ class ExportOptions:
             If there is no such setting, or a value cannot be used.
         """
         own: dict[str, Any] = {}
-        for name, value in today_named(changes).items():
+        for name, value in changes.items():
             part = next((part for part in PARTS if name in _names(getattr(self, part))), None)
             if part is not None:
                 own[part] = replace(own.get(part, getattr(self, part)), **{name: value})

@@ -14,7 +14,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from regolith_studio.dataset.size_distribution import WEIGHT_TOLERANCE, AnySizes, Weighting
 
 FORMAT = "regolith-studio-dataset"
-SCHEMA_VERSION = 2
+SCHEMA_VERSION = 3
 MESH_PATH = r"^meshes/[A-Za-z0-9_][A-Za-z0-9_.-]*\.stl$"
 
 Sha256 = Annotated[str, Field(pattern=r"^[0-9a-f]{64}$", description="SHA-256 of the file's bytes.")]
@@ -136,7 +136,7 @@ class MetadataRecord(Record):
     )
     coarsening: CoarseningRecordModel | None
     representation: RepresentationRecord | None = Field(
-        description="Null where every particle stands for itself, and in datasets of schema version 1."
+        description="Null where every particle stands for itself."
     )
     software: dict[str, str] = Field(description="Versions by package.")
 
@@ -145,7 +145,7 @@ class DatasetDocument(Record):
     """A dataset of representative particles (section 2.5)."""
 
     format: Literal["regolith-studio-dataset"]
-    schema_version: Literal[2]
+    schema_version: Literal[3]
     name: str
     length_unit: Literal["um"] = Field(description="Of all lengths whose key ends in _um.")
     shape_unit: Literal["unit volume"] = Field(description="Shapes have volume 1 and no length unit.")

@@ -1,8 +1,6 @@
 """How many particles are in the test of section 2.6, and how large a tube they fill. SI units."""
 
-from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -10,20 +8,6 @@ from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.parameters import LiftingCylinderTest
 
 MICROMETRE = 1e-6
-EARLIER_NAMES = {
-    "young_modulus": "youngs_modulus",
-    "poisson_ratio": "poissons_ratio",
-    "total_mass": "mass",
-    "lifting_speed": "lift_speed",
-}
-"""What some parameters were called in files and options of earlier versions."""
-
-
-def today_named(values: Mapping[str, Any]) -> dict[str, Any]:
-    """The same values under today's names."""
-    return {EARLIER_NAMES.get(name, name): value for name, value in values.items()}
-
-
 FILL, PACKED = 1.375, 0.55
 """Fill height over diameter of the paper's cylinder (2.5 to 3 cm of 2 cm), and the solid share of it."""
 
@@ -55,8 +39,3 @@ def particle_count(
 ) -> float:
     """Particles in `total_mass` (kg); with the paper's sizes, density and factor 378,000 in 15 g."""
     return total_mass / mean_particle_mass(dataset, density, coarse_graining_factor)
-
-
-def solid_fraction(mass: float, density: float, diameter: float, fill_height: float) -> float:
-    """Share of a cylinder filled to `fill_height` that is solid."""
-    return mass / density / (np.pi / 4 * diameter**2 * fill_height)

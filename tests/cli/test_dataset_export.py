@@ -69,13 +69,13 @@ def test_that_settings_reach_the_files(command, folder: Path, tmp_path: Path) ->
     said = command(
         "dataset", "export", folder, "--to", "rocky", "-o", tmp_path / "out",
         "--coarse-graining", 5,
-        "--set", "density=2900", "--set", "total_mass=0.01", "--set", "gravity=1.62",
+        "--set", "density=2900", "--set", "mass=0.01", "--set", "gravity=1.62",
     )  # fmt: skip
     assert said.code == 0
     case = json.loads((tmp_path / "out" / "rocky" / "case.json").read_text())
     assert case["coarse_graining_factor"] == 5.0
     assert case["contact"]["density"] == 2900
-    assert sum(one["mass"] for one in case["particles"]) == pytest.approx(0.01)  # a name of earlier versions
+    assert sum(one["mass"] for one in case["particles"]) == pytest.approx(0.01)
     assert case["test"]["gravity"] == 1.62
 
 

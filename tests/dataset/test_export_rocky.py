@@ -14,7 +14,7 @@ from regolith_studio.dataset.build import ShapeClass, build_dataset
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.exporters import EXPORTERS
 from regolith_studio.dataset.exporting import ExportOptions, write_export
-from regolith_studio.dataset.simulation_case import particle_count, solid_fraction
+from regolith_studio.dataset.simulation_case import particle_count
 from regolith_studio.dataset.size_distribution import PAPER_CLASSES_UM, DiscreteSizes, LogNormalSizes
 from regolith_studio.readers.positions import read_positions
 
@@ -72,8 +72,9 @@ def test_that_the_papers_378000_particles_weigh_15_grams(tmp_path: Path) -> None
     assert particle_count(paper_dataset(), 0.015, 3075.0, 10.0) == pytest.approx(
         simulated_particles(study, 3075.0), rel=1e-9
     )
-    assert solid_fraction(0.015, 3075.0, 0.02, 0.025) == pytest.approx(0.62, abs=0.005)
-    assert solid_fraction(0.015, 3075.0, 0.02, 0.030) == pytest.approx(0.52, abs=0.005)
+    solid_height = 0.015 / 3075.0 / (np.pi / 4 * 0.02**2)
+    assert solid_height / 0.025 == pytest.approx(0.62, abs=0.005)
+    assert solid_height / 0.030 == pytest.approx(0.52, abs=0.005)
 
 
 def test_that_percentages_are_by_mass_descending_and_end_at_100(tmp_path: Path) -> None:

@@ -123,12 +123,6 @@ def test_that_settings_of_contact_and_cylinder_go_by_their_own_names() -> None:
     assert options.contact.youngs_modulus == 30e9
 
 
-def test_that_names_of_earlier_versions_are_understood() -> None:
-    old = ExportOptions().replaced(young_modulus=1e9, poisson_ratio=0.3, total_mass=0.01, lifting_speed=0.1)
-    new = ExportOptions().replaced(youngs_modulus=1e9, poissons_ratio=0.3, mass=0.01, lift_speed=0.1)
-    assert old == new
-
-
 @pytest.mark.parametrize(
     "change",
     [

@@ -98,7 +98,7 @@ BROKEN = {
     "same mesh twice": (set_at(*FIRST, "mesh", "file", "meshes/PARTICLE_0001.stl"), "mesh files"),
     "wrong hash": (set_at(*FIRST, "mesh", "sha256", "0" * 64), "is not the file that dataset.json describes"),
     "no hash": (set_at(*FIRST, "mesh", "sha256", "abc"), "representatives[0].mesh.sha256"),
-    "newer version": (set_at("schema_version", 3), "schema version 3"),
+    "other version": (set_at("schema_version", 2), "schema version 2"),
     "other format": (set_at("format", "something"), "not a dataset of Regolith Studio"),
     "other unit": (set_at("length_unit", "mm"), "length_unit"),
     "no representatives": (set_at("representatives", []), "representatives"),

@@ -7,7 +7,6 @@ hand; every entry gets values of the other kinds, and each file is also cut shor
 import copy
 import json
 import re
-import shutil
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -15,6 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from regolith_studio.dataset.folder import dataset_files
 from regolith_studio.dataset.reading import read_document
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.mesh import Mesh
@@ -28,9 +28,9 @@ from regolith_studio.shape_models.files import write_model
 from regolith_studio.shape_models.materials import materials, write_card
 from regolith_studio.shape_models.models import MODELS
 from regolith_studio.shape_models.sample import Sample
+from tests.dataset.example import example_dataset
 
 Bad = tuple[str, bytes, str]
-OLD_DATASET = Path(__file__).parents[1] / "dataset" / "old_versions" / "1"
 OTHERS: dict[str, list[Any]] = {
     "text": [3, [], {}],
     "a whole number": ["three", 1.5, []],
@@ -118,7 +118,7 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "recipe.json").write_text(recipe.to_json())
     project = Project(recipe=recipe, pages={"scan": {"zoom": 2}})
     (folder / "project.regolith").write_text(project.model_dump_json(indent=2))
-    shutil.copy(OLD_DATASET / "dataset.json", folder)
+    (folder / "dataset.json").write_bytes(dataset_files(example_dataset(2))["dataset.json"])
     return folder
 
 

@@ -16,6 +16,7 @@ import imageio.v3 as imageio
 import numpy as np
 import pytest
 
+from regolith_studio.dataset.folder import dataset_files
 from regolith_studio.dataset.reading import read_document
 from regolith_studio.errors import DatasetError, FileError
 from regolith_studio.geometry.mesh import Mesh
@@ -33,8 +34,7 @@ from regolith_studio.shape_models.files import write_model
 from regolith_studio.shape_models.materials import materials, write_card
 from regolith_studio.shape_models.models import MODELS
 from regolith_studio.shape_models.sample import Sample
-
-OLD_DATASET = Path(__file__).parents[1] / "dataset" / "old_versions" / "1" / "dataset.json"
+from tests.dataset.example import example_dataset
 
 HURTS = [b"", b"\0", b"\xff\xff\xff\xff", b"-1", b"1e999", b"NaN", b"9" * 12, b"\n", b" ", b",", b'"', b"{"]
 HURTS += [b"[", b"null", b"true", b"l_max", b"PK\x03\x04", b"<U9999999", b"(99999999,)"]
@@ -119,7 +119,7 @@ def write_all(place: Path) -> None:
     recipe = Recipe.model_validate({"volumes": [{"file": "a.tif"}], "population": {"sources": ["x"], "n": 5}})
     (place / "recipe/recipe.json").write_text(recipe.to_json())
     (place / "project/a.regolith").write_text(Project(recipe=recipe).model_dump_json(indent=1))
-    shutil.copy(OLD_DATASET, place / "dataset/dataset.json")
+    (place / "dataset/dataset.json").write_bytes(dataset_files(example_dataset(2))["dataset.json"])
     np.savez_compressed(place / "arrays/arrays.npz", a=np.arange(12).reshape(3, 4), b=np.array(["x", "yz"]))
     voxels = np.random.default_rng(1).integers(0, 9, (4, 5, 6)).astype(np.uint8)
     for suffix in ("png", "bmp"):

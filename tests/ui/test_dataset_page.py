@@ -151,9 +151,9 @@ def test_that_settings_reach_the_exports(chosen, tmp_path, wait) -> None:
     assert case["test"]["lift_speed"] == 0.05
 
 
-def test_that_settings_of_an_earlier_version_are_understood(page) -> None:
-    old = {"contact": {"poisson_ratio": 0.25, "wall_friction": 0.1}, "cylinder": {"total_mass": 0.02}}
-    page.targets.setValue({"targets": ["rocky"]} | old)
+def test_that_settings_of_contact_and_test_are_restored(page) -> None:
+    changed = {"contact": {"poissons_ratio": 0.25}, "test": {"wall_friction": 0.1, "mass": 0.02}}
+    page.targets.setValue({"targets": ["rocky"]} | changed)
     options = page.targets.options()
     assert options.contact.poissons_ratio == 0.25
     assert (options.test.wall_friction, options.test.mass) == (0.1, 0.02)

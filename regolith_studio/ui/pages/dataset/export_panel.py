@@ -21,7 +21,6 @@ from PySide6.QtWidgets import (
 from regolith_studio.dataset.exporters import EXPORTERS
 from regolith_studio.dataset.exporting import PARTS, Exported, ExportOptions
 from regolith_studio.dataset.parameters import NOT_GIVEN, ContactParameters, LiftingCylinderTest, ScriptTimes
-from regolith_studio.dataset.simulation_case import today_named
 from regolith_studio.errors import InputError
 from regolith_studio.session.recipe_dataset import Exports
 from regolith_studio.ui.translation import mark, tr
@@ -140,7 +139,7 @@ class ExportPanel(QWidget):
         )
 
     def setValue(self, value: Mapping[str, Any]) -> None:
-        """Tick these; names that are not known are left out, those of earlier versions are understood."""
+        """Tick these; unknown names are ignored."""
         wanted = set(value.get("targets", FIRST))
         for key, box in self.boxes.items():
             box.setChecked(key in wanted)
@@ -148,8 +147,8 @@ class ExportPanel(QWidget):
         self.particles.setValue(int(value.get("particles", 200)))
         self.lossy.setChecked(bool(value.get("lossy", False)))
         changes: dict[str, Any] = {}
-        for part in (*PARTS, "cylinder"):
-            changes |= today_named(value.get(part, {}))
+        for part in PARTS:
+            changes |= value.get(part, {})
         for part in PARTS:
             with suppress(InputError):
                 getattr(self, part).restore(changes)
