@@ -73,7 +73,7 @@ def build(
     """Coarsen the meshes, or N that stand for all of them, and write a dataset folder."""
     from regolith_studio.cli.inputs import exit_code
     from regolith_studio.cli.terminal import complain, follow, print_json
-    from regolith_studio.dataset.size_spec import parse_sizes
+    from regolith_studio.dataset.size_parsing import parse_sizes
     from regolith_studio.io.atomic import write_bytes
     from regolith_studio.io.tables import csv_text
     from regolith_studio.jobs.dataset_jobs import DatasetOptions, build_dataset_folder, check_place
@@ -139,7 +139,7 @@ def list_(
 ) -> None:
     """List the datasets below a folder, each with what was exported and simulated from it."""
     from regolith_studio.cli.terminal import follow, print_json
-    from regolith_studio.dataset.library import provenance_tree
+    from regolith_studio.dataset.catalog import provenance_tree
     from regolith_studio.jobs.dataset_jobs import list_library
 
     del jobs, seed  # taken by every command
@@ -172,8 +172,8 @@ def sample(
 ) -> None:
     """Draw particles: class, equivalent diameter and orientation, the same for the same seed."""
     from regolith_studio.cli.terminal import print_json
-    from regolith_studio.dataset.folder import read_dataset
-    from regolith_studio.dataset.sample import drawn_csv, drawn_rows, sample_dataset
+    from regolith_studio.dataset.folder_io import read_dataset
+    from regolith_studio.dataset.sampling import drawn_csv, drawn_rows, sample_dataset
     from regolith_studio.io.atomic import write_bytes
 
     del jobs  # taken by every command
@@ -233,7 +233,7 @@ def export(
 ) -> None:
     """Write a dataset for DEM programs, one folder a format; what a format loses is said."""
     from regolith_studio.cli.terminal import complain, follow, print_json
-    from regolith_studio.dataset.exporting import ExportOptions
+    from regolith_studio.dataset.export import ExportOptions
     from regolith_studio.jobs.dataset_jobs import chosen_exporters, export_dataset_folder
 
     del jobs  # taken by every command

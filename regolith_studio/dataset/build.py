@@ -7,9 +7,9 @@ from typing import Protocol
 
 import regolith_studio
 from regolith_studio.dataset.alignment import aligned
-from regolith_studio.dataset.dataset import Dataset, Fidelity, Provenance, Representative
-from regolith_studio.dataset.size_distribution import (
-    DiscreteSizes,
+from regolith_studio.dataset.dataset import Approximation, Dataset, Provenance, Representative
+from regolith_studio.dataset.size_distributions import (
+    DiscreteSizeDistribution,
     SizeDistribution,
     Weighting,
     equivalent_diameter,
@@ -111,7 +111,7 @@ def build_dataset(
     """
     if not entries:
         raise InputError("A dataset needs at least one particle.")
-    own = [own_class(particle) for particle, _ in entries] if classes is None else list(classes)
+    own = [singleton_class(particle) for particle, _ in entries] if classes is None else list(classes)
     if len(own) != len(entries):
         raise InputError(f"{len(entries)} particles need as many classes, got {len(own)}.")
     weights = normalised_shares([one.weight for one in own])
@@ -154,9 +154,9 @@ def unique_names(names: Iterable[str]) -> tuple[str, ...]:
     return tuple(result)
 
 
-def own_class(particle: Particle) -> ShapeClass:
+def singleton_class(particle: Particle) -> ShapeClass:
     """The class of a particle that stands for itself."""
-    return ShapeClass(1.0, DiscreteSizes.empirical([equivalent_diameter(particle.mesh.volume)]))
+    return ShapeClass(1.0, DiscreteSizeDistribution.empirical([equivalent_diameter(particle.mesh.volume)]))
 
 
 def representative_of(
@@ -164,7 +164,7 @@ def representative_of(
 ) -> Representative:
     """The representative of a class, aligned and at unit volume."""
     shape, frame = aligned(coarsened.polyhedron, coarsened.centre)
-    fidelity = Fidelity(
+    approximation = Approximation(
         method=coarsened.method,
         n_facets_asked=coarsened.n_facets_asked,
         errors=dict(coarsened.errors),
@@ -179,7 +179,7 @@ def representative_of(
         sizes=own.sizes,
         frame=frame,
         n_members=own.n_members,
-        fidelity=fidelity,
+        approximation=approximation,
         group=particle.group,
         source=particle.source,
     )

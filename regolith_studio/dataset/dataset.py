@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from regolith_studio.dataset.alignment import Frame
-from regolith_studio.dataset.size_distribution import (
+from regolith_studio.dataset.size_distributions import (
     WEIGHT_TOLERANCE,
     SizeDistribution,
     Weighting,
@@ -23,7 +23,7 @@ Setting = bool | int | float | str | None
 
 
 @dataclass(frozen=True)
-class Fidelity:
+class Approximation:
     """How a shape was coarsened and how well it stands for its particle.
 
     Parameters
@@ -68,7 +68,7 @@ class Representative:
         How the shape lay in its particle.
     n_members
         Number of particles that the class stands for.
-    fidelity
+    approximation
         How it was coarsened, or ``None`` where the particle is a polyhedron already.
     group, source
         Of the particle.
@@ -80,7 +80,7 @@ class Representative:
     sizes: SizeDistribution
     frame: Frame
     n_members: int = 1
-    fidelity: Fidelity | None = None
+    approximation: Approximation | None = None
     group: str = ""
     source: Source | None = None
 

@@ -11,7 +11,7 @@ from regolith_studio.dataset.representatives import (
     representative_series,
     sampling_noise,
 )
-from regolith_studio.dataset.size_distribution import Weighting
+from regolith_studio.dataset.size_distributions import Weighting
 
 COUNTS = (1, 2, 3, 4, 5, 6, 8, 10, 12, 15, 20, 25, 30, 40, 50, 70, 100, 140, 200)
 """Numbers of representatives that a curve looks at; the paper has 10."""
@@ -57,7 +57,7 @@ class QualityCurve:
         return float(np.mean(list(self.noise.values())))
 
     @property
-    def enough(self) -> int | None:
+    def sufficient_count(self) -> int | None:
         """The smallest number at which the mean error is no larger than the noise; ``None`` if none is."""
         return next((point.count for point in self.points if point.mean <= self.noise_mean), None)
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from regolith_studio.dataset.build import ShapeClass
-from regolith_studio.dataset.medoids import medoid_series
-from regolith_studio.dataset.size_distribution import DiscreteSizes, Weighting
+from regolith_studio.dataset.k_medoids import medoid_series
+from regolith_studio.dataset.size_distributions import DiscreteSizeDistribution, Weighting
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 
@@ -199,7 +199,9 @@ def _spread(values: FloatArray) -> float:
 def _shape_class(diameters: FloatArray, counted: FloatArray, weighting: Weighting) -> ShapeClass:
     distinct, place = np.unique(diameters, return_inverse=True)
     amounts = np.bincount(place, weights=counted)
-    return ShapeClass(float(counted.sum()), DiscreteSizes.of(distinct, amounts, weighting), len(diameters))
+    return ShapeClass(
+        float(counted.sum()), DiscreteSizeDistribution.of(distinct, amounts, weighting), len(diameters)
+    )
 
 
 def _column(population: Sequence[Mapping[str, float]], key: str) -> FloatArray:

@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from regolith_studio.dataset.size_distribution import WEIGHT_TOLERANCE, AnySizes, Weighting
+from regolith_studio.dataset.size_distributions import WEIGHT_TOLERANCE, AnySizes, Weighting
 
 FORMAT = "regolith-studio-dataset"
 SCHEMA_VERSION = 3
@@ -22,13 +22,13 @@ Triple = tuple[float, float, float]
 Scalar = bool | int | float | str | None
 
 
-class Record(BaseModel):
+class SchemaModel(BaseModel):
     """Base of all records: frozen, no unknown fields, no infinities, no silent conversions."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
 
 
-class MeshRecord(Record):
+class MeshRecord(SchemaModel):
     """The STL file of a representative: the facets cut into triangles, outward normals, float32."""
 
     file: Annotated[
@@ -40,7 +40,7 @@ class MeshRecord(Record):
     n_triangles: Annotated[int, Field(ge=4)]
 
 
-class HalfSpacesRecord(Record):
+class HalfSpacesRecord(SchemaModel):
     """The shape exactly: all x with <normal_i, x> <= offset_i, dimensionless, unit volume."""
 
     normals: tuple[Triple, ...] = Field(min_length=4, description="Outward unit normals.")
@@ -53,7 +53,7 @@ class HalfSpacesRecord(Record):
         return self
 
 
-class FrameRecord(Record):
+class FrameRecord(SchemaModel):
     """Where the shape lay in its particle: x_shape = rotation (x_particle - centroid) / scale."""
 
     rotation: tuple[Triple, Triple, Triple] = Field(description="Row by row.")
@@ -61,7 +61,7 @@ class FrameRecord(Record):
     scale_um: Annotated[float, Field(gt=0.0, description="Cube root of the polyhedron's volume.")]
 
 
-class FidelityRecord(Record):
+class ApproximationRecord(SchemaModel):
     """How well the shape stands for its particle."""
 
     method: str
@@ -72,7 +72,7 @@ class FidelityRecord(Record):
     reason: str | None = Field(description="Why a request was not met.")
 
 
-class SourceRecord(Record):
+class SourceRecord(SchemaModel):
     """A file that was measured, as the user named it."""
 
     path: str
@@ -80,7 +80,7 @@ class SourceRecord(Record):
     unit: str = Field(description="Length unit that the file's numbers were taken in.")
 
 
-class RepresentativeRecord(Record):
+class RepresentativeRecord(SchemaModel):
     """One class: a unit-volume shape, its weight alpha_i and its size distribution F_i."""
 
     name: Annotated[str, Field(min_length=1)]
@@ -91,11 +91,11 @@ class RepresentativeRecord(Record):
     mesh: MeshRecord
     half_spaces: HalfSpacesRecord
     frame: FrameRecord
-    fidelity: FidelityRecord | None
+    approximation: ApproximationRecord | None
     source: SourceRecord | None
 
 
-class CoarseningRecordModel(Record):
+class CoarseningRecordModel(SchemaModel):
     """What was asked of the coarsening of all shapes."""
 
     method: str
@@ -111,7 +111,7 @@ class CoarseningRecordModel(Record):
     )
 
 
-class RepresentationRecord(Record):
+class RepresentationRecord(SchemaModel):
     """How well the representatives stand for the population that they were chosen from."""
 
     n_particles: Annotated[int, Field(ge=1, description="Of the population.")]
@@ -123,7 +123,7 @@ class RepresentationRecord(Record):
     )
 
 
-class MetadataRecord(Record):
+class MetadataRecord(SchemaModel):
     """How the dataset came about."""
 
     description: str
@@ -141,7 +141,7 @@ class MetadataRecord(Record):
     software: dict[str, str] = Field(description="Versions by package.")
 
 
-class DatasetDocument(Record):
+class DatasetDocument(SchemaModel):
     """A dataset of representative particles (section 2.5)."""
 
     format: Literal["regolith-studio-dataset"]

@@ -15,17 +15,21 @@ from pydantic import ValidationError
 
 from regolith_studio.dataset.build import (
     CoarsenedShape,
-    own_class,
     representative_of,
+    singleton_class,
     software_versions,
 )
 from regolith_studio.dataset.dataset import Provenance, Representative
-from regolith_studio.dataset.document import frame_of, mesh_header, mesh_path, parsed_document, record_of
-from regolith_studio.dataset.folder import check_replaceable
-from regolith_studio.dataset.reading import DOCUMENT, LARGEST_DOCUMENT, README
-from regolith_studio.dataset.readme_text import README as README_TEXT
+from regolith_studio.dataset.folder_io import (
+    DOCUMENT,
+    MAX_DOCUMENT_BYTES,
+    README,
+    README_TEMPLATE,
+    check_replaceable,
+)
 from regolith_studio.dataset.schema import RepresentativeRecord
-from regolith_studio.dataset.size_distribution import normalised_shares
+from regolith_studio.dataset.serialization import frame_of, mesh_header, mesh_path, parsed_document, record_of
+from regolith_studio.dataset.size_distributions import normalised_shares
 from regolith_studio.errors import DatasetError, InputError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.io.atomic import recover_folder, replace_folder
@@ -57,7 +61,7 @@ class StoredShape:
 def stored_shape(particle: Particle, coarsened: CoarsenedShape) -> StoredShape:
     """The shape that stands for `particle`, aligned and at unit volume."""
     representative: Representative = representative_of(
-        particle.name, particle, coarsened, own_class(particle)
+        particle.name, particle, coarsened, singleton_class(particle)
     )
     mesh = stl_bytes(representative.shape.mesh.triangles, mesh_header(0, 1))
     return StoredShape(record_of(representative, mesh_path(0, 1), mesh), mesh)
@@ -71,7 +75,7 @@ def check_count(count: int, n_facets: int) -> None:
     InputError
         Saying how many particles a dataset may have.
     """
-    most = LARGEST_DOCUMENT // (_RECORD_BYTES + _FACE_BYTES * n_facets)
+    most = MAX_DOCUMENT_BYTES // (_RECORD_BYTES + _FACE_BYTES * n_facets)
     if count > most:
         raise InputError(
             f"A dataset of {count:,} particles of {n_facets} facets is larger than can be read again; make "
@@ -125,7 +129,7 @@ def _files(
         yield mesh_path(index, count), content
     records = _records(shapes(), digests)
     yield DOCUMENT, _document(records, name, provenance)
-    yield README, README_TEXT.format(name=name, count=count, counted="particles").encode("utf-8")
+    yield README, README_TEMPLATE.format(name=name, count=count, counted="particles").encode("utf-8")
 
 
 def _records(shapes: Iterable[StoredShape], digests: list[str]) -> Iterator[dict[str, Any]]:
@@ -162,7 +166,7 @@ def _document(records: Iterable[dict[str, Any]], name: str, provenance: Provenan
         text = canonical_json(record).rstrip("\n").replace("\n", "\n    ")
         piece = f"{',' if index else ''}\n    {text}".encode()
         size += len(piece)
-        if size > LARGEST_DOCUMENT:
+        if size > MAX_DOCUMENT_BYTES:
             raise DatasetError(
                 f"A dataset of more than {index:,} such particles is larger than can be read again; make "
                 "several, or choose representatives."

@@ -6,9 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from regolith_studio.dataset.dataset import SHAPE_TOLERANCE
-from regolith_studio.dataset.document import dataset_of, shape_of
-from regolith_studio.dataset.mesh_file import mesh_of_stl
-from regolith_studio.dataset.reading import (
+from regolith_studio.dataset.folder_io import (
     DOCUMENT,
     README,
     foreign_files,
@@ -17,11 +15,13 @@ from regolith_studio.dataset.reading import (
     real_path,
 )
 from regolith_studio.dataset.schema import RepresentativeRecord
-from regolith_studio.errors import RegolithError
+from regolith_studio.dataset.serialization import dataset_of, shape_of
+from regolith_studio.errors import DatasetError, RegolithError
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.topology import edge_table
 from regolith_studio.io.atomic import recover_folder
+from regolith_studio.io.stl import stl_triangles
 
 FLOAT32_TOLERANCE = 1e-6
 """How far an STL's coordinates may be from the exact shape: float32 at a size of about 1."""
@@ -93,3 +93,19 @@ def _mesh_problems(mesh: Mesh, shape: ConvexPolyhedron) -> list[str]:
     if len(mesh.faces) != shape.n_triangles:
         problems.append(f"the mesh has {len(mesh.faces)} triangles, its facets need {shape.n_triangles}.")
     return problems
+
+
+def mesh_of_stl(content: bytes, where: str) -> Mesh:
+    """The mesh of binary STL bytes, equal corners joined.
+
+    Raises
+    ------
+    DatasetError
+        If the bytes are no binary STL, or a coordinate is not finite.
+    """
+    try:
+        corners = stl_triangles(content).reshape(-1, 3)
+    except ValueError as error:
+        raise DatasetError(f"{where} {error}.") from error
+    vertices, index = np.unique(corners, axis=0, return_inverse=True)
+    return Mesh(vertices, index.reshape(-1, 3))

@@ -9,7 +9,7 @@ import numpy as np
 
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.parameters import PAPER_COARSE_GRAINING, ContactParameters, LiftingCylinderTest
-from regolith_studio.dataset.sample import sample_dataset
+from regolith_studio.dataset.sampling import sample_dataset
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats, locked_integers
 

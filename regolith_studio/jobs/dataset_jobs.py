@@ -4,15 +4,20 @@ from collections.abc import Generator, Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
-from regolith_studio.dataset.build import ShapeClass, build_dataset, own_class
+from regolith_studio.dataset.build import ShapeClass, build_dataset, singleton_class
+from regolith_studio.dataset.catalog import CatalogEntry, scan_catalog
 from regolith_studio.dataset.dataset import CoarseningRecord, Dataset, Provenance
+from regolith_studio.dataset.export import (
+    Exporter,
+    ExportOptions,
+    ExportResult,
+    check_loss_accepted,
+    write_export,
+)
 from regolith_studio.dataset.exporters import EXPORTERS
-from regolith_studio.dataset.exporting import Exported, Exporter, ExportOptions, check_consent, write_export
-from regolith_studio.dataset.folder import read_dataset, write_dataset
-from regolith_studio.dataset.library import LibraryEntry, scan_library
-from regolith_studio.dataset.reading import dataset_hash
-from regolith_studio.dataset.size_distribution import Weighting
-from regolith_studio.dataset.size_spec import Sizing, parse_sizes
+from regolith_studio.dataset.folder_io import dataset_hash, read_dataset, write_dataset
+from regolith_studio.dataset.size_distributions import Weighting
+from regolith_studio.dataset.size_parsing import SizeRule, parse_sizes
 from regolith_studio.dataset.streaming import check_count
 from regolith_studio.dataset.validation import validate_dataset
 from regolith_studio.errors import DatasetError, InputError
@@ -49,7 +54,7 @@ class DatasetOptions:
     representatives
         How particles that stand for all are chosen; ``None`` lets every particle stand for itself.
     sizes
-        Size distributions of the classes, as :mod:`regolith_studio.dataset.size_spec` writes them.
+        Size distributions of the classes, as :mod:`regolith_studio.dataset.size_parsing` writes them.
     """
 
     name: str = ""
@@ -167,7 +172,7 @@ def dataset_of(
     name: str,
     preset: str | None = None,
     chosen: ChosenParticles | None = None,
-    sizing: Sizing | None = None,
+    sizing: SizeRule | None = None,
 ) -> Dataset:
     """The dataset of the particles that could be coarsened.
 
@@ -189,7 +194,7 @@ def dataset_of(
         raise DatasetError(f"No particle could be coarsened, so there is no dataset: {first}")
     told = _provenance_of(outcomes, request, preset)
     weighting: Weighting = "number"
-    classes: list[ShapeClass] = [own_class(particle) for particle, _ in good]
+    classes: list[ShapeClass] = [singleton_class(particle) for particle, _ in good]
     if chosen is not None:
         weighting, classes = chosen.representatives.weighting, list(chosen.representatives.classes)
         step = (
@@ -272,9 +277,9 @@ def export_dataset_folder(
     exporters = chosen_exporters(keys)
     yield Started("Exporting", len(exporters))
     for exporter in exporters:
-        check_consent(exporter, accept_loss)
+        check_loss_accepted(exporter, accept_loss)
     dataset, digest = read_dataset(source), dataset_hash(source)
-    done: list[Exported] = []
+    done: list[ExportResult] = []
     for number, exporter in enumerate(exporters):
         yield Progress(number, len(exporters), exporter.label)
         place = target / exporter.key
@@ -324,7 +329,7 @@ def list_library(root: Path, results: Path | None = None) -> Steps:
         Where simulations are kept if not below `root`; those of its datasets are listed too.
     """
     yield Started("Looking for datasets")
-    found: list[LibraryEntry] = []
+    found: list[CatalogEntry] = []
     for entry in _entries(root, results):
         found.append(entry)
         yield Partial(entry)
@@ -332,14 +337,14 @@ def list_library(root: Path, results: Path | None = None) -> Steps:
     return tuple(found)
 
 
-def _entries(root: Path, results: Path | None) -> Iterator[LibraryEntry]:
+def _entries(root: Path, results: Path | None) -> Iterator[CatalogEntry]:
     seen, known = set(), set()
-    for entry in scan_library(root):
+    for entry in scan_catalog(root):
         seen.add(entry.folder)
         known.add(entry.sha256)
         yield entry
     if results is None or not results.is_dir():
         return
-    for entry in scan_library(results):
+    for entry in scan_catalog(results):
         if entry.kind == "result" and entry.sha256 in known - {""} and entry.folder not in seen:
             yield entry

@@ -7,9 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from regolith_studio.coarsening.weights import presets
-from regolith_studio.dataset.folder import read_dataset
+from regolith_studio.dataset.folder_io import dataset_hash, read_dataset
 from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
-from regolith_studio.dataset.reading import dataset_hash
 from regolith_studio.dem.case import Prepared, ReposeCase, prepare
 from regolith_studio.dem.engine import Ending, Engine, Moment
 from regolith_studio.dem.engines import DEFAULT_ENGINE, engine_named

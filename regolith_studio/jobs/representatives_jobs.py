@@ -13,7 +13,7 @@ from regolith_studio.dataset.representatives import (
     representation_error,
     sampling_noise,
 )
-from regolith_studio.dataset.size_distribution import Weighting
+from regolith_studio.dataset.size_distributions import Weighting
 from regolith_studio.descriptors.describe import Descriptors
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.particle import Particle

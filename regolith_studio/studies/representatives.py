@@ -9,7 +9,11 @@ def quality_table(curve: QualityCurve) -> Table:
     keys = tuple(curve.points[0].errors)
     rows = [(point.count, point.mean, *(float(point.errors[key]) for key in keys)) for point in curve.points]
     noise = (None, curve.noise_mean, *(float(curve.noise[key]) for key in keys))
-    enough = "no number looked at" if curve.enough is None else f"{curve.enough} representatives"
+    enough = (
+        "no number looked at"
+        if curve.sufficient_count is None
+        else f"{curve.sufficient_count} representatives"
+    )
     return Table(
         f"Wasserstein distance between {curve.n_particles} particles and their representatives",
         (Column("representatives"), Column("mean"), *(Column(key) for key in keys)),

@@ -18,7 +18,7 @@ from regolith_studio.ui.views.factory import surface_format
 NUMBERS = QLocale(QLocale.Language.C)
 """Numbers have a point in every language, as in the paper and in all files."""
 
-UNASKED = ("numpy.f2py", "pooch", "scipy.fft", "scipy.ndimage", "scipy.optimize")
+IGNORED_FILES = ("numpy.f2py", "pooch", "scipy.fft", "scipy.ndimage", "scipy.optimize")
 """Modules that are imported and not asked at the start of a window, most never: for Fortran, for examples of
 pyvista, for scans, and for bodies whose star point must be searched."""
 
@@ -38,7 +38,7 @@ def make_application(arguments: Sequence[str]) -> QApplication:
     share_one_heap()
     sys.setswitchinterval(TURN)
     leave_sources_unread()
-    load_when_asked(UNASKED)
+    load_when_asked(IGNORED_FILES)
     QCoreApplication.setAttribute(Qt.ApplicationAttribute.AA_ShareOpenGLContexts)
     QCoreApplication.setAttribute(Qt.ApplicationAttribute.AA_UseStyleSheetPropagationInWidgetStyles)
     QSurfaceFormat.setDefaultFormat(surface_format())

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from regolith_studio.dataset.folder import read_dataset
+from regolith_studio.dataset.folder_io import read_dataset
 
 
 def test_that_a_built_dataset_is_sound_and_reads_back(command, grains: Path, tmp_path: Path) -> None:

@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from regolith_studio.dataset.exporters import EXPORTERS
-from regolith_studio.dataset.folder import read_dataset
-from regolith_studio.dataset.reading import dataset_hash
+from regolith_studio.dataset.folder_io import dataset_hash, read_dataset
 
 
 @pytest.fixture

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from regolith_studio.dataset.folder import read_dataset
+from regolith_studio.dataset.folder_io import read_dataset
 from regolith_studio.io.stl import stl_bytes
 
 from .conftest import ellipsoid

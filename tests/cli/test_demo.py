@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from regolith_studio.cli.entry import run
-from regolith_studio.dataset.folder import read_dataset
+from regolith_studio.dataset.folder_io import read_dataset
 from regolith_studio.readers.particles import sample_particles
 from regolith_studio.session.batch import items
 

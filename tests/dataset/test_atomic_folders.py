@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from regolith_studio.dataset.folder import read_dataset, write_dataset
+from regolith_studio.dataset.folder_io import read_dataset, write_dataset
 from regolith_studio.dataset.validation import validate_dataset
 from regolith_studio.errors import DatasetError
 from regolith_studio.io import atomic
@@ -107,7 +107,7 @@ import json, os, random, signal, sys, time
 from pathlib import Path
 from regolith_studio.io import atomic
 from regolith_studio.io.atomic import replace_folder
-from regolith_studio.dataset.folder import dataset_files, read_dataset
+from regolith_studio.dataset.folder_io import dataset_files, read_dataset
 from regolith_studio.dataset.validation import validate_dataset
 
 folder, runs, mode, swaps = Path(sys.argv[1]), int(sys.argv[2]), sys.argv[3], sys.argv[4] == "swap"

@@ -8,15 +8,20 @@ from regolith_studio.coarsening.coarsen import coarsen
 from regolith_studio.dataset.alignment import Frame, aligned, principal_axes, rebuilt
 from regolith_studio.dataset.build import ShapeClass, build_dataset, software_versions, unique_names
 from regolith_studio.dataset.dataset import Dataset
-from regolith_studio.dataset.folder import validate_dataset, write_dataset
-from regolith_studio.dataset.size_distribution import DiscreteSizes, LogNormalSizes, equivalent_diameter
+from regolith_studio.dataset.folder_io import write_dataset
+from regolith_studio.dataset.size_distributions import (
+    DiscreteSizeDistribution,
+    LogNormalSizeDistribution,
+    equivalent_diameter,
+)
+from regolith_studio.dataset.validation import validate_dataset
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.imaging.samples import GRAINS
 
-from .conftest import entry, polyhedron
+from .example import entry, polyhedron
 
 
 def box(a: float, b: float, c: float) -> ConvexPolyhedron:
@@ -93,7 +98,7 @@ def test_that_each_entry_stands_for_itself_by_default() -> None:
 
 
 def test_that_classes_bring_their_weights_and_sizes() -> None:
-    sizes = [LogNormalSizes(median_um=median, log_deviation=0.2) for median in (40.0, 80.0)]
+    sizes = [LogNormalSizeDistribution(median_um=median, log_deviation=0.2) for median in (40.0, 80.0)]
     classes = [ShapeClass(3, sizes[0], 3), ShapeClass(1, sizes[1], 1)]
     dataset = build_dataset([entry(0), entry(1)], classes)
     assert dataset.weights.tolist() == [0.75, 0.25]
@@ -102,13 +107,13 @@ def test_that_classes_bring_their_weights_and_sizes() -> None:
 
 
 def test_that_one_size_distribution_can_serve_all_classes() -> None:
-    sizes = DiscreteSizes.of([25, 37, 56, 84, 125], [1, 1, 1, 1, 1])
+    sizes = DiscreteSizeDistribution.of([25, 37, 56, 84, 125], [1, 1, 1, 1, 1])
     dataset = build_dataset([entry(0), entry(1)], sizes=sizes)
     assert all(representative.sizes == sizes for representative in dataset.representatives)
 
 
 def test_that_weights_by_volume_favour_the_class_of_big_particles() -> None:
-    classes = [ShapeClass(1, DiscreteSizes.empirical([d])) for d in (10.0, 20.0)]
+    classes = [ShapeClass(1, DiscreteSizeDistribution.empirical([d])) for d in (10.0, 20.0)]
     dataset = build_dataset([entry(0), entry(1)], classes)
     assert dataset.class_weights("volume") == pytest.approx([1 / 9, 8 / 9])
     by_volume = build_dataset([entry(0), entry(1)], classes, weighting="volume")
@@ -151,7 +156,7 @@ def test_that_a_particle_coarsened_by_the_program_becomes_a_dataset(tmp_path) ->
     assert validate_dataset(write_dataset(tmp_path / "set", dataset)) == []
     (one,) = dataset.representatives
     assert one.shape.n_facets == coarse.n_facets
-    assert one.fidelity.errors == dict(coarse.errors)
+    assert one.approximation.errors == dict(coarse.errors)
     back = one.frame.to_particle(one.shape.vertices)
     assert np.sort(back, axis=0) == pytest.approx(np.sort(coarse.mesh.vertices, axis=0), abs=1e-6)
 

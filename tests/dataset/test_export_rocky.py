@@ -12,13 +12,17 @@ import trimesh
 
 from regolith_studio.dataset.build import ShapeClass, build_dataset
 from regolith_studio.dataset.dataset import Dataset
+from regolith_studio.dataset.export import ExportOptions, write_export
 from regolith_studio.dataset.exporters import EXPORTERS
-from regolith_studio.dataset.exporting import ExportOptions, write_export
-from regolith_studio.dataset.simulation_case import particle_count
-from regolith_studio.dataset.size_distribution import PAPER_CLASSES_UM, DiscreteSizes, LogNormalSizes
+from regolith_studio.dataset.lifting_cylinder import particle_count
+from regolith_studio.dataset.size_distributions import (
+    PAPER_CLASSES_UM,
+    DiscreteSizeDistribution,
+    LogNormalSizeDistribution,
+)
 from regolith_studio.readers.positions import read_positions
 
-from .conftest import entry
+from .example import entry
 from .rocky_recorder import Recorder
 
 NUMBER_SHARES = (85.5, 12.6, 1.7, 0.23, 0.03)
@@ -26,7 +30,7 @@ NUMBER_SHARES = (85.5, 12.6, 1.7, 0.23, 0.03)
 
 
 def paper_dataset(count: int = 10) -> Dataset:
-    sizes = DiscreteSizes.of(PAPER_CLASSES_UM, NUMBER_SHARES)
+    sizes = DiscreteSizeDistribution.of(PAPER_CLASSES_UM, NUMBER_SHARES)
     return build_dataset([entry(seed) for seed in range(count)], sizes=sizes, name="Table 1")
 
 
@@ -89,14 +93,17 @@ def test_that_percentages_are_by_mass_descending_and_end_at_100(tmp_path: Path) 
 
 
 def test_that_a_class_weight_by_number_becomes_a_share_of_the_mass(tmp_path: Path) -> None:
-    classes = [ShapeClass(3, DiscreteSizes.empirical([20.0])), ShapeClass(1, DiscreteSizes.empirical([40.0]))]
+    classes = [
+        ShapeClass(3, DiscreteSizeDistribution.empirical([20.0])),
+        ShapeClass(1, DiscreteSizeDistribution.empirical([40.0])),
+    ]
     study = recorded(build_dataset([entry(0), entry(1)], classes), tmp_path / "x").of("study")[0]
     masses = [mass for _, mass in inlets(study)]
     assert masses == pytest.approx([0.015 * 3 / 11, 0.015 * 8 / 11])
 
 
 def test_that_a_continuous_distribution_keeps_number_and_mass(tmp_path: Path) -> None:
-    sizes = LogNormalSizes(median_um=50.0, log_deviation=0.4)
+    sizes = LogNormalSizeDistribution(median_um=50.0, log_deviation=0.4)
     dataset = build_dataset([entry(0)], sizes=sizes)
     study = recorded(dataset, tmp_path / "x").of("study")[0]
     cube = 50.0**3 * np.exp(9 * 0.4**2 / 2)

@@ -10,24 +10,30 @@ import pytest
 import trimesh
 from scipy.spatial import ConvexHull, HalfspaceIntersection
 
-from regolith_studio.dataset.bodies import lay_out
 from regolith_studio.dataset.build import build_dataset
 from regolith_studio.dataset.dataset import Dataset
+from regolith_studio.dataset.export import ExportOptions, write_export
 from regolith_studio.dataset.exporters import EXPORTERS
-from regolith_studio.dataset.exporting import ExportOptions, write_export
-from regolith_studio.dataset.rounding import rounded
-from regolith_studio.dataset.size_classes import size_classes
-from regolith_studio.dataset.size_distribution import (
-    DiscreteSizes,
-    LogNormalSizes,
-    RosinRammlerSizes,
-    SieveSizes,
+from regolith_studio.dataset.multisphere import (
+    fit_spheres,
+    inner_points,
+    sphere_fit_errors,
+    union_area,
+    union_volume,
 )
-from regolith_studio.dataset.sphere_fit import fit_errors, fit_spheres, inner_points, union_area, union_volume
+from regolith_studio.dataset.packing import pack_on_lattice
+from regolith_studio.dataset.rounded_polyhedra import rounded
+from regolith_studio.dataset.size_distributions import (
+    DiscreteSizeDistribution,
+    LogNormalSizeDistribution,
+    RosinRammlerSizeDistribution,
+    SieveSizeDistribution,
+    size_classes,
+)
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 
-from .conftest import entry
+from .example import entry
 
 OPTIONS = ExportOptions(n_particles=30, n_spheres=12)
 
@@ -220,7 +226,7 @@ def test_that_two_spheres_lose_the_caps_that_lie_in_each_other() -> None:
 
 
 def test_that_the_ball_in_a_cube_has_the_errors_of_the_formulas() -> None:
-    errors = fit_errors(cube(), fit_spheres(cube(), 1))
+    errors = sphere_fit_errors(cube(), fit_spheres(cube(), 1))
     assert errors.volume == pytest.approx(np.pi / 6 - 1, abs=2e-3)
     assert errors.area == pytest.approx(np.pi / 6 - 1, abs=1e-3)
     assert errors.inertia == pytest.approx(1 - 0.4 * 0.25 / (1 / 6), abs=2e-3)
@@ -258,7 +264,7 @@ def test_that_the_stated_volume_of_the_spheres_agrees_with_monte_carlo(
 def test_that_gltf_shows_every_particle_where_it_is_in_millimetres(dataset: Dataset, tmp_path: Path) -> None:
     folder = exported(dataset, "gltf", tmp_path / "x")
     scene = trimesh.load_scene(folder / "particles.glb")
-    bodies = lay_out(dataset, OPTIONS)
+    bodies = pack_on_lattice(dataset, OPTIONS)
     assert len(scene.geometry) == 3
     assert len(scene.graph.nodes_geometry) == len(bodies)
     for index in range(len(bodies)):
@@ -277,14 +283,14 @@ def test_that_gltf_shows_every_particle_where_it_is_in_millimetres(dataset: Data
 
 
 SIZES = {
-    "discrete": DiscreteSizes.of([20, 40], [3, 1]),
-    "many": DiscreteSizes.empirical(np.random.default_rng(0).lognormal(3.5, 0.5, 500)),
-    "by volume": DiscreteSizes.of([20, 40, 60], [1, 1, 1], "volume"),
-    "sieve": SieveSizes.of([20, 30, 60, 90], [1, 2, 1]),
-    "log-normal": LogNormalSizes(median_um=50.0, log_deviation=0.5),
-    "log-normal by volume": LogNormalSizes(weighting="volume", median_um=50.0, log_deviation=0.4),
-    "rosin-rammler": RosinRammlerSizes(
-        weighting="volume", scale_um=60.0, shape=2.0, smallest_um=10.0, largest_um=200.0
+    "discrete": DiscreteSizeDistribution.of([20, 40], [3, 1]),
+    "many": DiscreteSizeDistribution.empirical(np.random.default_rng(0).lognormal(3.5, 0.5, 500)),
+    "by volume": DiscreteSizeDistribution.of([20, 40, 60], [1, 1, 1], "volume"),
+    "sieve": SieveSizeDistribution.of([20, 30, 60, 90], [1, 2, 1]),
+    "log-normal": LogNormalSizeDistribution(median_um=50.0, log_deviation=0.5),
+    "log-normal by volume": LogNormalSizeDistribution(weighting="volume", median_um=50.0, log_deviation=0.4),
+    "rosin-rammler": RosinRammlerSizeDistribution(
+        weighting="volume", scale_um=60.0, shape=2.0, min_um=10.0, max_um=200.0
     ),
 }
 

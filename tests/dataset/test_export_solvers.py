@@ -15,22 +15,22 @@ import pytest
 from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
-from regolith_studio.dataset.bodies import fitting_tube, lay_out
 from regolith_studio.dataset.build import build_dataset
 from regolith_studio.dataset.dataset import Dataset
+from regolith_studio.dataset.export import ExportOptions, write_export
 from regolith_studio.dataset.exporters import EXPORTERS
-from regolith_studio.dataset.exporting import ExportOptions, write_export
-from regolith_studio.dataset.size_distribution import PAPER_CLASSES_UM, DiscreteSizes
+from regolith_studio.dataset.packing import fitted_cylinder, pack_on_lattice
+from regolith_studio.dataset.size_distributions import PAPER_CLASSES_UM, DiscreteSizeDistribution
 from regolith_studio.errors import DatasetError, InputError
 
-from .conftest import entry
+from .example import entry
 
 OPTIONS = ExportOptions(n_particles=40, seed=1)
 
 
 @pytest.fixture(scope="module")
 def dataset() -> Dataset:
-    sizes = DiscreteSizes.of(PAPER_CLASSES_UM, [50, 30, 15, 4, 1])
+    sizes = DiscreteSizeDistribution.of(PAPER_CLASSES_UM, [50, 30, 15, 4, 1])
     return build_dataset([entry(seed) for seed in range(3)], sizes=sizes, name="solver test")
 
 
@@ -54,7 +54,7 @@ def moments(dataset: Dataset, which: int, mass: float, scale: float) -> np.ndarr
 
 
 def test_that_bodies_do_not_touch_and_lie_inside_the_cylinder(dataset: Dataset) -> None:
-    bodies = lay_out(dataset, OPTIONS.replaced(n_particles=300), within=0.004)
+    bodies = pack_on_lattice(dataset, OPTIONS.replaced(n_particles=300), within=0.004)
     reach = max(np.linalg.norm(one.shape.vertices, axis=1).max() for one in dataset.representatives)
     radii = reach * bodies.scale
     gaps = np.linalg.norm(bodies.position[:, None] - bodies.position[None], axis=2)
@@ -65,7 +65,7 @@ def test_that_bodies_do_not_touch_and_lie_inside_the_cylinder(dataset: Dataset) 
 
 
 def test_that_orientations_are_even_over_all_rotations(dataset: Dataset) -> None:
-    turned = lay_out(dataset, OPTIONS.replaced(n_particles=20_000)).orientation
+    turned = pack_on_lattice(dataset, OPTIONS.replaced(n_particles=20_000)).orientation
     axes = Rotation.from_quat(turned[:, [1, 2, 3, 0]]).as_matrix()
     assert np.linalg.norm(turned, axis=1) == pytest.approx(np.ones(len(turned)))
     assert np.abs(axes.mean(axis=0)).max() < 4 / np.sqrt(3 * len(turned))
@@ -79,12 +79,12 @@ def test_that_a_particle_larger_than_the_cylinder_is_refused(dataset: Dataset, t
 
 def test_that_a_tube_for_few_particles_is_as_full_as_the_papers(dataset: Dataset) -> None:
     options = OPTIONS.replaced(n_particles=20_000)
-    tube = fitting_tube(dataset, options)
-    volume = (np.pi / 6 * lay_out(dataset, options).diameter ** 3).sum()
+    tube = fitted_cylinder(dataset, options)
+    volume = (np.pi / 6 * pack_on_lattice(dataset, options).diameter ** 3).sum()
     assert tube.height / tube.diameter == pytest.approx(4)
     fill = volume / 0.55 / (np.pi / 4 * tube.diameter**2)
     assert fill / tube.diameter == pytest.approx(2.75 / 2)
-    assert fitting_tube(dataset, OPTIONS.replaced(n_particles=1_000_000, diameter=0.003)).diameter == 0.003
+    assert fitted_cylinder(dataset, OPTIONS.replaced(n_particles=1_000_000, diameter=0.003)).diameter == 0.003
 
 
 # --- YADE
@@ -107,7 +107,7 @@ def test_that_yade_finds_the_volumes_masses_and_inertia_of_the_dataset(
     folder = exported(dataset, "yade", tmp_path / "yade")
     run_yade(folder, "--check")
     found = json.loads((folder / "check.json").read_text())["particles"]
-    bodies = lay_out(dataset, OPTIONS, within=fitting_tube(dataset, OPTIONS).diameter)
+    bodies = pack_on_lattice(dataset, OPTIONS, within=fitted_cylinder(dataset, OPTIONS).diameter)
     assert len(found) == len(bodies)
     for which, scale, diameter, body in zip(
         bodies.class_index, bodies.scale, bodies.diameter, found, strict=True
@@ -127,7 +127,7 @@ def test_that_yade_lets_the_particles_fall_and_lifts_the_tube(dataset: Dataset, 
     run_yade(folder, "--run", "3000")
     with (folder / "positions.csv").open() as file:
         end = np.array([[float(row[key]) for key in ("x", "y", "z")] for row in csv.DictReader(file)])
-    start = lay_out(dataset, options, within=fitting_tube(dataset, options).diameter).position
+    start = pack_on_lattice(dataset, options, within=fitted_cylinder(dataset, options).diameter).position
     assert len(end) == 12
     assert np.isfinite(end).all()
     assert end[:, 2].max() < start[:, 2].max()
@@ -174,7 +174,7 @@ def test_that_lammps_reads_the_bodies_and_finds_their_mass_and_vertices(
     (folder / "in.test").write_text(script.replace("run   ", look + "run   "))
     done = lammps("-in", "in.test", "-var", "steps", "0", cwd=folder)
     assert done.returncode == 0, done.stdout[-2000:]
-    bodies = lay_out(dataset, OPTIONS)
+    bodies = pack_on_lattice(dataset, OPTIONS)
     mass = float(done.stdout.split("total mass ")[-1].split()[0])
     assert mass == pytest.approx((3075 * np.pi / 6 * bodies.diameter**3).sum(), rel=1e-9)
     lines = (folder / "corners.txt").read_text().split("ITEM: ENTRIES")[1].splitlines()[1:]
@@ -209,7 +209,7 @@ def test_that_mujoco_finds_the_masses_and_inertia_of_the_dataset(dataset: Datase
     mujoco = pytest.importorskip("mujoco")
     folder = exported(dataset, "mujoco", tmp_path / "mujoco")
     model = mujoco.MjModel.from_xml_path(str(folder / "particles.xml"))
-    bodies = lay_out(dataset, OPTIONS)
+    bodies = pack_on_lattice(dataset, OPTIONS)
     assert model.nbody == len(bodies) + 1
     masses = 3075 * np.pi / 6 * bodies.diameter**3 * 1e6
     assert model.body_mass[1:] == pytest.approx(masses, rel=1e-5)

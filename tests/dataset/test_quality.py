@@ -33,8 +33,10 @@ def test_that_more_representatives_come_closer_until_the_noise_is_reached(weight
     curve = quality_curve(population(400), (1, 5, 20, 100, 400), weighting=weighting)
     means = [point.mean for point in curve.points]
     assert means == sorted(means, reverse=True)
-    assert curve.enough in ((20, 100, 400) if weighting == "number" else (5, 20, 100, 400))
-    assert all(point.mean > curve.noise_mean for point in curve.points if point.count < curve.enough)
+    assert curve.sufficient_count in ((20, 100, 400) if weighting == "number" else (5, 20, 100, 400))
+    assert all(
+        point.mean > curve.noise_mean for point in curve.points if point.count < curve.sufficient_count
+    )
 
 
 def test_that_lengths_are_those_of_particles_with_their_representatives_shape() -> None:

@@ -15,7 +15,7 @@ from regolith_studio.dataset.representatives import (
 )
 from regolith_studio.errors import InputError
 
-from .conftest import entry
+from .example import entry
 
 
 def population(n: int = 300, seed: int = 0) -> list[dict[str, float]]:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from regolith_studio.dataset.folder import write_dataset
+from regolith_studio.dataset.folder_io import write_dataset
 from regolith_studio.dataset.schema import json_schema, main, schema_text
 from regolith_studio.resources import resource
 

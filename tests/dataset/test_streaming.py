@@ -9,11 +9,12 @@ import pytest
 from regolith_studio.dataset import streaming
 from regolith_studio.dataset.build import build_dataset
 from regolith_studio.dataset.dataset import CoarseningRecord, Provenance
-from regolith_studio.dataset.folder import read_dataset, validate_dataset, write_dataset
+from regolith_studio.dataset.folder_io import read_dataset, write_dataset
 from regolith_studio.dataset.streaming import StoredShape, stored_shape, write_stored
+from regolith_studio.dataset.validation import validate_dataset
 from regolith_studio.errors import DatasetError
 
-from .conftest import entry
+from .example import entry
 
 STORY = Provenance(
     description='A set with "quotes" and a µ.',
@@ -55,7 +56,7 @@ def test_that_a_shape_that_breaks_the_schema_leaves_the_folder_as_it_was(tmp_pat
 def test_that_a_dataset_that_could_not_be_read_again_is_not_written(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(streaming, "LARGEST_DOCUMENT", 5_000)
+    monkeypatch.setattr(streaming, "MAX_DOCUMENT_BYTES", 5_000)
     with pytest.raises(DatasetError, match="larger than can be read"):
         write_stored(tmp_path / "set", shapes, 3, name="a set", provenance=STORY)
     assert not (tmp_path / "set").exists()

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from regolith_studio.dataset.folder import read_dataset, write_dataset
+from regolith_studio.dataset.folder_io import read_dataset, write_dataset
 from regolith_studio.dataset.validation import validate_dataset
 from regolith_studio.errors import DatasetError, RegolithError
 from regolith_studio.geometry.mesh import Mesh
@@ -21,7 +21,7 @@ from regolith_studio.io.stl import stl_bytes
 def sound(tmp_path_factory) -> Path:
     from regolith_studio.dataset.build import build_dataset
 
-    from .conftest import entry
+    from .example import entry
 
     folder = tmp_path_factory.mktemp("sound") / "set"
     return write_dataset(folder, build_dataset([entry(0), entry(1)], name="sound"))

@@ -7,8 +7,8 @@ import pytest
 
 from regolith_studio.dataset.alignment import Frame
 from regolith_studio.dataset.dataset import Dataset, Representative
-from regolith_studio.dataset.folder import write_dataset
-from regolith_studio.dataset.size_distribution import DiscreteSizes
+from regolith_studio.dataset.folder_io import write_dataset
+from regolith_studio.dataset.size_distributions import DiscreteSizeDistribution
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 
@@ -22,7 +22,7 @@ def box(a: float, b: float, c: float) -> ConvexPolyhedron:
 
 def box_dataset() -> Dataset:
     """Cubes and bricks with two sizes."""
-    sizes = DiscreteSizes.of((80.0, 100.0), (1.0, 1.0))
+    sizes = DiscreteSizeDistribution.of((80.0, 100.0), (1.0, 1.0))
     frame = Frame(np.eye(3), np.zeros(3), 100.0)
     shapes = {"cube": box(1, 1, 1), "brick": box(3, 2, 1.5)}
     return Dataset("boxes", tuple(Representative(k, v, 0.5, sizes, frame) for k, v in shapes.items()))

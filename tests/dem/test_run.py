@@ -13,9 +13,8 @@ import pytest
 
 from regolith_studio.cli.entry import run
 from regolith_studio.coarsening.weights import LossWeights
-from regolith_studio.dataset.folder import read_dataset
+from regolith_studio.dataset.folder_io import dataset_hash, read_dataset
 from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
-from regolith_studio.dataset.reading import dataset_hash
 from regolith_studio.dem.case import ReposeCase, prepare
 from regolith_studio.dem.engine import Ending, Moment
 from regolith_studio.dem.engines import ENGINES

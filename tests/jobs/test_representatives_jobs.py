@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from regolith_studio.coarsening.weights import LossWeights
-from regolith_studio.dataset.folder import read_dataset
+from regolith_studio.dataset.folder_io import read_dataset
 from regolith_studio.errors import DatasetError, InputError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from regolith_studio.coarsening.methods.quadric import QuadricMethod
-from regolith_studio.dataset.exporting import Exporter
+from regolith_studio.dataset.export import Exporter
 from regolith_studio.dem.engine import Found
 from regolith_studio.dem.engines.yade import YadeEngine
 from regolith_studio.errors import FileError

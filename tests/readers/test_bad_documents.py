@@ -14,8 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from regolith_studio.dataset.folder import dataset_files
-from regolith_studio.dataset.reading import read_document
+from regolith_studio.dataset.folder_io import dataset_files, read_document
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere

@@ -10,7 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from regolith_studio.dataset.folder import read_dataset, validate_dataset
+from regolith_studio.dataset.folder_io import read_dataset
+from regolith_studio.dataset.validation import validate_dataset
 from regolith_studio.errors import RegolithError
 from regolith_studio.jobs.extraction_settings import read_grain_settings
 from regolith_studio.jobs.particle_jobs import load_particles

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from regolith_studio.dataset.folder import validate_dataset
+from regolith_studio.dataset.validation import validate_dataset
 from regolith_studio.errors import FileError, InputError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere

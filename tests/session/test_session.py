@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from regolith_studio.coarsening.weights import LossWeights
-from regolith_studio.dataset.folder import read_dataset
+from regolith_studio.dataset.folder_io import read_dataset
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere

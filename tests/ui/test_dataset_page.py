@@ -10,8 +10,8 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QPushButton, QWidget
 
 from regolith_studio.dataset.exporters import EXPORTERS
-from regolith_studio.dataset.folder import read_dataset, validate_dataset
-from regolith_studio.dataset.reading import dataset_hash
+from regolith_studio.dataset.folder_io import dataset_hash, read_dataset
+from regolith_studio.dataset.validation import validate_dataset
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.io.stl import stl_bytes

@@ -25,7 +25,8 @@ from PySide6.QtWidgets import (
 )
 
 from regolith_studio.coarsening.weights import presets
-from regolith_studio.dataset.folder import read_dataset, validate_dataset
+from regolith_studio.dataset.folder_io import read_dataset
+from regolith_studio.dataset.validation import validate_dataset
 from regolith_studio.ui.app import open_window, welcome
 
 MOST = 12

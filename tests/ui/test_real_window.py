@@ -22,7 +22,8 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from regolith_studio.dataset.folder import read_dataset, validate_dataset
+from regolith_studio.dataset.folder_io import read_dataset
+from regolith_studio.dataset.validation import validate_dataset
 from regolith_studio.resources import resource
 from regolith_studio.ui.app import open_window
 from regolith_studio.ui.dialogs.export import ExportDialog

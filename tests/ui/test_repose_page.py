@@ -8,7 +8,7 @@ import pytest
 from PySide6.QtCore import QPointF
 from PySide6.QtWidgets import QFileDialog, QInputDialog, QWidget
 
-from regolith_studio.dataset.folder import write_dataset
+from regolith_studio.dataset.folder_io import write_dataset
 from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
 from regolith_studio.dem.evaluation.profile import Discs
 from regolith_studio.dem.pile import Pile, pile_bytes

@@ -11,9 +11,9 @@ import sys
 from regolith_studio.ui import start
 heavy = {"numba", "scipy", "pyvista", "matplotlib"} & set(sys.modules)
 assert not heavy, heavy
-from regolith_studio.ui.application import UNASKED
+from regolith_studio.ui.application import IGNORED_FILES
 from regolith_studio.ui.asked_modules import load_when_asked
-load_when_asked(UNASKED)  # as the start does before it loads the window
+load_when_asked(IGNORED_FILES)  # as the start does before it loads the window
 import regolith_studio.ui.app as app
 heavy = {"scipy.stats", "skimage", "sklearn", "h5py", "dask", "matplotlib.figure"} & set(sys.modules)
 assert not heavy, heavy

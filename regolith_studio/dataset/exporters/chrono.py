@@ -3,10 +3,9 @@
 import numpy as np
 
 from regolith_studio.dataset.dataset import Dataset
-from regolith_studio.dataset.export_tables import shape_names, sizes_csv
-from regolith_studio.dataset.exporting import NOTES, Exporter, ExportOptions
-from regolith_studio.dataset.simulation_case import MICROMETRE
-from regolith_studio.dataset.size_classes import size_classes
+from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, shape_names, sizes_csv
+from regolith_studio.dataset.lifting_cylinder import MICROMETRE
+from regolith_studio.dataset.size_distributions import size_classes
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.io.json_text import canonical_json
 

@@ -5,10 +5,9 @@ import struct
 
 import numpy as np
 
-from regolith_studio.dataset.bodies import lay_out
 from regolith_studio.dataset.dataset import Dataset
-from regolith_studio.dataset.export_tables import shape_names
-from regolith_studio.dataset.exporting import NOTES, Exporter, ExportOptions
+from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, shape_names
+from regolith_studio.dataset.packing import pack_on_lattice
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 
@@ -55,7 +54,7 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
 
 
 def _nodes(dataset: Dataset, options: ExportOptions, keys: list[str]) -> list[dict[str, object]]:
-    bodies = lay_out(dataset, options)
+    bodies = pack_on_lattice(dataset, options)
     nodes: list[dict[str, object]] = [
         {"name": "particles", "rotation": _Z_UP_TO_Y_UP, "children": list(range(1, len(bodies) + 1))}
     ]

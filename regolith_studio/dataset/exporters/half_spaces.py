@@ -3,8 +3,7 @@
 import numpy as np
 
 from regolith_studio.dataset.dataset import Dataset
-from regolith_studio.dataset.export_tables import shape_names, sizes_csv
-from regolith_studio.dataset.exporting import NOTES, Exporter, ExportOptions
+from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, shape_names, sizes_csv
 from regolith_studio.io.json_text import canonical_json
 from regolith_studio.io.tables import csv_bytes
 

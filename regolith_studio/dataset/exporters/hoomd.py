@@ -1,8 +1,7 @@
 """Shapes as GSD files and HOOMD-blue know them: ``ConvexPolyhedron`` with vertices."""
 
 from regolith_studio.dataset.dataset import Dataset
-from regolith_studio.dataset.export_tables import shape_names, sizes_csv
-from regolith_studio.dataset.exporting import NOTES, Exporter, ExportOptions
+from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, shape_names, sizes_csv
 from regolith_studio.io.json_text import canonical_json
 
 _NOTE = b"""type_shapes goes into the GSD chunk particles/type_shapes, types into particles/types:

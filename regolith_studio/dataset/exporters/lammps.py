@@ -2,11 +2,10 @@
 
 import numpy as np
 
-from regolith_studio.dataset.bodies import Bodies, lay_out
 from regolith_studio.dataset.dataset import Dataset
-from regolith_studio.dataset.export_tables import sizes_csv
-from regolith_studio.dataset.exporting import NOTES, Exporter, ExportOptions
-from regolith_studio.dataset.rounding import RoundedPolyhedron, rounded
+from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, sizes_csv
+from regolith_studio.dataset.packing import PackedParticles, pack_on_lattice
+from regolith_studio.dataset.rounded_polyhedra import RoundedPolyhedron, rounded
 from regolith_studio.errors import DatasetError
 
 LINES, WIDTH = 32, 250
@@ -41,7 +40,7 @@ print           "total mass $(v_total:%.15g) kg"
 
 
 def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
-    bodies = lay_out(dataset, options)
+    bodies = pack_on_lattice(dataset, options)
     shapes = [rounded(one.shape, options.rounding) for one in dataset.representatives]
     counts = [_room(shape) for shape in shapes]
     lost = [100 * (1 - shape.volume) for shape in shapes]
@@ -62,7 +61,7 @@ def _room(shape: RoundedPolyhedron) -> int:
     return max(core.n_vertices, -(-numbers // 9))
 
 
-def _data(dataset: Dataset, bodies: Bodies, shapes: list[RoundedPolyhedron], density: float) -> str:
+def _data(dataset: Dataset, bodies: PackedParticles, shapes: list[RoundedPolyhedron], density: float) -> str:
     reach = float(bodies.scale.max()) * 4
     low, high = bodies.position.min(axis=0) - reach, bodies.position.max(axis=0) + reach
     masses = density * bodies.scale**3
@@ -77,7 +76,7 @@ def _data(dataset: Dataset, bodies: Bodies, shapes: list[RoundedPolyhedron], den
         f"{index + 1} 1 1 {float(mass)!r} {_row(place)}"
         for index, (mass, place) in enumerate(zip(masses, bodies.position, strict=True))
     ]
-    lines += ["", "Bodies", ""]
+    lines += ["", "PackedParticles", ""]
     for index, which in enumerate(bodies.class_index.tolist()):
         inertia = dataset.representatives[which].shape.mesh.inertia
         lines += _body(index, shapes[which], inertia, bodies, masses[index])
@@ -85,9 +84,9 @@ def _data(dataset: Dataset, bodies: Bodies, shapes: list[RoundedPolyhedron], den
 
 
 def _body(
-    index: int, shape: RoundedPolyhedron, inertia: np.ndarray, bodies: Bodies, mass: float
+    index: int, shape: RoundedPolyhedron, inertia: np.ndarray, bodies: PackedParticles, mass: float
 ) -> list[str]:
-    """One entry of the section Bodies, turned as the particle is."""
+    """One entry of the section PackedParticles, turned as the particle is."""
     turn, scale = bodies.rotation_of(index), float(bodies.scale[index])
     tensor = turn @ (inertia * mass * scale**2) @ turn.T
     corners = shape.core.vertices @ turn.T * scale
@@ -117,7 +116,7 @@ def _wrapped(words: list[str]) -> list[str]:
     return lines
 
 
-def _input(dataset: Dataset, bodies: Bodies, options: ExportOptions, bounds: dict[str, int]) -> str:
+def _input(dataset: Dataset, bodies: PackedParticles, options: ExportOptions, bounds: dict[str, int]) -> str:
     """A soft stiffness: the weight of the heaviest particle presses a thousandth of its size."""
     size = float(bodies.scale.max())
     mass = options.contact.density * size**3

@@ -4,10 +4,9 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from regolith_studio.dataset.bodies import lay_out
 from regolith_studio.dataset.dataset import Dataset
-from regolith_studio.dataset.export_tables import shape_names, sizes_csv
-from regolith_studio.dataset.exporting import NOTES, Exporter, ExportOptions
+from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, shape_names, sizes_csv
+from regolith_studio.dataset.packing import pack_on_lattice
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 
 MILLIMETRES = 1e3
@@ -19,7 +18,7 @@ one. Contacts of MuJoCo are soft constraints with Coulomb friction, not Hertz, M
 
 
 def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
-    bodies = lay_out(dataset, options)
+    bodies = pack_on_lattice(dataset, options)
     keys, density = shape_names(dataset), options.contact.density * 1e-3
     scales = bodies.scale * MILLIMETRES
     assets: dict[tuple[int, float], str] = {}

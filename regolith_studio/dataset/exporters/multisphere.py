@@ -3,9 +3,8 @@
 import numpy as np
 
 from regolith_studio.dataset.dataset import Dataset
-from regolith_studio.dataset.export_tables import shape_names, sizes_csv
-from regolith_studio.dataset.exporting import NOTES, Exporter, ExportOptions
-from regolith_studio.dataset.sphere_fit import fit_errors, fit_spheres
+from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, shape_names, sizes_csv
+from regolith_studio.dataset.multisphere import fit_spheres, sphere_fit_errors
 from regolith_studio.io.tables import csv_bytes
 
 _NOTE = """One file a shape, a line a sphere: x y z r, in the frame of the shape (volume 1, centroid at the
@@ -26,7 +25,7 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
     files, rows, said = {}, [], []
     for key, one in zip(shape_names(dataset), dataset.representatives, strict=True):
         spheres = fit_spheres(one.shape, options.n_spheres)
-        errors = fit_errors(one.shape, spheres)
+        errors = sphere_fit_errors(one.shape, spheres)
         text = "".join(" ".join(map(repr, row)) + "\n" for row in spheres.tolist())
         files[f"spheres/{key}.txt"] = text.encode("ascii")
         moments = np.diag(one.shape.mesh.inertia).tolist()

@@ -3,9 +3,8 @@
 import numpy as np
 
 from regolith_studio.dataset.dataset import Dataset
-from regolith_studio.dataset.export_tables import shape_names, sizes_csv
-from regolith_studio.dataset.exporting import NOTES, Exporter, ExportOptions
-from regolith_studio.dataset.rounding import rounded
+from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, shape_names, sizes_csv
+from regolith_studio.dataset.rounded_polyhedra import rounded
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 
 _NOTE = """shapes.shp holds all shapes, of volume 1 before rounding; a particle's homothety is its

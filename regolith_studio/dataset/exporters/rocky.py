@@ -2,12 +2,17 @@
 
 import numpy as np
 
-from regolith_studio.dataset.case_walls import box_mesh, tube_mesh
 from regolith_studio.dataset.dataset import Dataset
-from regolith_studio.dataset.export_tables import shape_names, sizes_csv
-from regolith_studio.dataset.exporting import NOTES, Exporter, ExportOptions, case_settings
-from regolith_studio.dataset.simulation_case import MICROMETRE, particle_count
-from regolith_studio.dataset.size_classes import size_classes
+from regolith_studio.dataset.export import (
+    NOTES,
+    Exporter,
+    ExportOptions,
+    case_settings,
+    shape_names,
+    sizes_csv,
+)
+from regolith_studio.dataset.lifting_cylinder import MICROMETRE, box_mesh, particle_count, tube_mesh
+from regolith_studio.dataset.size_distributions import size_classes
 from regolith_studio.io.json_text import canonical_json
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.resources import resource

@@ -4,10 +4,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from regolith_studio.dataset.bodies import Bodies, fitting_tube, lay_out
 from regolith_studio.dataset.dataset import Dataset
-from regolith_studio.dataset.export_tables import shape_names, sizes_csv
-from regolith_studio.dataset.exporting import NOTES, Exporter, ExportOptions, case_settings
+from regolith_studio.dataset.export import (
+    NOTES,
+    Exporter,
+    ExportOptions,
+    case_settings,
+    shape_names,
+    sizes_csv,
+)
+from regolith_studio.dataset.packing import PackedParticles, fitted_cylinder, pack_on_lattice
 from regolith_studio.io.json_text import canonical_json
 from regolith_studio.io.tables import csv_bytes
 from regolith_studio.resources import resource
@@ -33,8 +39,8 @@ COLUMNS = ("class", "scale", "diameter_m", "x", "y", "z", "qw", "qx", "qy", "qz"
 
 
 def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
-    options = replace(options, test=fitting_tube(dataset, options))
-    bodies = lay_out(dataset, options, within=options.test.diameter)
+    options = replace(options, test=fitted_cylinder(dataset, options))
+    bodies = pack_on_lattice(dataset, options, within=options.test.diameter)
     return {
         "yade_case.py": resource("exports", "yade_case.py").read_bytes(),
         "case.json": canonical_json(_case(dataset, options, bodies)).encode("utf-8"),
@@ -44,12 +50,12 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
     }
 
 
-def _rows(bodies: Bodies) -> list[tuple[object, ...]]:
+def _rows(bodies: PackedParticles) -> list[tuple[object, ...]]:
     table = np.column_stack([bodies.scale, bodies.diameter, bodies.position, bodies.orientation])
     return [(which, *row) for which, row in zip(bodies.class_index.tolist(), table.tolist(), strict=True)]
 
 
-def _case(dataset: Dataset, options: ExportOptions, bodies: Bodies) -> dict[str, object]:
+def _case(dataset: Dataset, options: ExportOptions, bodies: PackedParticles) -> dict[str, object]:
     masses = options.contact.density * bodies.scale**3
     largest, smallest = float(bodies.scale.max()), float(bodies.scale.min())
     stiffness = float(masses.sum()) * options.test.gravity / (OVERLAP * largest**3)

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 
-from regolith_studio.dataset.limits import check_limits
+from regolith_studio.dataset.parameters import check_limits
 from regolith_studio.errors import InputError
 
 

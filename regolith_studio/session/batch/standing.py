@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from regolith_studio.dataset.exporting import ExportOptions, check_consent
-from regolith_studio.dataset.size_spec import parse_sizes
+from regolith_studio.dataset.export import ExportOptions, check_loss_accepted
+from regolith_studio.dataset.size_parsing import parse_sizes
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
@@ -43,7 +43,7 @@ def check_standing(recipe: Recipe, n_particles: int) -> None:
             )
     if recipe.exports is not None:
         for exporter in chosen_exporters(recipe.exports.targets):
-            check_consent(exporter, recipe.exports.lossy)
+            check_loss_accepted(exporter, recipe.exports.lossy)
         export_options(recipe.exports, recipe.seed)
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
-from regolith_studio.dataset.sphere_fit import FitErrors, fit_errors, fit_spheres
+from regolith_studio.dataset.multisphere import SphereFitErrors, fit_spheres, sphere_fit_errors
 from regolith_studio.dem.case import Prepared
 from regolith_studio.dem.filling import loose_column
 from regolith_studio.geometry.arrays import FloatArray, IntArray
@@ -36,7 +36,7 @@ class ClumpShape:
 
     spheres: FloatArray
     inertia: FloatArray
-    errors: FitErrors
+    errors: SphereFitErrors
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,8 +112,10 @@ def clump_shape(vertices: FloatArray, count: int) -> ClumpShape:
     planes = np.unique(np.round(hull.equations, 10), axis=0)
     solid = ConvexPolyhedron.from_half_spaces(HalfSpaces(planes[:, :3], -planes[:, 3]))
     spheres = fit_spheres(solid, count)
-    return ClumpShape(spheres, np.asarray(solid.mesh.inertia), fit_errors(solid, spheres))
+    return ClumpShape(spheres, np.asarray(solid.mesh.inertia), sphere_fit_errors(solid, spheres))
 
 
 def _ball() -> ClumpShape:
-    return ClumpShape(np.array([[0.0, 0.0, 0.0, BALL]]), np.eye(3) * 0.4 * BALL**2, FitErrors(0.0, 0.0, 0.0))
+    return ClumpShape(
+        np.array([[0.0, 0.0, 0.0, BALL]]), np.eye(3) * 0.4 * BALL**2, SphereFitErrors(0.0, 0.0, 0.0)
+    )

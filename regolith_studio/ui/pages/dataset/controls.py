@@ -8,7 +8,7 @@ from typing import Any
 from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLineEdit, QPushButton, QVBoxLayout, QWidget
 
-from regolith_studio.dataset.size_spec import Sizing, parse_sizes
+from regolith_studio.dataset.size_parsing import SizeRule, parse_sizes
 from regolith_studio.errors import InputError
 from regolith_studio.jobs.representatives_jobs import RepresentativesRequest
 from regolith_studio.session.recipe_dataset import Representatives, Standing
@@ -147,7 +147,7 @@ class SizesPanel(QWidget):
         self._show_kind()
 
     def text(self) -> str:
-        """As :mod:`regolith_studio.dataset.size_spec` writes it."""
+        """As :mod:`regolith_studio.dataset.size_parsing` writes it."""
         key = self.kind.currentData()
         return f"{key}:{self.numbers.text().strip()}" if SIZES[key][1] else str(key)
 
@@ -163,7 +163,7 @@ class SizesPanel(QWidget):
             self.numbers.setText(text.removeprefix(f"{key}:"))
         self._tell()
 
-    def sizing(self) -> Sizing | None:
+    def sizing(self) -> SizeRule | None:
         """From measured sizes to those that are wanted; ``None`` while the numbers make no sense."""
         try:
             found = parse_sizes(self.text())

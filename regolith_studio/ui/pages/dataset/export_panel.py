@@ -18,8 +18,8 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from regolith_studio.dataset.export import PARTS, ExportOptions, ExportResult
 from regolith_studio.dataset.exporters import EXPORTERS
-from regolith_studio.dataset.exporting import PARTS, Exported, ExportOptions
 from regolith_studio.dataset.parameters import NOT_GIVEN, ContactParameters, LiftingCylinderTest, ScriptTimes
 from regolith_studio.errors import InputError
 from regolith_studio.session.recipe_dataset import Exports
@@ -249,14 +249,14 @@ class ExportsList(QWidget):
         layout.addWidget(self._empty)
         layout.addLayout(self._rows)
         layout.addStretch(1)
-        self._exports: tuple[Exported, ...] = ()
+        self._exports: tuple[ExportResult, ...] = ()
 
     @property
-    def exports(self) -> tuple[Exported, ...]:
+    def exports(self) -> tuple[ExportResult, ...]:
         """What is listed."""
         return self._exports
 
-    def show_exports(self, exports: Sequence[Exported]) -> None:
+    def show_exports(self, exports: Sequence[ExportResult]) -> None:
         """List these instead."""
         self._exports = tuple(exports)
         while (item := self._rows.takeAt(0)) is not None:
@@ -266,7 +266,7 @@ class ExportsList(QWidget):
         for one in exports:
             self._rows.addWidget(self._row(one))
 
-    def _row(self, one: Exported) -> QWidget:
+    def _row(self, one: ExportResult) -> QWidget:
         row = QWidget()
         line = QHBoxLayout(row)
         line.setContentsMargins(0, 0, 0, 0)

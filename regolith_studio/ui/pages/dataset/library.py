@@ -18,7 +18,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from regolith_studio.dataset.library import LibraryEntry, provenance_tree
+from regolith_studio.dataset.catalog import CatalogEntry, provenance_tree
 from regolith_studio.jobs.dataset_jobs import list_library
 from regolith_studio.jobs.events import Job
 from regolith_studio.ui.layout import side_by_side
@@ -45,7 +45,7 @@ class LibraryPanel(QWidget):
         super().__init__()
         self.setObjectName("dataset_library")
         self._context, self._theme = context, current_theme()
-        self._entries: tuple[LibraryEntry, ...] = ()
+        self._entries: tuple[CatalogEntry, ...] = ()
         self._pictures: dict[tuple[str, str], QIcon] = {}
         self.choose, self.again = QPushButton(tr("Folder …")), QPushButton(tr("Look again"))
         self.place = ElidedLabel("", role="remark")
@@ -64,7 +64,7 @@ class LibraryPanel(QWidget):
         self._show_facts()
 
     @property
-    def entries(self) -> tuple[LibraryEntry, ...]:
+    def entries(self) -> tuple[CatalogEntry, ...]:
         """What is listed, by path."""
         return self._entries
 
@@ -101,11 +101,11 @@ class LibraryPanel(QWidget):
         usual = user_data_path("regolith-studio") / "repose"
         return self._context.session.runs_folder or usual
 
-    def selected(self) -> LibraryEntry | None:
+    def selected(self) -> CatalogEntry | None:
         """The entry of the chosen row."""
         item = self.tree.currentItem()
         entry = item.data(0, ROLE) if item is not None else None
-        return entry if isinstance(entry, LibraryEntry) else None
+        return entry if isinstance(entry, CatalogEntry) else None
 
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
@@ -113,7 +113,7 @@ class LibraryPanel(QWidget):
         self._pictures.clear()
         self._show()
 
-    def _take(self, entries: Sequence[LibraryEntry]) -> None:
+    def _take(self, entries: Sequence[CatalogEntry]) -> None:
         self._entries = tuple(entries)
         self._show()
         if not entries:
@@ -132,7 +132,7 @@ class LibraryPanel(QWidget):
         self.tree.expandAll()
         self._show_facts()
 
-    def _item(self, entry: LibraryEntry) -> QTreeWidgetItem:
+    def _item(self, entry: CatalogEntry) -> QTreeWidgetItem:
         item = QTreeWidgetItem([entry.name, entry.problem or entry.detail])
         item.setData(0, ROLE, entry)
         item.setToolTip(0, str(entry.folder))

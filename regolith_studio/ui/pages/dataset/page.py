@@ -8,9 +8,9 @@ from typing import Any
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QFileDialog, QHBoxLayout, QMessageBox
 
-from regolith_studio.dataset.build import ShapeClass, own_class
+from regolith_studio.dataset.build import ShapeClass, singleton_class
 from regolith_studio.dataset.dataset import Dataset
-from regolith_studio.dataset.exporting import Exported
+from regolith_studio.dataset.export import ExportResult
 from regolith_studio.dataset.quality import QualityPoint
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.particle import Particle
@@ -71,7 +71,7 @@ class DatasetPage(PageWidget):
         self._points: list[QualityPoint] = []
         self._dataset: Dataset | None = None
         self._folder: Path | None = None
-        self._exports: list[Exported] = []
+        self._exports: list[ExportResult] = []
         self._opened: Standing | None = None
 
     def assemble(self) -> Iterator[None]:
@@ -318,7 +318,7 @@ class DatasetPage(PageWidget):
             return self._chosen.representatives.classes
         if len(self._particles) > MOST_MEASURED:
             return []
-        return [own_class(particle) for particle in self._particles if particle.mesh.volume > 0.0]
+        return [singleton_class(particle) for particle in self._particles if particle.mesh.volume > 0.0]
 
     def _take_built(self, built: DatasetBuildResult) -> None:
         self._take_dataset(built.folder, built.dataset)
@@ -351,12 +351,12 @@ class DatasetPage(PageWidget):
         else:
             self._context.toast.note(tr("The dataset is sound."))
 
-    def _add_export(self, one: Exported) -> None:
+    def _add_export(self, one: ExportResult) -> None:
         self._exports.append(one)
         self.exports.show_exports(self._exports)
         self._lower.setCurrentWidget(self.exports)
 
-    def _take_exports(self, done: Sequence[Exported]) -> None:
+    def _take_exports(self, done: Sequence[ExportResult]) -> None:
         self._exports = list(done)
         self.exports.show_exports(done)
         self._context.toast.note(tr_count("1 format is written.", "{count} formats are written.", len(done)))

@@ -52,7 +52,7 @@ class QualityPlot(CurvePlot):
         """The whole curve, or nothing."""
         self._points = curve.points if curve else ()
         self._noise = curve.noise_mean if curve else None
-        enough = curve.enough if curve else None
+        enough = curve.sufficient_count if curve else None
         self.set_remark(
             tr("as small as the sampling noise from N = {count} on", count=enough) if enough else ""
         )

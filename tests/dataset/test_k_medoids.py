@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.distance import cdist
 
-from regolith_studio.dataset import medoids
-from regolith_studio.dataset.medoids import build_medoids, k_medoids, swap_medoids
+from regolith_studio.dataset.k_medoids import build_medoids, k_medoids, swap_medoids
 from regolith_studio.errors import InputError
 
 
@@ -64,7 +63,7 @@ def test_that_all_points_can_be_chosen_and_twins_keep_their_own_class() -> None:
 
 
 def test_that_large_populations_are_searched_on_a_subset(monkeypatch) -> None:
-    monkeypatch.setattr(medoids, "LARGEST_TABLE", 100)
+    monkeypatch.setattr("regolith_studio.dataset.k_medoids.MAX_TABLE_SIZE", 100)
     points = np.random.default_rng(3).standard_normal((1000, 2))
     chosen, labels = k_medoids(points, 5, seed=4)
     again, _ = k_medoids(points, 5, seed=4)

@@ -5,11 +5,10 @@ from pathlib import Path
 
 import pytest
 
+from regolith_studio.dataset.catalog import provenance_tree, scan_catalog
+from regolith_studio.dataset.export import write_export
 from regolith_studio.dataset.exporters import EXPORTERS
-from regolith_studio.dataset.exporting import write_export
-from regolith_studio.dataset.folder import write_dataset
-from regolith_studio.dataset.library import provenance_tree, scan_library
-from regolith_studio.dataset.reading import dataset_hash
+from regolith_studio.dataset.folder_io import dataset_hash, write_dataset
 from regolith_studio.errors import DatasetError
 
 
@@ -37,7 +36,7 @@ def library(tmp_path: Path, make_dataset) -> Path:
 
 
 def test_that_all_kinds_are_found_with_what_is_worth_knowing(library: Path) -> None:
-    entries = {entry.folder.relative_to(library).as_posix(): entry for entry in scan_library(library)}
+    entries = {entry.folder.relative_to(library).as_posix(): entry for entry in scan_catalog(library)}
     assert sorted(entries) == ["out/hoomd", "out/planes", "runs/a", "sets/highland", "sets/mare"]
     mare = entries["sets/mare"]
     assert (mare.kind, mare.name) == ("dataset", "mare")
@@ -53,19 +52,19 @@ def test_that_all_kinds_are_found_with_what_is_worth_knowing(library: Path) -> N
 def test_that_results_hang_below_the_dataset_that_they_came_from(library: Path) -> None:
     tree = {
         parent.name: sorted(child.kind for child in children)
-        for parent, children in provenance_tree(scan_library(library))
+        for parent, children in provenance_tree(scan_catalog(library))
     }
     assert tree == {"mare": ["export", "result"], "highland": [], "test set for half-spaces": []}
 
 
 def test_that_a_copy_of_a_dataset_does_not_take_its_results_twice(library: Path, make_dataset) -> None:
     write_dataset(library / "sets" / "copy", make_dataset(2, name="mare"))
-    children = [len(below) for entry, below in provenance_tree(scan_library(library)) if entry.name == "mare"]
+    children = [len(below) for entry, below in provenance_tree(scan_catalog(library)) if entry.name == "mare"]
     assert sorted(children) == [0, 2]
 
 
 def test_that_a_filter_takes_every_word_from_anywhere(library: Path) -> None:
-    found = list(scan_library(library))
+    found = list(scan_catalog(library))
     assert [entry.folder.name for entry in found if entry.matches("HIGH")] == ["highland"]
     assert [entry.folder.name for entry in found if entry.matches("angle mujoco")] == ["a"]
     assert all(entry.matches("") for entry in found)
@@ -87,7 +86,7 @@ def test_that_a_filter_takes_every_word_from_anywhere(library: Path) -> None:
 def test_that_what_is_broken_is_listed_with_a_sentence(tmp_path: Path, name: str, text: str) -> None:
     (tmp_path / "x").mkdir()
     (tmp_path / "x" / name).write_text(text)
-    (entry,) = scan_library(tmp_path)
+    (entry,) = scan_catalog(tmp_path)
     assert entry.problem
     assert "\n" not in entry.problem
     assert provenance_tree([entry]) == [(entry, [])]
@@ -95,7 +94,7 @@ def test_that_what_is_broken_is_listed_with_a_sentence(tmp_path: Path, name: str
 
 def test_that_bytes_which_are_no_text_are_listed_too(tmp_path: Path) -> None:
     (tmp_path / "export.json").write_bytes(b"\xff\xfe\x00")
-    (entry,) = scan_library(tmp_path)
+    (entry,) = scan_catalog(tmp_path)
     assert entry.problem
 
 
@@ -103,6 +102,6 @@ def test_that_folders_deep_down_are_left_alone_and_a_missing_one_is_told(
     tmp_path: Path, make_dataset
 ) -> None:
     write_dataset(tmp_path / "a/b/c/d/e", make_dataset(1))
-    assert list(scan_library(tmp_path)) == []
+    assert list(scan_catalog(tmp_path)) == []
     with pytest.raises(DatasetError, match="is no folder"):
-        list(scan_library(tmp_path / "nowhere"))
+        list(scan_catalog(tmp_path / "nowhere"))

@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from regolith_studio.dataset.folder import read_dataset, write_dataset
-from regolith_studio.dataset.reading import dataset_hash
+from regolith_studio.dataset.folder_io import dataset_hash, read_dataset, write_dataset
 from regolith_studio.dataset.validation import validate_dataset
 from regolith_studio.errors import DatasetError
 
@@ -35,10 +34,10 @@ def test_that_a_dataset_comes_back_as_it_was(tmp_path: Path, make_dataset) -> No
         assert np.array_equal(one.shape.vertices, other.shape.vertices)
         assert one.shape.facets == other.shape.facets
         assert np.array_equal(one.frame.rotation, other.frame.rotation)
-        assert (one.weight, one.sizes, one.fidelity, one.source) == (
+        assert (one.weight, one.sizes, one.approximation, one.source) == (
             other.weight,
             other.sizes,
-            other.fidelity,
+            other.approximation,
             other.source,
         )
 
@@ -177,7 +176,7 @@ def test_that_a_link_to_a_folder_is_followed(tmp_path: Path, make_dataset) -> No
 
 def test_that_errors_which_are_not_finite_are_not_written(tmp_path: Path, make_dataset) -> None:
     dataset = make_dataset()
-    dataset.representatives[0].fidelity.errors["volume"] = float("nan")
+    dataset.representatives[0].approximation.errors["volume"] = float("nan")
     with pytest.raises(DatasetError, match="cannot be written"):
         write_dataset(tmp_path / "set", dataset)
     assert not (tmp_path / "set").exists()

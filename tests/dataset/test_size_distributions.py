@@ -5,22 +5,22 @@ import pytest
 from pydantic import ValidationError
 from scipy import integrate, stats
 
-from regolith_studio.dataset.size_distribution import (
+from regolith_studio.dataset.size_distributions import (
     PAPER_CLASSES_UM,
-    DiscreteSizes,
-    LogNormalSizes,
-    RosinRammlerSizes,
-    SieveSizes,
+    DiscreteSizeDistribution,
+    LogNormalSizeDistribution,
+    RosinRammlerSizeDistribution,
+    SieveSizeDistribution,
     SizeDistribution,
     equivalent_diameter,
     normalised_shares,
 )
 from regolith_studio.errors import InputError
 
-PAPER = DiscreteSizes.of([25, 37, 56, 84, 125], [85.5, 12.6, 1.7, 0.23, 0.03])
-SIEVE = SieveSizes.of([20, 40, 80, 160], [1, 2, 1])
-LOG_NORMAL = LogNormalSizes(median_um=60.0, log_deviation=0.4)
-ROSIN_RAMMLER = RosinRammlerSizes(scale_um=70.0, shape=2.5, smallest_um=10.0, largest_um=200.0)
+PAPER = DiscreteSizeDistribution.of([25, 37, 56, 84, 125], [85.5, 12.6, 1.7, 0.23, 0.03])
+SIEVE = SieveSizeDistribution.of([20, 40, 80, 160], [1, 2, 1])
+LOG_NORMAL = LogNormalSizeDistribution(median_um=60.0, log_deviation=0.4)
+ROSIN_RAMMLER = RosinRammlerSizeDistribution(scale_um=70.0, shape=2.5, min_um=10.0, max_um=200.0)
 ALL = [PAPER, SIEVE, LOG_NORMAL, ROSIN_RAMMLER]
 KINDS = pytest.mark.parametrize("sizes", ALL, ids=lambda sizes: sizes.type)
 
@@ -98,14 +98,14 @@ def test_that_the_paper_s_sizes_by_number_give_its_shares_by_mass() -> None:
 
 
 def test_that_measured_sizes_become_their_empirical_distribution() -> None:
-    sizes = DiscreteSizes.empirical([30.0, 10.0, 20.0, 20.0])
+    sizes = DiscreteSizeDistribution.empirical([30.0, 10.0, 20.0, 20.0])
     assert sizes.diameters_um == (10.0, 20.0, 30.0)
     assert sizes.shares == (0.25, 0.5, 0.25)
     assert sizes.cdf([9.9, 10.0, 25.0, 30.0]) == pytest.approx([0.0, 0.25, 0.75, 1.0])
 
 
 def test_that_measured_sizes_go_to_the_nearest_class_of_the_paper() -> None:
-    sizes = DiscreteSizes.in_classes([1.0, 26.0, 30.0, 31.0, 84.0, 1000.0], PAPER_CLASSES_UM)
+    sizes = DiscreteSizeDistribution.in_classes([1.0, 26.0, 30.0, 31.0, 84.0, 1000.0], PAPER_CLASSES_UM)
     assert sizes.diameters_um == (25.0, 37.0, 56.0, 84.0, 125.0)
     assert sizes.shares == pytest.approx((3 / 6, 1 / 6, 0, 1 / 6, 1 / 6))
 
@@ -130,12 +130,12 @@ def test_that_sizes_come_back_from_json_as_they_were(sizes: SizeDistribution) ->
 )
 def test_that_impossible_sizes_are_refused(wrong: dict) -> None:
     with pytest.raises(ValidationError):
-        DiscreteSizes(**wrong)
+        DiscreteSizeDistribution(**wrong)
 
 
 def test_that_a_rosin_rammler_law_with_nothing_between_its_limits_is_refused() -> None:
     with pytest.raises(ValidationError, match="hardly anything"):
-        RosinRammlerSizes(scale_um=1.0, shape=10.0, smallest_um=50.0, largest_um=60.0)
+        RosinRammlerSizeDistribution(scale_um=1.0, shape=10.0, min_um=50.0, max_um=60.0)
 
 
 @pytest.mark.parametrize("amounts", [[0.0, 0.0], [1.0, -1.0], [np.inf, 1.0]])

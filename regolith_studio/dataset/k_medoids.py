@@ -13,7 +13,7 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.kernels import kernel
 
-LARGEST_TABLE = 5000
+MAX_TABLE_SIZE = 5000
 """Larger populations are searched on a random subset of this size, so that the table fits the memory."""
 
 
@@ -31,7 +31,7 @@ def k_medoids(
     weights
         How much each point counts, shape (n,); 1 by default.
     seed
-        Chooses the subset of populations beyond :data:`LARGEST_TABLE`; smaller ones need no chance.
+        Chooses the subset of populations beyond :data:`MAX_TABLE_SIZE`; smaller ones need no chance.
 
     Returns
     -------
@@ -63,9 +63,9 @@ def medoid_series(
             raise InputError(f"Between 1 and {n} representatives can be chosen from {n} particles, got {k}.")
     counted = np.ones(n) if weights is None else np.asarray(weights, dtype=np.float64)
     subset = np.arange(n)
-    if n > LARGEST_TABLE:
+    if n > MAX_TABLE_SIZE:
         generator = np.random.default_rng(np.random.SeedSequence(seed))
-        subset = np.sort(generator.choice(n, max(LARGEST_TABLE, *counts), replace=False))
+        subset = np.sort(generator.choice(n, max(MAX_TABLE_SIZE, *counts), replace=False))
     table = cdist(points[subset], points[subset])
     built = build_medoids(table, counted[subset], max(counts))
     for k in counts:

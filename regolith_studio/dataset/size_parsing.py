@@ -6,12 +6,12 @@ import numpy as np
 from pydantic import ValidationError
 
 from regolith_studio.dataset.build import ShapeClass
-from regolith_studio.dataset.size_distribution import (
+from regolith_studio.dataset.size_distributions import (
     PAPER_CLASSES_UM,
-    DiscreteSizes,
-    LogNormalSizes,
-    RosinRammlerSizes,
-    SieveSizes,
+    DiscreteSizeDistribution,
+    LogNormalSizeDistribution,
+    RosinRammlerSizeDistribution,
+    SieveSizeDistribution,
     SizeDistribution,
     Weighting,
 )
@@ -25,15 +25,15 @@ FORMS = (
     "discrete:25=85.5,37=12.6,56=1.7",
     "sieve:20,32,45,63=10,60,30",
     "log-normal:MEDIAN,SIGMA",
-    "rosin-rammler:SCALE,SHAPE,SMALLEST,LARGEST",
+    "rosin-rammler:SCALE,SHAPE,MIN,MAX",
 )
 """What can be written; a share counts particles, or volume with ``@volume`` behind it."""
 
-Sizing = Callable[[ShapeClass], SizeDistribution]
+SizeRule = Callable[[ShapeClass], SizeDistribution]
 """From a class with its measured sizes to the sizes that it gets."""
 
 
-def parse_sizes(text: str) -> Sizing:
+def parse_sizes(text: str) -> SizeRule:
     """What a text of :data:`FORMS` asks for.
 
     ``measured`` keeps the members' diameters; ``classes`` moves each to the nearest of these diameters
@@ -65,24 +65,7 @@ def parse_sizes(text: str) -> Sizing:
     return lambda _: fixed
 
 
-def sizes_text(sizes: SizeDistribution) -> str:
-    """The text of :data:`FORMS` that stands for a distribution which is the same for all classes."""
-    at = "@volume" if sizes.weighting == "volume" else ""
-    match sizes:
-        case LogNormalSizes():
-            return f"log-normal:{sizes.median_um:g},{sizes.log_deviation:g}{at}"
-        case RosinRammlerSizes():
-            numbers = (sizes.scale_um, sizes.shape, sizes.smallest_um, sizes.largest_um)
-            return f"rosin-rammler:{_list(numbers)}{at}"
-        case SieveSizes():
-            return f"sieve:{_list(sizes.openings_um)}={_list(sizes.shares)}{at}"
-        case DiscreteSizes():
-            pairs = zip(sizes.diameters_um, sizes.shares, strict=True)
-            return "discrete:" + ",".join(f"{d:g}={share:g}" for d, share in pairs) + at
-    raise ValueError(f"no text for {type(sizes).__name__}")
-
-
-def _from_members(kind: str, rest: str) -> Sizing:
+def _from_members(kind: str, rest: str) -> SizeRule:
     if kind == "measured" and not rest:
         return lambda own: own.sizes
     if kind == "classes":
@@ -100,27 +83,27 @@ def _fixed(kind: str, rest: str, weighting: Weighting) -> SizeDistribution:
         pairs = [pair.partition("=") for pair in rest.split(",")]
         diameters = _numbers(",".join(first for first, _, _ in pairs))
         amounts = _numbers(",".join(second or "1" for _, _, second in pairs))
-        return DiscreteSizes.of(diameters, amounts, weighting)
+        return DiscreteSizeDistribution.of(diameters, amounts, weighting)
     if kind == "sieve":
         openings, _, shares = rest.partition("=")
-        return SieveSizes.of(_numbers(openings), _numbers(shares), weighting)
+        return SieveSizeDistribution.of(_numbers(openings), _numbers(shares), weighting)
     numbers = _numbers(rest)
     if kind == "log-normal" and len(numbers) == 2:
-        return LogNormalSizes(weighting=weighting, median_um=numbers[0], log_deviation=numbers[1])
+        return LogNormalSizeDistribution(weighting=weighting, median_um=numbers[0], log_deviation=numbers[1])
     if kind == "rosin-rammler" and len(numbers) == 4:
         scale, shape, smallest, largest = numbers
-        return RosinRammlerSizes(
-            weighting=weighting, scale_um=scale, shape=shape, smallest_um=smallest, largest_um=largest
+        return RosinRammlerSizeDistribution(
+            weighting=weighting, scale_um=scale, shape=shape, min_um=smallest, max_um=largest
         )
     raise InputError(_no_form(f"{kind}:{rest}"))
 
 
-def _in_classes(own: ShapeClass, classes: Sequence[float]) -> DiscreteSizes:
+def _in_classes(own: ShapeClass, classes: Sequence[float]) -> DiscreteSizeDistribution:
     diameters, shares = _members(own)
     limits = np.sqrt(np.array(classes[:-1]) * np.array(classes[1:]))
     place = np.searchsorted(limits, diameters)
     amounts = np.bincount(place, weights=shares, minlength=len(classes))
-    return DiscreteSizes.of(classes, amounts, own.sizes.weighting)
+    return DiscreteSizeDistribution.of(classes, amounts, own.sizes.weighting)
 
 
 def _fitted_log_normal(own: ShapeClass) -> SizeDistribution:
@@ -131,13 +114,13 @@ def _fitted_log_normal(own: ShapeClass) -> SizeDistribution:
     deviation = float(np.sqrt(shares @ (logarithms - mean) ** 2))
     if deviation < 1e-6:
         return own.sizes
-    return LogNormalSizes(
+    return LogNormalSizeDistribution(
         weighting=own.sizes.weighting, median_um=float(np.exp(mean)), log_deviation=deviation
     )
 
 
 def _members(own: ShapeClass) -> tuple[FloatArray, FloatArray]:
-    if not isinstance(own.sizes, DiscreteSizes):
+    if not isinstance(own.sizes, DiscreteSizeDistribution):
         raise InputError("Only measured sizes can be moved into classes or fitted.")
     return np.array(own.sizes.diameters_um), np.array(own.sizes.shares)
 
@@ -147,10 +130,6 @@ def _numbers(text: str) -> list[float]:
         return [float(word) for word in text.split(",")]
     except ValueError:
         raise InputError(f"Numbers are written as 25,37,56, got {text!r}.") from None
-
-
-def _list(values: Sequence[float]) -> str:
-    return ",".join(f"{value:g}" for value in values)
 
 
 def _no_form(text: str) -> str:

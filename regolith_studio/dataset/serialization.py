@@ -8,15 +8,15 @@ from pydantic import ValidationError
 
 from regolith_studio.dataset.alignment import Frame
 from regolith_studio.dataset.dataset import (
+    Approximation,
     CoarseningRecord,
     Dataset,
-    Fidelity,
     Provenance,
     Representation,
     Representative,
 )
 from regolith_studio.dataset.schema import FORMAT, SCHEMA_VERSION, DatasetDocument, RepresentativeRecord
-from regolith_studio.dataset.size_distribution import Weighting
+from regolith_studio.dataset.size_distributions import Weighting
 from regolith_studio.errors import DatasetError, FileError, RegolithError, of_the_entry
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
@@ -151,7 +151,9 @@ def _representative(record: RepresentativeRecord, where: str) -> Representative:
                 np.array(record.frame.rotation), np.array(record.frame.centroid_um), record.frame.scale_um
             ),
             n_members=record.n_members,
-            fidelity=None if record.fidelity is None else Fidelity(**record.fidelity.model_dump()),
+            approximation=None
+            if record.approximation is None
+            else Approximation(**record.approximation.model_dump()),
             group=record.group,
             source=None if record.source is None else Source(**record.source.model_dump()),
         )
@@ -174,7 +176,7 @@ def _provenance(document: DatasetDocument) -> Provenance:
 def record_of(representative: Representative, file: str, content: bytes) -> dict[str, Any]:
     """What ``dataset.json`` says of one representative, whose STL file is `file` and holds `content`."""
     shape, frame = representative.shape, representative.frame
-    fidelity, source = representative.fidelity, representative.source
+    approximation, source = representative.approximation, representative.source
     return {
         "name": representative.name,
         "group": representative.group,
@@ -197,7 +199,7 @@ def record_of(representative: Representative, file: str, content: bytes) -> dict
             "centroid_um": frame.centroid.tolist(),
             "scale_um": frame.scale,
         },
-        "fidelity": None if fidelity is None else _plain(vars(fidelity)),
+        "approximation": None if approximation is None else _plain(vars(approximation)),
         "source": source and {"path": source.path, "sha256": source.sha256, "unit": source.unit},
     }
 

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 from regolith_studio.dataset.dataset import Dataset
+from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, load_command, write_export
 from regolith_studio.dataset.exporters import EXPORTERS
-from regolith_studio.dataset.exporting import NOTES, Exporter, ExportOptions, load_command, write_export
-from regolith_studio.dataset.simulation_case import particle_count
+from regolith_studio.dataset.lifting_cylinder import particle_count
 from regolith_studio.errors import DatasetError, InputError
 from regolith_studio.io.atomic import leftovers
 

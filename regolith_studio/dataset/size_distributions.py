@@ -6,6 +6,7 @@ density the same as mass). The two differ by a factor d^3: ``weighted`` converts
 
 from abc import abstractmethod
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Annotated, Literal, Self
 
 import numpy as np
@@ -67,7 +68,7 @@ class SizeDistribution(BaseModel):
         return self.moment(3) if self.weighting == "number" else 1.0 / self.moment(-3)
 
 
-class DiscreteSizes(SizeDistribution):
+class DiscreteSizeDistribution(SizeDistribution):
     """Certain diameters with their shares: measured particles, or the classes of the paper's Table 1."""
 
     type: Literal["discrete"] = "discrete"
@@ -81,13 +82,15 @@ class DiscreteSizes(SizeDistribution):
         return self
 
     @classmethod
-    def empirical(cls, diameters: ArrayLike, weighting: Weighting = "number") -> "DiscreteSizes":
+    def empirical(cls, diameters: ArrayLike, weighting: Weighting = "number") -> "DiscreteSizeDistribution":
         """Of measured diameters (µm), each with the same share; equal ones are joined."""
         values, counts = np.unique(np.asarray(diameters, dtype=np.float64), return_counts=True)
         return cls.of(values, counts, weighting)
 
     @classmethod
-    def of(cls, diameters: ArrayLike, amounts: ArrayLike, weighting: Weighting = "number") -> "DiscreteSizes":
+    def of(
+        cls, diameters: ArrayLike, amounts: ArrayLike, weighting: Weighting = "number"
+    ) -> "DiscreteSizeDistribution":
         """Of ascending diameters (µm) and amounts that need not add up to 1."""
         values = np.asarray(diameters, dtype=np.float64).tolist()
         return cls(weighting=weighting, diameters_um=tuple(values), shares=normalised_shares(amounts))
@@ -95,7 +98,7 @@ class DiscreteSizes(SizeDistribution):
     @classmethod
     def in_classes(
         cls, diameters: ArrayLike, classes: ArrayLike, weighting: Weighting = "number"
-    ) -> "DiscreteSizes":
+    ) -> "DiscreteSizeDistribution":
         """Of measured diameters (µm), each moved to the class nearest in ln d; empty classes stay, with 0."""
         values = np.asarray(classes, dtype=np.float64)
         limits = np.sqrt(values[:-1] * values[1:])
@@ -113,12 +116,14 @@ class DiscreteSizes(SizeDistribution):
     def moment(self, power: float) -> float:
         return float(np.array(self.diameters_um) ** power @ np.array(self.shares))
 
-    def _by_cube(self, power: int, weighting: Weighting) -> "DiscreteSizes":
+    def _by_cube(self, power: int, weighting: Weighting) -> "DiscreteSizeDistribution":
         scaled = np.array(self.diameters_um) / max(self.diameters_um)
-        return DiscreteSizes.of(self.diameters_um, np.array(self.shares) * scaled**power, weighting)
+        return DiscreteSizeDistribution.of(
+            self.diameters_um, np.array(self.shares) * scaled**power, weighting
+        )
 
 
-class SieveSizes(SizeDistribution):
+class SieveSizeDistribution(SizeDistribution):
     """Shares between neighbouring sieve openings, even within each class: F is piecewise linear."""
 
     type: Literal["sieve"] = "sieve"
@@ -132,7 +137,9 @@ class SieveSizes(SizeDistribution):
         return self
 
     @classmethod
-    def of(cls, openings: ArrayLike, amounts: ArrayLike, weighting: Weighting = "number") -> "SieveSizes":
+    def of(
+        cls, openings: ArrayLike, amounts: ArrayLike, weighting: Weighting = "number"
+    ) -> "SieveSizeDistribution":
         """Of ascending openings (µm) and amounts that need not add up to 1."""
         values = np.asarray(openings, dtype=np.float64).tolist()
         return cls(weighting=weighting, openings_um=tuple(values), shares=normalised_shares(amounts))
@@ -157,22 +164,22 @@ class SieveSizes(SizeDistribution):
     def moment(self, power: float) -> float:
         return float(_interval_means(np.array(self.openings_um), power) @ np.array(self.shares))
 
-    def refined(self, parts: int) -> "SieveSizes":
+    def refined(self, parts: int) -> "SieveSizeDistribution":
         """The same distribution with each class cut into `parts`, evenly in ln d."""
         pairs = zip(self.openings_um[:-1], self.openings_um[1:], strict=True)
         inner = [np.geomspace(low, high, parts, endpoint=False)[1:] for low, high in pairs]
         openings = np.sort(np.concatenate([self.openings_um, *inner]))
-        return SieveSizes.of(openings, np.diff(self.cdf(openings)), self.weighting)
+        return SieveSizeDistribution.of(openings, np.diff(self.cdf(openings)), self.weighting)
 
-    def _by_cube(self, power: int, weighting: Weighting) -> "SieveSizes":
+    def _by_cube(self, power: int, weighting: Weighting) -> "SieveSizeDistribution":
         """What is even within a class is not even in the other count: the classes are cut finer first."""
         fine = self.refined(24) if len(self.shares) < 200 else self
         openings = np.array(fine.openings_um)
         means = _interval_means(openings / openings[-1], power)
-        return SieveSizes.of(openings, np.array(fine.shares) * means, weighting)
+        return SieveSizeDistribution.of(openings, np.array(fine.shares) * means, weighting)
 
 
-class LogNormalSizes(SizeDistribution):
+class LogNormalSizeDistribution(SizeDistribution):
     """Normal distribution of ln d."""
 
     type: Literal["log-normal"] = "log-normal"
@@ -192,24 +199,26 @@ class LogNormalSizes(SizeDistribution):
     def moment(self, power: float) -> float:
         return float(self.median_um**power * np.exp((power * self.log_deviation) ** 2 / 2))
 
-    def _by_cube(self, power: int, weighting: Weighting) -> "LogNormalSizes":
+    def _by_cube(self, power: int, weighting: Weighting) -> "LogNormalSizeDistribution":
         """Hatch and Choate: the median moves by exp(power sigma^2), sigma stays."""
         median = self.median_um * float(np.exp(power * self.log_deviation**2))
-        return LogNormalSizes(weighting=weighting, median_um=median, log_deviation=self.log_deviation)
+        return LogNormalSizeDistribution(
+            weighting=weighting, median_um=median, log_deviation=self.log_deviation
+        )
 
 
-class RosinRammlerSizes(SizeDistribution):
+class RosinRammlerSizeDistribution(SizeDistribution):
     """F(d) = 1 - exp(-(d / scale)^shape), cut off at a smallest and a largest diameter."""
 
     type: Literal["rosin-rammler"] = "rosin-rammler"
     scale_um: Diameter = Field(description="Diameter below which 63.2 % lie, before the cut.")
     shape: Annotated[float, Field(gt=0.0, le=100.0)]
-    smallest_um: Diameter
-    largest_um: Diameter
+    min_um: Diameter
+    max_um: Diameter
 
     @model_validator(mode="after")
     def _fits(self) -> Self:
-        _check_ascending((self.smallest_um, self.largest_um))
+        _check_ascending((self.min_um, self.max_um))
         low, high = self._limits
         if not high - low > 1e-9:
             raise ValueError("hardly anything lies between the smallest and the largest diameter")
@@ -217,14 +226,14 @@ class RosinRammlerSizes(SizeDistribution):
 
     def cdf(self, diameters: ArrayLike) -> FloatArray:
         low, high = self._limits
-        inside = np.clip(np.asarray(diameters, dtype=np.float64), self.smallest_um, self.largest_um)
+        inside = np.clip(np.asarray(diameters, dtype=np.float64), self.min_um, self.max_um)
         return np.asarray((self._uncut(inside) - low) / (high - low))
 
     def quantile(self, probabilities: ArrayLike) -> FloatArray:
         low, high = self._limits
         share = low + np.asarray(probabilities, dtype=np.float64) * (high - low)
         values = self.scale_um * (-np.log1p(-np.minimum(share, 1 - 1e-16))) ** (1 / self.shape)
-        return np.asarray(np.clip(values, self.smallest_um, self.largest_um))
+        return np.asarray(np.clip(values, self.min_um, self.max_um))
 
     def moment(self, power: float) -> float:
         """By the incomplete gamma function; by a fine sum where its argument is not positive."""
@@ -232,7 +241,7 @@ class RosinRammlerSizes(SizeDistribution):
         order = 1 + power / self.shape
         if order <= 0:
             return self.as_classes(4000).moment(power)
-        a, b = ((d / self.scale_um) ** self.shape for d in (self.smallest_um, self.largest_um))
+        a, b = ((d / self.scale_um) ** self.shape for d in (self.min_um, self.max_um))
         between = (
             gammainc(order, b) - gammainc(order, a)
             if a < order
@@ -240,13 +249,13 @@ class RosinRammlerSizes(SizeDistribution):
         )
         return float(self.scale_um**power * gamma(order) * between / (high - low))
 
-    def as_classes(self, count: int = 400) -> SieveSizes:
+    def as_classes(self, count: int = 400) -> SieveSizeDistribution:
         """The same distribution as sieve classes between evenly spaced logarithms of the diameter."""
-        openings = np.geomspace(self.smallest_um, self.largest_um, count + 1)
-        openings[[0, -1]] = self.smallest_um, self.largest_um
-        return SieveSizes.of(openings, np.diff(self.cdf(openings)), self.weighting)
+        openings = np.geomspace(self.min_um, self.max_um, count + 1)
+        openings[[0, -1]] = self.min_um, self.max_um
+        return SieveSizeDistribution.of(openings, np.diff(self.cdf(openings)), self.weighting)
 
-    def _by_cube(self, power: int, weighting: Weighting) -> SieveSizes:
+    def _by_cube(self, power: int, weighting: Weighting) -> SieveSizeDistribution:
         """No closed form: as 400 sieve classes."""
         return self.as_classes()._by_cube(power, weighting)
 
@@ -255,12 +264,16 @@ class RosinRammlerSizes(SizeDistribution):
 
     @property
     def _limits(self) -> tuple[float, float]:
-        low, high = self._uncut([self.smallest_um, self.largest_um])
+        low, high = self._uncut([self.min_um, self.max_um])
         return float(low), float(high)
 
 
 AnySizes = Annotated[
-    DiscreteSizes | SieveSizes | LogNormalSizes | RosinRammlerSizes, Field(discriminator="type")
+    DiscreteSizeDistribution
+    | SieveSizeDistribution
+    | LogNormalSizeDistribution
+    | RosinRammlerSizeDistribution,
+    Field(discriminator="type"),
 ]
 """Every kind of size distribution, told apart by its ``type``."""
 
@@ -310,3 +323,58 @@ def _check_shares(shares: Sequence[float], count: int) -> None:
         raise ValueError(f"{count} shares are needed, got {len(shares)}")
     if abs(sum(shares) - 1.0) > WEIGHT_TOLERANCE:
         raise ValueError(f"shares must add up to 1, they add up to {sum(shares)!r}")
+
+
+QUANTILES = 20_000
+"""How finely a continuous distribution is taken apart, evenly by number and as finely again by volume."""
+
+
+@dataclass(frozen=True, eq=False)
+class SizeClasses:
+    """A few diameters that stand for a distribution.
+
+    Parameters
+    ----------
+    diameters
+        Ascending, in micrometres, shape (k,).
+    number, mass
+        Share of each by number and by mass (at one density), shape (k,); each adds up to 1.
+    """
+
+    diameters: FloatArray
+    number: FloatArray
+    mass: FloatArray
+
+
+def size_classes(sizes: SizeDistribution, count: int = 16) -> SizeClasses:
+    """At most `count` diameters with their shares by number and by mass.
+
+    Discrete sizes that are few enough stay as they are. Others are gathered between evenly spaced
+    logarithms; a class has the diameter whose volume is the mean of its particles', so that number
+    and mass are both what they were.
+    """
+    diameters, number = _points(sizes)
+    if len(diameters) > count:
+        edges = np.geomspace(diameters[0], diameters[-1], count + 1)[1:-1]
+        place = np.searchsorted(edges, diameters, side="right")
+        shares = np.bincount(place, weights=number, minlength=count).astype(np.float64)
+        cubes = np.bincount(place, weights=number * diameters**3, minlength=count).astype(np.float64)
+        held = shares > 0.0
+        diameters, number = np.cbrt(cubes[held] / shares[held]), shares[held]
+    mass = number * (diameters / diameters[-1]) ** 3
+    return SizeClasses(diameters, number / number.sum(), mass / mass.sum())
+
+
+def _points(sizes: SizeDistribution) -> tuple[FloatArray, FloatArray]:
+    """Diameters and number shares that stand for a distribution closely."""
+    by_number = sizes.weighted("number")
+    if isinstance(by_number, DiscreteSizeDistribution):
+        shares = np.array(by_number.shares)
+        return np.array(by_number.diameters_um)[shares > 0], shares[shares > 0]
+    edges = np.linspace(0.0, 1.0, QUANTILES + 1)
+    middle = (edges[1:] + edges[:-1]) / 2
+    limits = np.unique(
+        np.concatenate([by_number.quantile(middle), sizes.weighted("volume").quantile(middle)])
+    )
+    rising = np.concatenate([[0.0], by_number.cdf(limits[1:-1]), [1.0]])
+    return np.asarray(np.sqrt(limits[1:] * limits[:-1])), np.diff(rising)

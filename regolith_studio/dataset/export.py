@@ -11,11 +11,13 @@ from typing import Any
 
 import regolith_studio
 from regolith_studio.dataset.dataset import Dataset
+from regolith_studio.dataset.folder_io import IGNORED_FILES
 from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest, ScriptTimes
-from regolith_studio.dataset.reading import UNASKED
+from regolith_studio.dataset.size_distributions import size_classes
 from regolith_studio.errors import DatasetError, FileError, InputError
 from regolith_studio.io.atomic import recover_folder, replace_folder
 from regolith_studio.io.json_text import canonical_json, parse_strict_json
+from regolith_studio.io.tables import csv_bytes
 
 FORMAT = "regolith-studio-export"
 RECORD, README = "export.json", "README.txt"
@@ -122,7 +124,7 @@ NOTES = "NOTES"
 
 
 @dataclass(frozen=True)
-class Exported:
+class ExportResult:
     """An export on disk."""
 
     key: str
@@ -147,7 +149,7 @@ def write_export(
     *,
     dataset_hash: str | None = None,
     accept_loss: bool = False,
-) -> Exported:
+) -> ExportResult:
     """Write one format into `folder`, which then holds it and nothing else, or is as it was before.
 
     Parameters
@@ -166,7 +168,7 @@ def write_export(
         something cannot be written.
     """
     chosen, target = options or ExportOptions(), Path(folder).resolve()
-    check_consent(exporter, accept_loss)
+    check_loss_accepted(exporter, accept_loss)
     try:
         recover_folder(target)
         _check_replaceable(target)
@@ -176,7 +178,7 @@ def write_export(
         raise DatasetError(
             f"The export could not be written to {target}: {error.strerror or error}."
         ) from error
-    return Exported(exporter.key, target, tuple(sorted(content)), load_command(exporter, target))
+    return ExportResult(exporter.key, target, tuple(sorted(content)), load_command(exporter, target))
 
 
 def load_command(exporter: Exporter, folder: Path) -> str:
@@ -185,7 +187,7 @@ def load_command(exporter: Exporter, folder: Path) -> str:
     return exporter.load_command.format(folder=folder, shell=shell)
 
 
-def check_consent(exporter: Exporter, accept_loss: bool) -> None:
+def check_loss_accepted(exporter: Exporter, accept_loss: bool) -> None:
     """Refuse a format that changes shapes, saying how, unless that was accepted.
 
     Raises
@@ -256,7 +258,7 @@ def _check_replaceable(target: Path) -> None:
     found = {
         path.relative_to(target).as_posix()
         for path in target.rglob("*")
-        if path.is_file() and path.name not in UNASKED
+        if path.is_file() and path.name not in IGNORED_FILES
     }
     if not found:
         return
@@ -281,3 +283,24 @@ def _own_files(record: Path) -> set[str]:
     if not isinstance(files, Mapping) or content.get("format") != FORMAT:
         return set()
     return set(files)
+
+
+SIZE_COLUMNS = ("class", "name", "weight_number", "weight_mass", "diameter_um", "number_share", "mass_share")
+
+
+def sizes_csv(dataset: Dataset) -> bytes:
+    """One row a class and size: weights of the class, diameter, and its share within the class."""
+    rows: list[tuple[object, ...]] = [SIZE_COLUMNS]
+    by_number, by_mass = dataset.class_weights("number"), dataset.class_weights("volume")
+    for index, one in enumerate(dataset.representatives):
+        sizes = size_classes(one.sizes)
+        for diameter, number, mass in zip(sizes.diameters, sizes.number, sizes.mass, strict=True):
+            shares = (float(by_number[index]), float(by_mass[index]), float(diameter), float(number))
+            rows.append((index, one.name, *shares, float(mass)))
+    return csv_bytes(rows)
+
+
+def shape_names(dataset: Dataset, prefix: str = "shape") -> list[str]:
+    """Names without blanks or signs, in order: ``shape_00``, ``shape_01`` ..."""
+    digits = max(2, len(str(len(dataset) - 1)))
+    return [f"{prefix}_{index:0{digits}d}" for index in range(len(dataset))]

@@ -5,22 +5,22 @@ from dataclasses import dataclass
 import numpy as np
 
 from regolith_studio.dataset.dataset import Dataset
-from regolith_studio.dataset.exporting import ExportOptions
+from regolith_studio.dataset.export import ExportOptions
+from regolith_studio.dataset.lifting_cylinder import MICROMETRE, scaled_cylinder
 from regolith_studio.dataset.parameters import LiftingCylinderTest
-from regolith_studio.dataset.sample import DrawnParticles, rotation_matrices, sample_dataset
-from regolith_studio.dataset.simulation_case import MICROMETRE, tube_for
+from regolith_studio.dataset.sampling import DrawnParticles, rotation_matrices, sample_dataset
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 
-NARROWEST = 3.0
+MIN_WIDTH = 3.0
 """Least diameter of a tube in units of the lattice's spacing."""
 
-APART = 1.02
+SPACING = 1.02
 """Spacing of the lattice in units of the largest circumscribed diameter."""
 
 
 @dataclass(frozen=True, eq=False)
-class Bodies:
+class PackedParticles:
     """Particles in SI units, coarse graining applied, none touching another.
 
     Parameters
@@ -53,7 +53,7 @@ class Bodies:
         return np.asarray(rotation_matrices(self.orientation[index : index + 1])[0])
 
 
-def lay_out(dataset: Dataset, options: ExportOptions, within: float | None = None) -> Bodies:
+def pack_on_lattice(dataset: Dataset, options: ExportOptions, within: float | None = None) -> PackedParticles:
     """Draw ``options.n_particles`` and put them on a cubic lattice.
 
     Parameters
@@ -72,7 +72,7 @@ def lay_out(dataset: Dataset, options: ExportOptions, within: float | None = Non
     layer = _layer(spacing, within, len(drawn.diameter))
     place = np.arange(len(drawn.diameter))
     height = spacing * (0.5 + place // len(layer))
-    return Bodies(
+    return PackedParticles(
         class_index=drawn.class_index,
         diameter=drawn.diameter * metres,
         position=np.column_stack([layer[place % len(layer)], height]),
@@ -80,11 +80,11 @@ def lay_out(dataset: Dataset, options: ExportOptions, within: float | None = Non
     )
 
 
-def fitting_tube(dataset: Dataset, options: ExportOptions) -> LiftingCylinderTest:
+def fitted_cylinder(dataset: Dataset, options: ExportOptions) -> LiftingCylinderTest:
     """The cylinder of the options, smaller if ``options.n_particles`` would only cover its ground."""
     drawn, spacing = _drawn(dataset, options)
     volume = float(((drawn.scale * options.coarse_graining_factor * MICROMETRE) ** 3).sum())
-    return tube_for(options.test, volume, NARROWEST * spacing)
+    return scaled_cylinder(options.test, volume, MIN_WIDTH * spacing)
 
 
 def _drawn(dataset: Dataset, options: ExportOptions) -> tuple[DrawnParticles, float]:
@@ -92,7 +92,7 @@ def _drawn(dataset: Dataset, options: ExportOptions) -> tuple[DrawnParticles, fl
     drawn = sample_dataset(dataset, options.n_particles, options.seed)
     reach = np.array([np.linalg.norm(one.shape.vertices, axis=1).max() for one in dataset.representatives])
     largest = float((reach[drawn.class_index] * drawn.scale).max())
-    return drawn, APART * 2 * largest * options.coarse_graining_factor * MICROMETRE
+    return drawn, SPACING * 2 * largest * options.coarse_graining_factor * MICROMETRE
 
 
 def _layer(spacing: float, within: float | None, count: int) -> FloatArray:

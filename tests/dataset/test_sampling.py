@@ -4,17 +4,17 @@ import numpy as np
 import pytest
 
 from regolith_studio.dataset.build import ShapeClass, build_dataset
-from regolith_studio.dataset.sample import sample_dataset
-from regolith_studio.dataset.size_distribution import DiscreteSizes, LogNormalSizes
+from regolith_studio.dataset.sampling import sample_dataset
+from regolith_studio.dataset.size_distributions import DiscreteSizeDistribution, LogNormalSizeDistribution
 from regolith_studio.errors import InputError
 
-from .conftest import entry
+from .example import entry
 
 
 def dataset(weighting="number"):
     classes = [
-        ShapeClass(3, LogNormalSizes(median_um=50.0, log_deviation=0.3)),
-        ShapeClass(1, DiscreteSizes.of([25, 125], [9, 1])),
+        ShapeClass(3, LogNormalSizeDistribution(median_um=50.0, log_deviation=0.3)),
+        ShapeClass(1, DiscreteSizeDistribution.of([25, 125], [9, 1])),
     ]
     return build_dataset([entry(0), entry(1)], classes, weighting=weighting)
 

@@ -6,11 +6,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from regolith_studio.dataset.document import shape_of
-from regolith_studio.dataset.exporting import FORMAT as EXPORT_FORMAT
-from regolith_studio.dataset.exporting import RECORD
-from regolith_studio.dataset.reading import DOCUMENT, dataset_hash, read_document
+from regolith_studio.dataset.export import FORMAT as EXPORT_FORMAT
+from regolith_studio.dataset.export import RECORD
+from regolith_studio.dataset.folder_io import DOCUMENT, dataset_hash, read_document
 from regolith_studio.dataset.schema import CoarseningRecordModel, DatasetDocument
+from regolith_studio.dataset.serialization import shape_of
 from regolith_studio.errors import DatasetError, RegolithError, reason_of
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.io.json_text import parse_strict_json
@@ -20,11 +20,11 @@ RESULT = "repose.json"
 RESULT_FORMAT = "regolith-studio-repose"
 DEPTH = 4
 """Levels of folders that are looked into."""
-LARGEST_RECORD = 20_000_000
+MAX_RECORD_BYTES = 20_000_000
 
 
 @dataclass(frozen=True, eq=False)
-class LibraryEntry:
+class CatalogEntry:
     """One folder of a library.
 
     Parameters
@@ -62,7 +62,7 @@ class LibraryEntry:
         return all(word in whole.casefold() for word in text.casefold().split())
 
 
-def scan_library(root: Path | str) -> Iterator[LibraryEntry]:
+def scan_catalog(root: Path | str) -> Iterator[CatalogEntry]:
     """Datasets, exports and results at and below `root`, by path; hidden folders are left out.
 
     Raises
@@ -84,12 +84,12 @@ def scan_library(root: Path | str) -> Iterator[LibraryEntry]:
                 yield _read(here, name, read)
 
 
-def provenance_tree(entries: Iterable[LibraryEntry]) -> list[tuple[LibraryEntry, list[LibraryEntry]]]:
+def provenance_tree(entries: Iterable[CatalogEntry]) -> list[tuple[CatalogEntry, list[CatalogEntry]]]:
     """Each dataset with what came from it, found by its hash; what came from none that is here, alone."""
     every = list(entries)
     datasets = [entry for entry in every if entry.kind == "dataset"]
-    known: dict[str, list[LibraryEntry]] = {}
-    tree: list[tuple[LibraryEntry, list[LibraryEntry]]] = []
+    known: dict[str, list[CatalogEntry]] = {}
+    tree: list[tuple[CatalogEntry, list[CatalogEntry]]] = []
     for entry in datasets:
         first = entry.sha256 and entry.sha256 not in known
         children = known.setdefault(entry.sha256, []) if first else []
@@ -103,21 +103,21 @@ def provenance_tree(entries: Iterable[LibraryEntry]) -> list[tuple[LibraryEntry,
     return tree
 
 
-def _read(folder: Path, name: str, read: Any) -> LibraryEntry:
+def _read(folder: Path, name: str, read: Any) -> CatalogEntry:
     try:
-        entry: LibraryEntry = read(folder)
+        entry: CatalogEntry = read(folder)
     except (RegolithError, ValueError, KeyError, TypeError, AttributeError) as error:
         sentence = str(error) if isinstance(error, RegolithError) else f"{name} is not what it should be."
-        return LibraryEntry(folder, _KINDS[name], folder.name, problem=sentence)
+        return CatalogEntry(folder, _KINDS[name], folder.name, problem=sentence)
     return entry
 
 
-def _dataset(folder: Path) -> LibraryEntry:
+def _dataset(folder: Path) -> CatalogEntry:
     document = read_document(folder)
     heaviest = max(document.representatives, key=lambda record: record.weight)
     faces = sorted({record.mesh.n_facets for record in document.representatives})
     span = f"{faces[0]}" if len(faces) == 1 else f"{faces[0]} to {faces[-1]}"
-    return LibraryEntry(
+    return CatalogEntry(
         folder=folder,
         kind="dataset",
         name=document.name,
@@ -146,10 +146,10 @@ def _facts(document: DatasetDocument) -> dict[str, str]:
     return {label: text for label, text in facts.items() if text}
 
 
-def _export(folder: Path) -> LibraryEntry:
+def _export(folder: Path) -> CatalogEntry:
     record = _record(folder / RECORD, EXPORT_FORMAT)
     lost = "; ".join(str(one) for one in record["loses"])
-    return LibraryEntry(
+    return CatalogEntry(
         folder=folder,
         kind="export",
         name=f"{record['dataset']} for {record['exporter']}",
@@ -159,12 +159,12 @@ def _export(folder: Path) -> LibraryEntry:
     )
 
 
-def _result(folder: Path) -> LibraryEntry:
+def _result(folder: Path) -> CatalogEntry:
     record = _record(folder / RESULT, RESULT_FORMAT)
     angle = (record.get("measurement") or {}).get("angle_deg")
     found = "no angle" if angle is None else f"{float(angle):.1f}° angle of repose"
     engine = record["engine"]["label"]
-    return LibraryEntry(
+    return CatalogEntry(
         folder=folder,
         kind="result",
         name=f"{found} of {record['dataset']['name']}",
@@ -177,8 +177,8 @@ def _record(path: Path, format: str) -> dict[str, Any]:
     try:
         if path.exists() and not path.is_file():
             raise DatasetError(f"{path} is no regular file.")
-        if path.stat().st_size > LARGEST_RECORD:
-            raise DatasetError(f"{path} is larger than {LARGEST_RECORD // 1_000_000} MB.")
+        if path.stat().st_size > MAX_RECORD_BYTES:
+            raise DatasetError(f"{path} is larger than {MAX_RECORD_BYTES // 1_000_000} MB.")
         content = parse_strict_json(path.read_text(encoding="utf-8"), str(path))
     except OSError as error:
         raise DatasetError(f"{path} cannot be read: {reason_of(error)}.") from error

@@ -21,7 +21,7 @@ SURFACE_PROBES = 4096
 
 
 @dataclass(frozen=True)
-class FitErrors:
+class SphereFitErrors:
     """How the union of spheres differs from the polyhedron that it stands for, as shares.
 
     Parameters
@@ -74,13 +74,13 @@ def union_area(spheres: FloatArray) -> float:
     return area
 
 
-def fit_errors(shape: ConvexPolyhedron, spheres: FloatArray) -> FitErrors:
+def sphere_fit_errors(shape: ConvexPolyhedron, spheres: FloatArray) -> SphereFitErrors:
     """Errors of volume, area and inertia of spheres that lie inside `shape`."""
     probes = inner_points(shape, VOLUME_PROBES)
     covered = _covered(probes, spheres)
     union = _moments(probes[covered] - shape.centroid)
     solid = np.linalg.eigvalsh(shape.mesh.inertia) / shape.volume
-    return FitErrors(
+    return SphereFitErrors(
         volume=float(covered.mean()) - 1.0,
         area=float(union_area(spheres) / shape.surface_area - 1.0),
         inertia=float(np.abs(union / solid - 1.0).max()),

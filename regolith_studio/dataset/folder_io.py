@@ -1,0 +1,202 @@
+"""The files of a dataset folder on their way in: sizes, links and foreign files are looked at first."""
+
+import hashlib
+import os
+from pathlib import Path
+
+from regolith_studio.dataset.dataset import Dataset
+from regolith_studio.dataset.schema import SCHEMA_VERSION, DatasetDocument
+from regolith_studio.dataset.serialization import dataset_of, document_text, mesh_files, parsed_document
+from regolith_studio.errors import DatasetError, reason_of
+from regolith_studio.io.atomic import recover_folder, replace_folder
+
+DOCUMENT, README = "dataset.json", "README.txt"
+IGNORED_FILES = {".DS_Store", "Thumbs.db", "desktop.ini"}
+"""Files that file managers leave behind; they go with the folder."""
+
+MAX_DOCUMENT_BYTES = 320_000_000
+"""Room for 100,000 shapes of 20 faces; reading them takes half a minute and 3 GB."""
+MAX_MESH_BYTES = 50_000_000
+
+
+def read_document(folder: Path) -> DatasetDocument:
+    """The checked ``dataset.json`` of a folder.
+
+    Raises
+    ------
+    DatasetError
+        If it is missing, too large or breaks the schema.
+    """
+    path = folder / DOCUMENT
+    try:
+        text = _read(path, MAX_DOCUMENT_BYTES).decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise DatasetError(f"{path} is not text in UTF-8.") from error
+    return parsed_document(text, str(path))
+
+
+def dataset_hash(folder: Path | str) -> str:
+    """SHA-256 of ``dataset.json``, which holds those of the meshes: what DEM results refer to.
+
+    Raises
+    ------
+    DatasetError
+        If the folder holds no dataset.
+    """
+    path = Path(folder) / DOCUMENT
+    return hashlib.sha256(_read(path, MAX_DOCUMENT_BYTES)).hexdigest()
+
+
+def read_mesh_bytes(folder: Path, file: str) -> bytes:
+    """Content of a mesh file whose relative path the schema has admitted.
+
+    Raises
+    ------
+    DatasetError
+        If it is missing, too large, or leads out of the folder by a link.
+    """
+    path = folder.joinpath(*file.split("/"))
+    if not real_path(path).is_relative_to(real_path(folder)):
+        raise DatasetError(f"{path} leads out of the dataset's folder.")
+    return _read(path, MAX_MESH_BYTES)
+
+
+def foreign_files(folder: Path, document: DatasetDocument) -> list[str]:
+    """Files and folders below `folder` that do not belong to its dataset, as relative POSIX paths."""
+    own = {DOCUMENT, README, "meshes", *(record.mesh.file for record in document.representatives)}
+    found = {
+        path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.name not in IGNORED_FILES
+    }
+    return sorted(found - own)
+
+
+def real_path(path: Path | str) -> Path:
+    """The path without links; `Path.resolve` fails where they go round in circles, this leaves them."""
+    return Path(os.path.realpath(path))
+
+
+def _read(path: Path, largest: int) -> bytes:
+    try:
+        if path.exists() and not path.is_file():
+            raise DatasetError(f"{path} is no regular file.")
+        if path.stat().st_size > largest:
+            raise DatasetError(f"{path} is larger than {largest // 1_000_000} MB.")
+        return path.read_bytes()
+    except OSError as error:
+        raise DatasetError(f"{path} cannot be read: {reason_of(error)}.") from error
+
+
+def write_dataset(folder: Path | str, dataset: Dataset, *, overwrite: bool = True) -> Path:
+    """Write the dataset; the folder then holds it and nothing else, or is as it was before.
+
+    Parameters
+    ----------
+    folder
+        New, empty, or holding a dataset of this program and nothing else.
+    overwrite
+        Whether a dataset that is there already may be replaced.
+
+    Returns
+    -------
+    Path
+        The folder.
+
+    Raises
+    ------
+    DatasetError
+        If the folder holds anything else, or something cannot be written.
+    """
+    target = Path(folder).resolve()
+    files = dataset_files(dataset)
+    try:
+        recover_folder(target)
+        check_replaceable(target, overwrite)
+        replace_folder(target, files)
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise DatasetError(f"The dataset could not be written to {target}: {reason}.") from error
+    return target
+
+
+def dataset_files(dataset: Dataset) -> dict[str, bytes]:
+    """Every file of the folder by its relative path, the same bytes for the same dataset."""
+    meshes = mesh_files(dataset)
+    texts = {DOCUMENT: document_text(dataset, meshes), README: readme_text(dataset)}
+    return meshes | {name: text.encode("utf-8") for name, text in texts.items()}
+
+
+def read_dataset(folder: Path | str) -> Dataset:
+    """The dataset of a folder; shapes from their exact half-spaces, meshes checked against their hashes.
+
+    Raises
+    ------
+    DatasetError
+        If the folder holds no dataset, or one that is broken, with the place named.
+    """
+    target = recover_folder(real_path(folder))
+    document = read_document(target)
+    for record in document.representatives:
+        if hashlib.sha256(read_mesh_bytes(target, record.mesh.file)).hexdigest() != record.mesh.sha256:
+            raise DatasetError(f"{target / record.mesh.file} is not the file that dataset.json describes.")
+    return dataset_of(document, str(target / DOCUMENT))
+
+
+def check_replaceable(target: Path, overwrite: bool) -> None:
+    """Refuse a folder that holds anything else than a dataset, or one that may not be replaced.
+
+    Raises
+    ------
+    DatasetError
+        Saying what stands there.
+    """
+    if not target.exists():
+        return
+    if not target.is_dir():
+        raise DatasetError(f"{target} is a file; a dataset is written into a folder.")
+    if not any(target.iterdir()):
+        return
+    try:
+        document = read_document(target)
+    except DatasetError as error:
+        raise DatasetError(
+            f"{target} is not empty and holds no dataset that could be replaced; choose another folder."
+        ) from error
+    if foreign := foreign_files(target, document):
+        raise DatasetError(
+            f"{target} also holds files that are not the dataset's ({foreign[0]}); nothing was overwritten."
+        )
+    if not overwrite:
+        raise DatasetError(f"{target} holds a dataset already; nothing was overwritten.")
+
+
+README_TEMPLATE = """\
+{name}
+
+A dataset of {count} representative particle shapes for the discrete element method,
+written by Regolith Studio.
+
+dataset.json   weights, size distributions, exact half-spaces, where everything comes from.
+               Its fields are described by the JSON Schema of the program
+               (resources/schema/dataset.schema.json), schema version {version}.
+meshes/        one binary STL a shape: closed, convex, outward normals, volume 1, centroid at
+               the origin, longest principal axis along x, shortest along z. STL has no unit;
+               these have none either.
+
+To make a particle: choose a class by the weights (they count {counted}), draw an equivalent
+diameter d (in micrometres) from the sizes of the class, and scale the shape by
+d * (pi / 6)^(1/3) = 0.80600 d, so that its volume is that of a ball of diameter d. Then turn it at
+random. If a program asks for a size of its own, choose the equivalent (volume) diameter.
+
+"n_facets" counts polygonal facets; the STL cuts them into triangles. The half-spaces in
+dataset.json are the exact shape: all x with <normal_i, x> <= offset_i.
+To go back to the place of a shape in its particle: x_particle = scale rotation^T x_shape + centroid.
+
+To check the folder:   regolith-studio dataset validate .
+In Python:             import regolith_studio; regolith_studio.read_dataset(".")
+""".replace("{version}", str(SCHEMA_VERSION))
+
+
+def readme_text(dataset: Dataset) -> str:
+    """The README_TEMPLATE of a dataset."""
+    counted = "particles" if dataset.weighting == "number" else "volume, not particles"
+    return README_TEMPLATE.format(name=dataset.name, count=len(dataset), counted=counted)
