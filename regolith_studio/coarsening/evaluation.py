@@ -6,10 +6,7 @@ import numpy as np
 
 from regolith_studio.coarsening.core.evaluate import (
     AREA,
-    BOX_ON_FACETS,
-    LEAST_BOX,
     LONGEST,
-    NO_BOX,
     SHARED,
     SHORTEST,
     VOLUME,
@@ -55,32 +52,25 @@ class LossFunction:
     ----------
     everything
         Whether to evaluate terms with weight 0 too.
-    on_facets
-        Whether the box of the polyhedron may be the least one with a side on a facet: many times as fast,
-        but no minimum; the particle's own stays the exact one.
     """
 
-    def __init__(
-        self, target: Target, weights: LossWeights, everything: bool = False, on_facets: bool = False
-    ) -> None:
+    def __init__(self, target: Target, weights: LossWeights, everything: bool = False) -> None:
         self._target = target
         self._weights = weights
-        measured = NO_BOX
-        if everything or any(weights[key] for key in BOX_KEYS):
-            measured = BOX_ON_FACETS if on_facets else LEAST_BOX
+        with_box = everything or any(weights[key] for key in BOX_KEYS)
         rays = target.rays
         self._crossings = np.empty((5, 0))
         if everything or weights[JACCARD]:
             self._crossings = crossings_of(rays.directions, rays.first, rays.distance, rays.sign)
         self._wanted = np.array([target.descriptors[key] for key in LOSS_KEYS])
         self._alphas = np.array([weights[key] for key in (*LOSS_KEYS, JACCARD)])
-        self._facts = np.array([*self._wanted, *self._alphas, rays.weight, measured])
+        self._facts = np.array([*self._wanted, *self._alphas, rays.weight, with_box])
 
     def __call__(self, normals: FloatArray, offsets: FloatArray) -> Evaluation | None:
         """Errors and loss, or ``None`` where the half-spaces bound no proper polyhedron."""
-        status, values = evaluate(
-            normals, offsets, self._crossings, float(self._facts[-2]), int(self._facts[-1])
-        )
+        values = np.empty(6)
+        weight, with_box = float(self._facts[-2]), bool(self._facts[-1])
+        status = evaluate(normals, offsets, self._crossings, weight, with_box, values)
         return self._judged(values) if is_proper(status, values) else None
 
     def value(self, normals: FloatArray, offsets: FloatArray) -> float:
