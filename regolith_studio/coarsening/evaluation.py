@@ -11,10 +11,9 @@ from regolith_studio.coarsening.core.evaluate import (
     SHORTEST,
     VOLUME,
     evaluate,
-    is_proper,
-    loss_of,
     weighted_loss,
 )
+from regolith_studio.coarsening.core.intersection import FINE
 from regolith_studio.coarsening.core.overlap import crossings_of
 from regolith_studio.coarsening.loss import loss
 from regolith_studio.coarsening.target import Target
@@ -64,18 +63,23 @@ class LossFunction:
             self._crossings = crossings_of(rays.directions, rays.first, rays.distance, rays.sign)
         self._wanted = np.array([target.descriptors[key] for key in LOSS_KEYS])
         self._alphas = np.array([weights[key] for key in (*LOSS_KEYS, JACCARD)])
-        self._facts = np.array([*self._wanted, *self._alphas, rays.weight, with_box])
+        self._weight, self._with_box = rays.weight, with_box
 
     def __call__(self, normals: FloatArray, offsets: FloatArray) -> Evaluation | None:
         """Errors and loss, or ``None`` where the half-spaces bound no proper polyhedron."""
-        values = np.empty(6)
-        weight, with_box = float(self._facts[-2]), bool(self._facts[-1])
-        status = evaluate(normals, offsets, self._crossings, weight, with_box, values)
-        return self._judged(values) if is_proper(status, values) else None
+        values = self._measured(normals, offsets)
+        return None if values is None else self._judged(values)
 
     def value(self, normals: FloatArray, offsets: FloatArray) -> float:
         """The loss alone, infinite where the half-spaces bound no proper polyhedron: quicker."""
-        return loss_of(normals, offsets, self._crossings, self._facts)
+        values = self._measured(normals, offsets)
+        return np.inf if values is None else weighted_loss(values, self._wanted, self._alphas)
+
+    def _measured(self, normals: FloatArray, offsets: FloatArray) -> FloatArray | None:
+        """As :func:`evaluate`; ``None`` where there is no polyhedron with a box of some thickness."""
+        values = np.empty(6)
+        status = evaluate(normals, offsets, self._crossings, self._weight, self._with_box, values)
+        return values if status == FINE and not values[SHORTEST] <= 0.0 else None
 
     def of(self, values: FloatArray) -> float:
         """The loss of values as from :func:`regolith_studio.coarsening.core.evaluate.evaluate`."""

@@ -139,22 +139,22 @@ def principal_axes(mesh: Mesh) -> FloatArray:
     """Right-handed principal axes of inertia as rows, each towards the longer tail of the particle."""
     _, vectors = np.linalg.eigh(mesh.inertia)
     axes = np.ascontiguousarray(vectors.T)
-    axes *= np.where(tails(mesh.vertices, mesh.faces, axes) < 0.0, -1.0, 1.0)[:, None]
+    tails = np.zeros(3)
+    _add_tails(mesh.vertices, mesh.faces, axes, tails)
+    axes *= np.where(tails < 0.0, -1.0, 1.0)[:, None]
     axes[2] = np.cross(axes[0], axes[1])
     return np.asarray(axes, dtype=np.float64)
 
 
 @kernel
-def tails(points: FloatArray, faces: IntArray, axes: FloatArray) -> FloatArray:
-    """Third moment of the surface along each axis, by the middles of its triangles: shape (3,)."""
-    total = np.zeros(3)
+def _add_tails(points: FloatArray, faces: IntArray, axes: FloatArray, total: FloatArray) -> None:
+    """Third moment of the surface along each axis, by the middles of its triangles: added to `total`."""
     for f in range(len(faces)):
         a, b, c = row(points, faces[f, 0]), row(points, faces[f, 1]), row(points, faces[f, 2])
         area = length(cross(mixed(b, 1.0, a, -1.0), mixed(c, 1.0, a, -1.0)))
         middle = mixed(mixed(a, 1.0, b, 1.0), 1.0, c, 1.0)
         for k in range(3):
             total[k] += area * along(axes, k, middle) ** 3
-    return total
 
 
 def _normalised(mesh: Mesh) -> tuple[Mesh, FloatArray, float]:

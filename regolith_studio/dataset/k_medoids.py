@@ -67,7 +67,8 @@ def medoid_series(
         generator = np.random.default_rng(np.random.SeedSequence(seed))
         subset = np.sort(generator.choice(n, max(MAX_TABLE_SIZE, *counts), replace=False))
     table = cdist(points[subset], points[subset])
-    built = build_medoids(table, counted[subset], max(counts))
+    built = np.empty(max(counts), dtype=np.int64)
+    build_medoids(table, counted[subset], built)
     for k in counts:
         chosen = built[:k].copy()
         if 1 < k < len(subset):
@@ -79,13 +80,12 @@ def medoid_series(
 
 
 @kernel
-def build_medoids(table: FloatArray, weights: FloatArray, k: int) -> IntArray:
-    """BUILD: add k times the point that lowers the weighted sum of distances most; shape (k,)."""
+def build_medoids(table: FloatArray, weights: FloatArray, chosen: IntArray) -> None:
+    """BUILD: fill `chosen` (k,) with the points that lower the weighted sum of distances most, in turn."""
     n = len(table)
     nearest = np.full(n, np.inf)
     taken = np.zeros(n, dtype=np.bool_)
-    chosen = np.empty(k, dtype=np.int64)
-    for step in range(k):
+    for step in range(len(chosen)):
         best, best_total = -1, np.inf
         for candidate in range(n):
             if taken[candidate]:
@@ -99,7 +99,6 @@ def build_medoids(table: FloatArray, weights: FloatArray, k: int) -> IntArray:
         taken[best] = True
         for point in range(n):
             nearest[point] = min(nearest[point], table[best, point])
-    return chosen
 
 
 @kernel

@@ -120,8 +120,8 @@ def _min_area_patch(vertices: FloatArray, rim: IntArray, taken: set[tuple[int, .
     for i in range(n):
         for k in range(i + 2, n - (i == 0)):
             barred[i, k] = (min(rim[i], rim[k]), max(rim[i], rim[k])) in taken
-    places = least_area_triangles(vertices[rim], barred)
-    if len(places) != n - 2:
+    places = np.empty((n - 2, 3), dtype=np.int64)
+    if not least_area_triangles(vertices[rim], barred, places):
         return None
     triangles = rim[places]
     for ends in np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=-1).reshape(-1, 2).tolist():
@@ -130,11 +130,11 @@ def _min_area_patch(vertices: FloatArray, rim: IntArray, taken: set[tuple[int, .
 
 
 @kernel
-def least_area_triangles(points: FloatArray, barred: BoolArray) -> IntArray:
-    """Triangulation of a closed polygon in space with the least area, shape (n - 2, 3).
+def least_area_triangles(points: FloatArray, barred: BoolArray, triangles: IntArray) -> bool:
+    """Fill `triangles` (n - 2, 3): triangulation of a closed polygon in space with the least area.
 
     Dynamic programming over the polygon's chords (Barequet and Sharir 1995); chords (i, k), i < k,
-    with ``barred[i, k]`` are not used. The result is empty where no triangulation is left.
+    with ``barred[i, k]`` are not used. False where no triangulation is left.
     """
     n = len(points)
     cost = np.full((n, n), np.inf)
@@ -154,8 +154,7 @@ def least_area_triangles(points: FloatArray, barred: BoolArray) -> IntArray:
                         cost[i, k] = value
                         apex[i, k] = j
     if not np.isfinite(cost[0, n - 1]):
-        return np.empty((0, 3), dtype=np.int64)
-    triangles = np.empty((n - 2, 3), dtype=np.int64)
+        return False
     stack = np.empty((n, 2), dtype=np.int64)
     stack[0, 0], stack[0, 1] = 0, n - 1
     height, found = 1, 0
@@ -170,7 +169,7 @@ def least_area_triangles(points: FloatArray, barred: BoolArray) -> IntArray:
         stack[height, 0], stack[height, 1] = i, j
         stack[height + 1, 0], stack[height + 1, 1] = j, k
         height += 2
-    return triangles
+    return True
 
 
 MAX_COVER = 0.47

@@ -10,9 +10,9 @@ from regolith_studio.geometry.vectors import Vector, cross, dot, length, mixed, 
 
 @kernel
 def volume_moments(
-    points: FloatArray, faces: IntArray, middle: FloatArray
-) -> tuple[float, FloatArray, FloatArray]:
-    """Signed volume, its first moments (3,) and its second moments (3, 3), all about `middle`.
+    points: FloatArray, faces: IntArray, middle: FloatArray, first: FloatArray, second: FloatArray
+) -> float:
+    """Signed volume; fills its first moments (3,) and its second moments (3, 3), all about `middle`.
 
     Sums of the signed tetrahedra between `middle` and the triangles: with corners a, b, c and their sum s the
     moments of one are s / 24 and (s s' + a a' + b b' + c c') / 120 times six volumes (divergence theorem).
@@ -40,8 +40,12 @@ def volume_moments(
         xy += six * (s[0] * s[1] + a[0] * a[1] + b[0] * b[1] + c[0] * c[1])
         yz += six * (s[1] * s[2] + a[1] * a[2] + b[1] * b[2] + c[1] * c[2])
         zx += six * (s[2] * s[0] + a[2] * a[0] + b[2] * b[0] + c[2] * c[0])
-    second = np.array([[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]])
-    return volume / 6.0, np.array([x, y, z]) / 24.0, second / 120.0
+    first[0], first[1], first[2] = x / 24.0, y / 24.0, z / 24.0
+    second[0, 0], second[1, 1], second[2, 2] = xx / 120.0, yy / 120.0, zz / 120.0
+    second[0, 1] = second[1, 0] = xy / 120.0
+    second[1, 2] = second[2, 1] = yz / 120.0
+    second[2, 0] = second[0, 2] = zx / 120.0
+    return volume / 6.0
 
 
 def volume_and_area(vertices: FloatArray, faces: IntArray) -> tuple[float, float]:

@@ -86,7 +86,8 @@ class Mesh:
         if not len(self.vertices):
             return 0.0, np.zeros(3), np.zeros((3, 3))
         middle = self.bounds.mean(axis=0)
-        volume, first, second = volume_moments(self.vertices, self.faces, middle)
+        first, second = np.empty(3), np.empty((3, 3))
+        volume = volume_moments(self.vertices, self.faces, middle, first, second)
         if volume == 0.0:
             return 0.0, middle, np.zeros((3, 3))
         offset = first / volume
@@ -126,8 +127,9 @@ class Mesh:
             hull = ConvexHull(unit)
         except (QhullError, ValueError) as error:
             raise GeometryError("The mesh is flat: its vertices lie in one plane.") from error
-        used, faces = _outward(unit, hull.simplices, hull.equations)
-        return Mesh(self.vertices[used], faces)
+        used, faces = np.empty(len(unit), np.int64), np.empty((len(hull.simplices), 3), np.int64)
+        n_used = _turn_outwards(unit, hull.simplices, hull.equations, used, faces)
+        return Mesh(self.vertices[used[:n_used]], faces)
 
     @cached_property
     def content_hash(self) -> str:
@@ -158,31 +160,41 @@ class Mesh:
         return self.moved(shift=-self.centroid, scale=self.volume ** (-1 / 3))
 
 
-@kernel
 def bounds_of(points: FloatArray) -> FloatArray:
     """Least and greatest coordinates of at least one point, shape (2, 3)."""
     bounds = np.empty((2, 3))
+    _fill_bounds(points, bounds)
+    return bounds
+
+
+@kernel
+def _fill_bounds(points: FloatArray, bounds: FloatArray) -> None:
     for k in range(3):
         bounds[0, k] = bounds[1, k] = points[0, k]
     for i in range(len(points)):
         for k in range(3):
             bounds[0, k] = min(bounds[0, k], points[i, k])
             bounds[1, k] = max(bounds[1, k], points[i, k])
-    return bounds
 
 
 @kernel
-def _outward(
-    points: FloatArray, simplices: NDArray[np.int32], equations: FloatArray
-) -> tuple[IntArray, IntArray]:
-    """The points that a hull uses, in their order, and its triangles by these, turned outwards."""
+def _turn_outwards(
+    points: FloatArray,
+    simplices: NDArray[np.int32],
+    equations: FloatArray,
+    used: IntArray,
+    faces: IntArray,
+) -> int:
+    """Fill the points that a hull uses, in their order, and its triangles by these; number of the points."""
     number = np.full(len(points), -1)
     for f in range(len(simplices)):
         for k in range(3):
             number[simplices[f, k]] = 0
-    used = np.flatnonzero(number == 0)
-    number[used] = np.arange(len(used))
-    faces = np.empty((len(simplices), 3), np.int64)
+    n_used = 0
+    for i in range(len(points)):
+        if number[i] == 0:
+            used[n_used], number[i] = i, n_used
+            n_used += 1
     for f in range(len(simplices)):
         a = row(points, simplices[f, 0])
         b, c = row(points, simplices[f, 1]), row(points, simplices[f, 2])
@@ -190,4 +202,4 @@ def _outward(
         inward = dot(normal, row(equations, f)) < 0.0
         for k in range(3):
             faces[f, k] = number[simplices[f, 2 - k if inward else k]]
-    return used, faces
+    return n_used

@@ -52,25 +52,30 @@ class DirectionBins(NamedTuple):
     columns: int
 
 
-@kernel
 def direction_bins(directions: FloatArray) -> DirectionBins:
     """Sort rays along unit `directions`, shape (n, 3)."""
     n = len(directions)
     rows = max(1, int(np.sqrt(n / (2.0 * RAYS_PER_BIN))))
-    columns = 2 * rows
+    rays, first = np.empty(n, np.int64), np.zeros(2 * rows * rows + 1, np.int64)
+    _fill_bins(directions, rows, 2 * rows, rays, first)
+    return DirectionBins(rays, first, rows, 2 * rows)
+
+
+@kernel
+def _fill_bins(directions: FloatArray, rows: int, columns: int, rays: IntArray, first: IntArray) -> None:
+    """Fill `rays` and `first`, which must be 0, of :class:`DirectionBins`."""
+    n = len(directions)
     bins = np.empty(n, np.int64)
-    first = np.zeros(rows * columns + 1, np.int64)
     for k in range(n):
         x, y, z = directions[k, 0], directions[k, 1], directions[k, 2]
         bins[k] = row_of(z, rows) * columns + column_of(np.arctan2(y, x), columns) % columns
         first[bins[k] + 1] += 1
     for i in range(rows * columns):
         first[i + 1] += first[i]
-    rays, filled = np.empty(n, np.int64), first.copy()
+    filled = first.copy()
     for k in range(n):
         rays[filled[bins[k]]] = k
         filled[bins[k]] += 1
-    return DirectionBins(rays, first, rows, columns)
 
 
 @kernel
@@ -185,8 +190,15 @@ def radial_hits(mesh: Mesh, origin: ArrayLike, directions: ArrayLike) -> RadialH
     points = mesh.vertices - centre
     size = 2.0 ** np.ceil(np.log2(max(float(np.abs(points).max(initial=0.0)), 1e-300)))
     bins = direction_bins(rays / lengths[:, None])
-    ray, distance, sign, face = _cast(_scaled(points / size), mesh.faces, rays, lengths, bins)
-    order = _sorted(ray, distance, face, len(rays))
+    corners, space = _scaled(points / size), 2 * len(rays) + 64
+    crossings, distance = np.empty((space, 3), np.int64), np.empty(space)
+    n = _cast(corners, mesh.faces, rays, lengths, bins, crossings, distance)
+    if n > space:
+        crossings, distance = np.empty((n, 3), np.int64), np.empty(n)
+        _cast(corners, mesh.faces, rays, lengths, bins, crossings, distance)
+    ray, sign, face = crossings[:n].T.copy()
+    order = np.empty(n, np.int64)
+    _sort(ray, distance[:n], face, len(rays), order)
     return RadialHits(ray[order], distance[order] * size, sign[order], face[order])
 
 
@@ -197,14 +209,21 @@ def _scaled(vectors: FloatArray) -> FloatArray:
 
 @kernel
 def _cast(
-    points: FloatArray, faces: IntArray, directions: FloatArray, lengths: FloatArray, bins: DirectionBins
-) -> tuple[IntArray, FloatArray, IntArray, IntArray]:
-    """Crossings in the order of the faces: ray, distance, sign, face."""
+    points: FloatArray,
+    faces: IntArray,
+    directions: FloatArray,
+    lengths: FloatArray,
+    bins: DirectionBins,
+    crossings: IntArray,
+    distance: FloatArray,
+) -> int:
+    """Fill `crossings` (ray, sign, face) and `distance` in the order of the faces; how many there are.
+
+    Those beyond the length of the arrays are counted only.
+    """
     norms = np.empty(len(points))
     for v in range(len(points)):
         norms[v] = length(row(points, v))
-    whole = np.empty((2 * len(directions) + 64, 3), np.int64)
-    distance = np.empty(len(whole))
     n = 0
     for f in range(len(faces)):
         i, j, k = faces[f, 0], faces[f, 1], faces[f, 2]
@@ -237,14 +256,14 @@ def _cast(
                     least = _least(directions, ray, lengths[ray], way, planes, errors)
                     if least < 0.0 or (least == 0.0 and not _exactly_inside(directions[ray], a, b, c, way)):
                         continue
-                    if n == len(distance):
-                        whole = np.concatenate((whole, np.empty_like(whole)))
-                        distance = np.concatenate((distance, np.empty_like(distance)))
-                    slope = way * along(directions, ray, normal) / lengths[ray]
-                    whole[n, 0], whole[n, 1], whole[n, 2] = ray, int(way), f
-                    distance[n] = max(nearest, min(farthest, abs(six) / slope if slope > 0.0 else farthest))
                     n += 1
-    return whole[:n, 0].copy(), distance[:n].copy(), whole[:n, 1].copy(), whole[:n, 2].copy()
+                    if n > len(distance):
+                        continue
+                    slope = way * along(directions, ray, normal) / lengths[ray]
+                    crossings[n - 1, 0], crossings[n - 1, 1], crossings[n - 1, 2] = ray, int(way), f
+                    far = abs(six) / slope if slope > 0.0 else farthest
+                    distance[n - 1] = max(nearest, min(farthest, far))
+    return n
 
 
 @inline_kernel
@@ -283,14 +302,14 @@ def _side(u: FloatArray, a: FloatArray, b: FloatArray) -> int:
 
 
 @kernel
-def _sorted(ray: IntArray, distance: FloatArray, face: IntArray, n_rays: int) -> IntArray:
-    """Order of the crossings by ray, distance and face."""
+def _sort(ray: IntArray, distance: FloatArray, face: IntArray, n_rays: int, order: IntArray) -> None:
+    """Fill `order`, that of the crossings by ray, distance and face."""
     first = np.zeros(n_rays + 1, np.int64)
     for k in ray:
         first[k + 1] += 1
     for k in range(n_rays):
         first[k + 1] += first[k]
-    order, count = np.empty(len(ray), np.int64), np.zeros(n_rays, np.int64)
+    count = np.zeros(n_rays, np.int64)
     for hit in range(len(ray)):
         k = ray[hit]
         i = first[k] + count[k]
@@ -302,4 +321,3 @@ def _sorted(ray: IntArray, distance: FloatArray, face: IntArray, n_rays: int) ->
             i -= 1
         order[i] = hit
         count[k] += 1
-    return order

@@ -45,7 +45,8 @@ def crossing_pairs(vertices: FloatArray, faces: IntArray) -> tuple[int, BoolArra
     entries = int((last - first + 1).prod(axis=1).sum())
     if entries > 64 * len(faces) + 4096:
         return None
-    start, member = fill_cells(first, last, cells, entries)
+    start, member = np.zeros(int(cells.prod()) + 1, dtype=np.int64), np.empty(entries, dtype=np.int64)
+    fill_cells(first, last, cells, start, member)
     load = np.diff(start)
     if float((load.astype(np.float64) ** 2).sum()) > MOST_CANDIDATES * (len(faces) + 4096):
         return None
@@ -54,10 +55,8 @@ def crossing_pairs(vertices: FloatArray, faces: IntArray) -> tuple[int, BoolArra
 
 
 @kernel
-def fill_cells(first: IntArray, last: IntArray, cells: IntArray, entries: int) -> tuple[IntArray, IntArray]:
-    """Members of each cell: triangle numbers, and where each cell's begin."""
-    start = np.zeros(cells[0] * cells[1] * cells[2] + 1, dtype=np.int64)
-    member = np.empty(entries, dtype=np.int64)
+def fill_cells(first: IntArray, last: IntArray, cells: IntArray, start: IntArray, member: IntArray) -> None:
+    """Members of each cell: triangle numbers, and where each cell's begin (all 0 before)."""
     for stage in range(2):
         for t in range(len(first)):
             for i in range(first[t, 0], last[t, 0] + 1):
@@ -75,7 +74,6 @@ def fill_cells(first: IntArray, last: IntArray, cells: IntArray, entries: int) -
     for cell in range(len(start) - 1, 0, -1):
         start[cell] = start[cell - 1]
     start[0] = 0
-    return start, member
 
 
 @kernel

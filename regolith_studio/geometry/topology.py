@@ -89,16 +89,15 @@ class MeshBodies:
 
 def find_bodies(across: IntArray, forward: BoolArray) -> MeshBodies:
     """Walk from triangle to triangle over the `across` of all half-edges."""
-    body, turned, conflicts = label_bodies(across, forward)
+    body, turned = np.full(len(across) // 3, -1), np.zeros(len(across) // 3, dtype=np.bool_)
+    conflicts = label_bodies(across, forward, body, turned)
     return MeshBodies(body, turned, int(conflicts))
 
 
 @kernel
-def label_bodies(across: IntArray, forward: BoolArray) -> tuple[IntArray, BoolArray, int]:
-    """Body and turn of each triangle, and the number of contradictions: a flood fill with parity."""
+def label_bodies(across: IntArray, forward: BoolArray, body: IntArray, turned: BoolArray) -> int:
+    """Fill body (-1 before) and turn of each triangle by a flood fill; the number of contradictions."""
     m = len(across) // 3
-    body = np.full(m, -1, dtype=np.int64)
-    turned = np.zeros(m, dtype=np.bool_)
     queue = np.empty(m, dtype=np.int64)
     count = int64(0)
     conflicts = int64(0)
@@ -125,7 +124,7 @@ def label_bodies(across: IntArray, forward: BoolArray) -> tuple[IntArray, BoolAr
                 elif turned[neighbour] != turn:
                     conflicts += 1
         count += 1
-    return body, turned, conflicts // 2  # type: ignore[return-value]
+    return conflicts // 2  # type: ignore[return-value]
 
 
 def pinched_corners(faces: IntArray, table: EdgeTable) -> int:

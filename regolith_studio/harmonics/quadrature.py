@@ -63,7 +63,8 @@ def measure_on_grid(
 ) -> tuple[float, float, float]:
     """Volume, area and lowest radius on one Gauss-Legendre grid."""
     cosines, weights = _nodes(degree)
-    radius, south, east = _fields(coefficients.values, coefficients.l_max, cosines, 2 * degree + 1)
+    radius, south, east = np.zeros((3, len(cosines), 2 * degree + 1))
+    _fill_fields(coefficients.values, coefficients.l_max, cosines, radius, south, east)
     if reference is not None:
         radius, south, east = _multiplied(reference, cosines, radius, south, east)
     solid_angle = weights * 2 * np.pi / radius.shape[1]
@@ -88,12 +89,16 @@ def _nodes(degree: int) -> tuple[FloatArray, FloatArray]:
 
 
 @kernel
-def _fields(
-    values: FloatArray, l_max: int, cosines: FloatArray, n_longitudes: int
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Radius and its derivatives to the south and the east, each (latitudes, longitudes)."""
-    shape = (len(cosines), n_longitudes)
-    radius, south, east = np.zeros(shape), np.zeros(shape), np.zeros(shape)
+def _fill_fields(
+    values: FloatArray,
+    l_max: int,
+    cosines: FloatArray,
+    radius: FloatArray,
+    south: FloatArray,
+    east: FloatArray,
+) -> None:
+    """Add radius and its derivatives to the south and the east to arrays of shape (latitudes, longitudes)."""
+    n_longitudes = radius.shape[1]
     cosine = np.cos(2 * np.pi / n_longitudes * np.arange(n_longitudes))
     sines = np.sin(2 * np.pi / n_longitudes * np.arange(n_longitudes))
     factors, p = legendre_factors(l_max), np.zeros((l_max + 1, l_max + 1))
@@ -115,7 +120,6 @@ def _fields(
                 radius[j, i] += a * c + b * s
                 south[j, i] += da * c + db * s
                 east[j, i] += m * (b * c - a * s) / sine
-    return radius, south, east
 
 
 def _multiplied(

@@ -120,12 +120,13 @@ def sample_radius(
 def _crossings(mesh: Mesh, centre: FloatArray, rays: FloatArray) -> FloatArray:
     """A row a ray, shape (n, 5): first, last, signed sum of r^3, number and sum of signs of crossings."""
     hits = radial_hits(mesh, centre, rays)
-    return _summed(hits.ray, hits.distance, hits.sign, len(rays))
+    table = np.zeros((len(rays), 5))
+    _sum_by_ray(hits.ray, hits.distance, hits.sign, table)
+    return table
 
 
 @kernel
-def _summed(ray: IntArray, distance: FloatArray, sign: IntArray, n_rays: int) -> FloatArray:
-    table = np.zeros((n_rays, 5))
+def _sum_by_ray(ray: IntArray, distance: FloatArray, sign: IntArray, table: FloatArray) -> None:
     for k in range(len(ray)):
         row = table[ray[k]]
         if row[3] == 0.0:
@@ -134,7 +135,6 @@ def _summed(ray: IntArray, distance: FloatArray, sign: IntArray, n_rays: int) ->
         row[2] += sign[k] * distance[k] ** 3
         row[3] += 1.0
         row[4] += sign[k]
-    return table
 
 
 def _winding_number(table: FloatArray, centre: FloatArray) -> int:

@@ -23,7 +23,9 @@ def analysed(samples: FloatArray, cosines: FloatArray, weights: FloatArray, l_ma
     """
     n = samples.shape[1]
     waves = np.fft.rfft(samples, axis=1)[:, : l_max + 1] * (2 * np.pi / n * weights)[:, None]
-    return _summed_over_rings(waves.real.copy(), -waves.imag, cosines, l_max)
+    values = np.zeros((l_max + 1) ** 2)
+    _sum_over_rings(waves.real.copy(), -waves.imag, cosines, values)
+    return values
 
 
 def synthesised(values: FloatArray, cosines: FloatArray, n_longitudes: int) -> FloatArray:
@@ -31,16 +33,17 @@ def synthesised(values: FloatArray, cosines: FloatArray, n_longitudes: int) -> F
 
     `n_longitudes` must be greater than 2 l_max.
     """
-    even, odd = _summed_over_degrees(values, cosines)
+    even, odd = np.zeros((2, len(cosines), round(len(values) ** 0.5)))
+    _sum_over_degrees(values, cosines, even, odd)
     waves = (even - 1j * odd) * (n_longitudes / 2)
     waves[:, 0] *= 2.0
     return np.fft.irfft(waves, n_longitudes, axis=1)
 
 
 @kernel
-def _summed_over_rings(even: FloatArray, odd: FloatArray, cosines: FloatArray, l_max: int) -> FloatArray:
-    """Sums of cosine and sine waves (rings, l_max + 1) times the Legendre functions."""
-    values = np.zeros((l_max + 1) ** 2)
+def _sum_over_rings(even: FloatArray, odd: FloatArray, cosines: FloatArray, values: FloatArray) -> None:
+    """Add cosine and sine waves (rings, l_max + 1) times the Legendre functions to `values`."""
+    l_max = even.shape[1] - 1
     factors, p = legendre_factors(l_max), np.zeros((l_max + 1, l_max + 1))
     for i in range(len(cosines)):
         fill_legendre(cosines[i], np.sqrt(max(0.0, 1.0 - cosines[i] ** 2)), factors, p)
@@ -49,14 +52,12 @@ def _summed_over_rings(even: FloatArray, odd: FloatArray, cosines: FloatArray, l
             for m in range(1, l + 1):
                 values[l * l + l + m] += p[l, m] * even[i, m]
                 values[l * l + l - m] += p[l, m] * odd[i, m]
-    return values
 
 
 @kernel
-def _summed_over_degrees(values: FloatArray, cosines: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Amplitudes of cosine and sine waves on each ring, shape (rings, l_max + 1) each."""
-    l_max = int(np.sqrt(len(values))) - 1
-    even, odd = np.zeros((len(cosines), l_max + 1)), np.zeros((len(cosines), l_max + 1))
+def _sum_over_degrees(values: FloatArray, cosines: FloatArray, even: FloatArray, odd: FloatArray) -> None:
+    """Add amplitudes of cosine and sine waves on each ring to `even` and `odd`, shape (rings, l_max + 1)."""
+    l_max = even.shape[1] - 1
     factors, p = legendre_factors(l_max), np.zeros((l_max + 1, l_max + 1))
     for i in range(len(cosines)):
         fill_legendre(cosines[i], np.sqrt(max(0.0, 1.0 - cosines[i] ** 2)), factors, p)
@@ -65,4 +66,3 @@ def _summed_over_degrees(values: FloatArray, cosines: FloatArray) -> tuple[Float
             for m in range(1, l + 1):
                 even[i, m] += p[l, m] * values[l * l + l + m]
                 odd[i, m] += p[l, m] * values[l * l + l - m]
-    return even, odd

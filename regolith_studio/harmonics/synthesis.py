@@ -73,27 +73,35 @@ def _kept_middles(level: int, degree: int) -> NDArray[np.float32]:
     return basis
 
 
-@kernel
 def weighted_sum(basis: Basis, weights: FloatArray) -> FloatArray:
     """Sum of weights[k] * basis[k] over the first len(weights) rows, shape (n,)."""
     total = np.zeros(basis.shape[1])
-    for k in range(len(weights)):
-        for i in range(basis.shape[1]):
-            total[i] += weights[k] * basis[k, i]
+    _add_weighted(basis, weights, total)
     return total
 
 
 @kernel
+def _add_weighted(basis: Basis, weights: FloatArray, total: FloatArray) -> None:
+    for k in range(len(weights)):
+        for i in range(basis.shape[1]):
+            total[i] += weights[k] * basis[k, i]
+
+
 def running_sums(basis: Basis, weights: FloatArray, l_max: int) -> FloatArray:
     """Row l: the sum of weights[k] * basis[k] over degrees 0 to l, shape (l_max + 1, n)."""
     sums = np.zeros((l_max + 1, basis.shape[1]))
-    for degree in range(l_max + 1):
+    _fill_running_sums(basis, weights, sums)
+    return sums
+
+
+@kernel
+def _fill_running_sums(basis: Basis, weights: FloatArray, sums: FloatArray) -> None:
+    for degree in range(len(sums)):
         if degree > 0:
             sums[degree] = sums[degree - 1]
         for k in range(degree * degree, (degree + 1) * (degree + 1)):
             for i in range(basis.shape[1]):
                 sums[degree, i] += weights[k] * basis[k, i]
-    return sums
 
 
 @kernel

@@ -17,14 +17,15 @@ def coverage(mesh: Mesh, shape: tuple[int, int, int], fine: int = 3) -> NDArray[
     Each voxel is cut into `fine` x `fine` columns along z, and along their middles the share is exact. What
     lies outside the grid is cut off.
     """
-    return _covered(mesh.vertices + _ASIDE, mesh.faces, *shape, fine)
+    share = np.empty(shape, dtype=np.float32)
+    _fill_coverage(mesh.vertices + _ASIDE, mesh.faces, fine, share)
+    return share
 
 
 @kernel
-def _covered(
-    vertices: FloatArray, faces: IntArray, nx: int, ny: int, nz: int, fine: int
-) -> NDArray[np.float32]:
+def _fill_coverage(vertices: FloatArray, faces: IntArray, fine: int, share: NDArray[np.float32]) -> None:
     """Sum of what each crossing adds to its own voxel and to those above it, column by column."""
+    nx, ny, nz = share.shape
     added = np.zeros((nx, ny, nz + 1))
     weight = 1.0 / (fine * fine)
     for face in range(len(faces)):
@@ -50,11 +51,9 @@ def _covered(
                     above = 1.0 - (height - k)
                     added[i // fine, j // fine, k] += sign * above
                     added[i // fine, j // fine, k + 1] += sign * (1.0 - above)
-    share = np.empty((nx, ny, nz), dtype=np.float32)
     for i in range(nx):
         for j in range(ny):
             total = 0.0
             for k in range(nz):
                 total += added[i, j, k]
                 share[i, j, k] = total
-    return share

@@ -32,7 +32,8 @@ def uncrossed(mesh: Mesh, safe: Mesh) -> Mesh:
     inside = coverage(safe.moved(shift=-low), (nx, ny, nz), 1) > 0.5
     for _ in range(_ATTEMPTS):
         normals = corner_normals(mesh.vertices, mesh.faces)
-        doubtful = _doubtful(mesh.vertices - low, mesh.faces, normals, inside)
+        doubtful = np.zeros(len(mesh.faces), dtype=np.bool_)
+        _mark_doubtful(mesh.vertices - low, mesh.faces, normals, inside, doubtful)
         looked_at = _about(mesh.faces, np.flatnonzero(doubtful), len(normals), _LOOKED_AT)
         faces = np.ascontiguousarray(mesh.faces[looked_at[mesh.faces].any(axis=1)])
         found = crossing_pairs(mesh.vertices, faces)
@@ -54,10 +55,15 @@ def _about(faces: IntArray, chosen: IntArray, n_vertices: int, rings: int) -> Bo
     return near
 
 
-@kernel
 def corner_normals(vertices: FloatArray, faces: IntArray) -> FloatArray:
     """Unit normals of the corners: sums of those of the faces about them, weighted by area."""
     total = np.zeros(vertices.shape)
+    _add_corner_normals(vertices, faces, total)
+    return total
+
+
+@kernel
+def _add_corner_normals(vertices: FloatArray, faces: IntArray, total: FloatArray) -> None:
     for face in range(len(faces)):
         a, b, c = vertices[faces[face, 0]], vertices[faces[face, 1]], vertices[faces[face, 2]]
         ux, uy, uz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
@@ -71,12 +77,13 @@ def corner_normals(vertices: FloatArray, faces: IntArray) -> FloatArray:
         x, y, z = total[corner]
         length = max(np.sqrt(x * x + y * y + z * z), 1e-300)
         total[corner, 0], total[corner, 1], total[corner, 2] = x / length, y / length, z / length
-    return total
 
 
 @kernel
-def _doubtful(vertices: FloatArray, faces: IntArray, normals: FloatArray, inside: BoolArray) -> BoolArray:
-    """Faces with another side of the surface within two voxels of a corner, or turned over; shape (m,)."""
+def _mark_doubtful(
+    vertices: FloatArray, faces: IntArray, normals: FloatArray, inside: BoolArray, doubtful: BoolArray
+) -> None:
+    """Mark faces with another side of the surface within two voxels of a corner, or turned over, (m,)."""
     nx, ny, nz = inside.shape
     thin = np.zeros(len(vertices), dtype=np.bool_)
     for corner in range(len(vertices)):
@@ -86,7 +93,6 @@ def _doubtful(vertices: FloatArray, faces: IntArray, normals: FloatArray, inside
             k = int(np.rint(vertices[corner, 2] + away * normals[corner, 2]))
             deep = 0 <= i < nx and 0 <= j < ny and 0 <= k < nz and inside[i, j, k]
             thin[corner] = thin[corner] or deep != (away < 0.0)
-    doubtful = np.zeros(len(faces), dtype=np.bool_)
     for face in range(len(faces)):
         a, b, c = vertices[faces[face, 0]], vertices[faces[face, 1]], vertices[faces[face, 2]]
         ux, uy, uz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
@@ -97,4 +103,3 @@ def _doubtful(vertices: FloatArray, faces: IntArray, normals: FloatArray, inside
             corner = faces[face, side]
             along = x * normals[corner, 0] + y * normals[corner, 1] + z * normals[corner, 2]
             doubtful[face] = doubtful[face] or thin[corner] or along < least
-    return doubtful

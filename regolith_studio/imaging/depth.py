@@ -15,12 +15,14 @@ def depth(mask: BoolArray) -> NDArray[np.float32]:
 
     In voxels, between their centres, and exact below :data:`DEEPEST`; beyond the array there is nothing.
     """
-    return np.asarray(np.sqrt(_squared(np.ascontiguousarray(mask), DEEPEST)), dtype=np.float32)
+    squared = np.full(mask.shape, DEEPEST * DEEPEST, dtype=np.int32)
+    _fill_squared(np.ascontiguousarray(mask), DEEPEST, squared)
+    return np.asarray(np.sqrt(squared), dtype=np.float32)
 
 
 @kernel
-def _squared(mask: BoolArray, deepest: int) -> NDArray[np.int32]:
-    """Squared distances: along z, then the least over y, then over x."""
+def _fill_squared(mask: BoolArray, deepest: int, found: NDArray[np.int32]) -> None:
+    """Squared distances: along z, then the least over y, then over x; `found` begins at the largest."""
     nx, ny, nz = mask.shape
     most = np.int32(deepest * deepest)
     along = np.empty((nx, ny, nz), dtype=np.int32)
@@ -42,11 +44,9 @@ def _squared(mask: BoolArray, deepest: int) -> NDArray[np.int32]:
                 added = np.int32((other - j) ** 2)
                 for k in range(nz):
                     across[i, j, k] = min(across[i, j, k], along[i, other, k] + added)
-    found = np.full((nx, ny, nz), most, dtype=np.int32)
     for i in range(nx):
         for other in range(max(i - deepest + 1, 0), min(i + deepest, nx)):
             added = np.int32((other - i) ** 2)
             for j in range(ny):
                 for k in range(nz):
                     found[i, j, k] = min(found[i, j, k], across[other, j, k] + added)
-    return found

@@ -27,7 +27,10 @@ class LowPass:
     """
 
     def __init__(self, faces: IntArray, n_vertices: int, iterations: int) -> None:
-        self._links = _linked(faces, n_vertices)
+        first, stop = np.zeros(n_vertices + 1, dtype=np.int64), np.empty(n_vertices, dtype=np.int64)
+        others = np.empty(6 * len(faces), dtype=np.int64)
+        _fill_links(faces, first, stop, others)
+        self._links = first, stop, others
         self._iterations = iterations
 
     def __call__(self, vertices: FloatArray, pass_band: float) -> FloatArray:
@@ -42,7 +45,9 @@ class LowPass:
         """
         if self._iterations == 0:
             return vertices
-        return np.asarray(_filtered(*self._links, _series(self._iterations, pass_band), vertices))
+        smoothed = np.empty(vertices.shape)
+        _filter(*self._links, _series(self._iterations, pass_band), vertices, smoothed)
+        return smoothed
 
 
 def windowed_sinc(mesh: Mesh, iterations: int = 20, pass_band: float = 0.13) -> Mesh:
@@ -75,16 +80,15 @@ def _series(iterations: int, pass_band: float) -> FloatArray:
 
 
 @kernel
-def _linked(faces: IntArray, n_vertices: int) -> tuple[IntArray, IntArray, IntArray]:
-    """Neighbours of each corner: ``others[first[i]:stop[i]]``, each once."""
-    first = np.zeros(n_vertices + 1, dtype=np.int64)
+def _fill_links(faces: IntArray, first: IntArray, stop: IntArray, others: IntArray) -> None:
+    """Neighbours of each corner: ``others[first[i]:stop[i]]``, each once; `first` is 0 before."""
+    n_vertices = len(stop)
     for face in range(len(faces)):
         for corner in range(3):
             first[faces[face, corner] + 1] += 2
     for corner in range(n_vertices):
         first[corner + 1] += first[corner]
-    stop = first[:-1].copy()
-    others = np.empty(6 * len(faces), dtype=np.int64)
+    stop[:] = first[:-1]
     for face in range(len(faces)):
         for corner in range(3):
             one = faces[face, corner]
@@ -95,17 +99,21 @@ def _linked(faces: IntArray, n_vertices: int) -> tuple[IntArray, IntArray, IntAr
                 if not known:
                     others[stop[one]] = other
                     stop[one] += 1
-    return first, stop, others
 
 
 @kernel
-def _filtered(
-    first: IntArray, stop: IntArray, others: IntArray, series: FloatArray, vertices: FloatArray
-) -> FloatArray:
+def _filter(
+    first: IntArray,
+    stop: IntArray,
+    others: IntArray,
+    series: FloatArray,
+    vertices: FloatArray,
+    total: FloatArray,
+) -> None:
     """Sum of series[k] T_k(M) x: M is the mean of a corner and of the mean of its neighbours."""
     count = len(vertices)
     before, now, later = vertices.copy(), np.empty((count, 3)), np.empty((count, 3))
-    total = np.multiply(series[0], vertices)
+    total[:] = np.multiply(series[0], vertices)
     for degree in range(1, len(series)):
         source, weight = (before, 0.5) if degree == 1 else (now, 1.0)
         for corner in range(count):
@@ -131,4 +139,3 @@ def _filtered(
             before, now, later = now, later, before
         else:
             now, later = later, now
-    return np.asarray(total)

@@ -50,11 +50,12 @@ class HullGrid:
     def hulls(self, radii: FloatArray | Floats) -> Floats:
         """Radii of the convex hulls of `radii`, both of shape (n, k)."""
         given = np.ascontiguousarray(radii, dtype=np.float32)
-        found = supports(given, self.cosines, self.reaches)
+        inverse, found = np.zeros((2, *given.shape), dtype=np.float32)
+        supports(given, self.cosines, self.reaches, inverse)
+        np.reciprocal(inverse, out=inverse)
+        supports(inverse, self.cosines, self.reaches, found)
         np.reciprocal(found, out=found)
-        found = supports(found, self.cosines, self.reaches)
-        np.reciprocal(found, out=found)
-        return np.maximum(found, given, out=found)
+        return np.asarray(np.maximum(found, given, out=found))
 
     def convexities(self, radii: FloatArray) -> FloatArray:
         """Share of its hull that each body fills, shape (n,); hulls are seen on the grid only, and so are
@@ -105,8 +106,8 @@ def _largest(a: float, b: float, c: float, d: float, e: float) -> float:
 
 
 @kernel
-def supports(radii: Floats, cosines: Floats, reaches: IntArray) -> Floats:
-    """Largest of radius times cosine over all directions, along each of them, shape (n, k).
+def supports(radii: Floats, cosines: Floats, reaches: IntArray, found: Floats) -> None:
+    """Largest of radius times cosine over all directions, along each of them; fills `found`, 0 before.
 
     As in a product of matrices, four directions and two bodies share what is read from memory; the inner loop
     is one that compilers turn into vectors. The order of the maxima does not change them.
@@ -119,7 +120,6 @@ def supports(radii: Floats, cosines: Floats, reaches: IntArray) -> Floats:
         See :class:`HullGrid`.
     """
     n, size = radii.shape
-    found = np.zeros((n, size), np.float32)
     for first in range(0, n, BATCH):
         for group in range(len(reaches)):
             low, high = reaches[group]
@@ -136,7 +136,6 @@ def supports(radii: Floats, cosines: Floats, reaches: IntArray) -> Floats:
                     a, b, c, d = c0[j], c1[j], c2[j], c3[j]  # once, before anything is written
                     mine[j] = _largest(p0 * a, p1 * b, p2 * c, p3 * d, mine[j])
                     other[j] = _largest(q0 * a, q1 * b, q2 * c, q3 * d, other[j])
-    return found
 
 
 @lru_cache(maxsize=2)

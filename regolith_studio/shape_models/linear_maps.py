@@ -45,8 +45,10 @@ def _wrapped(grid: Tables) -> Tables:
 
 
 @kernel
-def mapped_radii(tables: Tables, picks: IntArray, inverses: FloatArray, directions: FloatArray) -> FloatArray:
-    """Radii of mapped particles, shape (n, k).
+def mapped_radii(
+    tables: Tables, picks: IntArray, inverses: FloatArray, directions: FloatArray, radii: FloatArray
+) -> None:
+    """Fill `radii` of mapped particles, shape (n, k).
 
     Parameters
     ----------
@@ -59,7 +61,6 @@ def mapped_radii(tables: Tables, picks: IntArray, inverses: FloatArray, directio
     directions
         Unit vectors, shape (k, 3).
     """
-    radii = np.empty((len(picks), len(directions)))
     step = np.pi / (tables.shape[1] - 4)
     for n in range(len(picks)):
         a = inverses[n]
@@ -76,7 +77,6 @@ def mapped_radii(tables: Tables, picks: IntArray, inverses: FloatArray, directio
                 column += tables.shape[2] - 4
             i, j = int(np.floor(row)), int(np.floor(column))
             radii[n, k] = _cubic(table, i, j, row - i, column - j) / length
-    return radii
 
 
 @kernel

@@ -8,6 +8,7 @@ from scipy.spatial.distance import cdist
 
 from regolith_studio.dataset.k_medoids import build_medoids, k_medoids, swap_medoids
 from regolith_studio.errors import InputError
+from tests.filling import filled
 
 
 def cost(points: np.ndarray, chosen, weights=None) -> float:
@@ -81,8 +82,9 @@ def test_that_an_impossible_number_is_refused(k: int) -> None:
 def test_that_the_compiled_search_is_the_plain_one() -> None:
     points = np.random.default_rng(5).standard_normal((30, 2))
     table, weights = cdist(points, points), np.ones(30)
-    plain = build_medoids.py_func(table, weights, 4)
-    assert np.array_equal(plain, build_medoids(table, weights, 4))
+    arguments, nothing = (table, weights), np.empty(4, dtype=np.int64)
+    plain, built = (filled(f, arguments, nothing)[0] for f in (build_medoids.py_func, build_medoids))
+    assert np.array_equal(plain, built)
     compiled = plain.copy()
     assert swap_medoids.py_func(table, weights, plain) == swap_medoids(table, weights, compiled)
     assert np.array_equal(plain, compiled)

@@ -10,6 +10,7 @@ from regolith_studio.errors import GeometryError
 from regolith_studio.geometry import Mesh
 from regolith_studio.geometry.mass_properties import volume_moments
 from regolith_studio.geometry.sphere_points import icosphere
+from tests.filling import filled
 from tests.geometry.solids import cloud, cuboid, folded_stone, rotation, rough_stone, tetrahedron
 
 
@@ -125,9 +126,10 @@ def test_that_flat_clouds_have_no_hull() -> None:
 def test_that_compiled_moments_are_those_of_numpy_and_of_the_python_reference(shift: float) -> None:
     mesh = rough_stone(3).moved(shift=(shift, 0.0, -shift))
     middle = mesh.bounds.mean(axis=0)
-    volume, first, second = volume_moments(mesh.vertices, mesh.faces, middle)
-    reference = volume_moments.py_func(mesh.vertices, mesh.faces, middle)
-    for ours, theirs in zip((volume, first, second), reference, strict=True):
+    arguments, nothing = (mesh.vertices, mesh.faces, middle), (np.empty(3), np.empty((3, 3)))
+    first, second, volume = filled(volume_moments, arguments, *nothing)
+    reference = filled(volume_moments.py_func, arguments, *nothing)  # type: ignore[attr-defined]
+    for ours, theirs in zip((first, second, volume), reference, strict=True):
         assert np.asarray(ours) == pytest.approx(np.asarray(theirs), rel=1e-12, abs=1e-15)
     corners = mesh.triangles - middle
     six = np.linalg.det(corners)

@@ -13,6 +13,7 @@ from regolith_studio.geometry.merge_vertices import merged_vertices
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.repair import repair
 from regolith_studio.geometry.sphere_points import icosphere
+from tests.filling import filled
 
 CORNERS = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=float)
 QUADS = np.array([[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]])
@@ -337,21 +338,21 @@ def area(points, triangles):
 def test_that_a_rim_in_space_gets_the_least_of_all_triangulations(n):
     points = np.random.default_rng(n).random((n, 3))
     expected = min(area(points, triangles) for triangles in all_triangulations(list(range(n))))
-    found = least_area_triangles(points, np.zeros((n, n), dtype=np.bool_))
+    arguments, nothing = (points, np.zeros((n, n), dtype=np.bool_)), np.zeros((n - 2, 3), dtype=np.int64)
+    found, closed = filled(least_area_triangles, arguments, nothing)
+    assert closed
     assert area(points, found) == pytest.approx(expected)
-    assert np.array_equal(found, least_area_triangles.py_func(points, np.zeros((n, n), dtype=np.bool_)))
+    assert np.array_equal(found, filled(least_area_triangles.py_func, arguments, nothing)[0])
 
 
 def test_that_barred_chords_are_not_used():
     square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], dtype=float)
     barred = np.zeros((4, 4), dtype=np.bool_)
     barred[0, 2] = True
-    assert {tuple(sorted(face)) for face in least_area_triangles(square, barred).tolist()} == {
-        (0, 1, 3),
-        (1, 2, 3),
-    }
+    triangles, _ = filled(least_area_triangles, (square, barred), np.zeros((2, 3), dtype=np.int64))
+    assert {tuple(sorted(face)) for face in triangles.tolist()} == {(0, 1, 3), (1, 2, 3)}
     barred[1, 3] = True
-    assert len(least_area_triangles(square, barred)) == 0
+    assert not least_area_triangles(square, barred, triangles)
 
 
 def test_that_each_hole_has_its_own_rim_even_where_two_touch():

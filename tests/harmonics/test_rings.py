@@ -6,6 +6,7 @@ import pytest
 from regolith_studio.harmonics import rings, shtools
 from regolith_studio.harmonics.coefficients import ShCoefficients, from_pyshtools, to_pyshtools
 from regolith_studio.harmonics.rings import analysed, synthesised
+from tests.filling import filled
 
 
 @pytest.fixture
@@ -55,11 +56,13 @@ def test_that_bits_do_not_depend_on_where_samples_lie(grid):
 def test_that_compiled_sums_are_those_of_the_reference():
     rng, cosines = np.random.default_rng(1), np.array([-1.0, -0.3, 0.2, 0.9])
     even, odd, values = rng.normal(size=(4, 6)), rng.normal(size=(4, 6)), rng.normal(size=36)
-    one = rings._summed_over_rings(even, odd, cosines, 5)
-    np.testing.assert_allclose(one, rings._summed_over_rings.py_func(even, odd, cosines, 5), atol=1e-14)
-    for ours, plain in zip(
-        rings._summed_over_degrees(values, cosines),
-        rings._summed_over_degrees.py_func(values, cosines),
-        strict=True,
-    ):
-        np.testing.assert_allclose(ours, plain, atol=1e-14)
+    ours, plain = (
+        filled(f, (even, odd, cosines), np.zeros(36))[0]
+        for f in (rings._sum_over_rings, rings._sum_over_rings.py_func)
+    )
+    np.testing.assert_allclose(ours, plain, atol=1e-14)
+    ours, plain = (
+        filled(f, (values, cosines), *np.zeros((2, 4, 6)))[:2]
+        for f in (rings._sum_over_degrees, rings._sum_over_degrees.py_func)
+    )
+    np.testing.assert_allclose(ours, plain, atol=1e-14)

@@ -14,7 +14,7 @@ from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.fit import HarmonicFit, fit_harmonics
 from regolith_studio.harmonics.icosphere_edges import icosphere_edges
 from regolith_studio.harmonics.legendre import harmonics
-from regolith_studio.harmonics.quadrature import _fields, measure, measure_on_grid
+from regolith_studio.harmonics.quadrature import _fill_fields, measure, measure_on_grid
 from regolith_studio.harmonics.reference import Ellipsoid
 from regolith_studio.harmonics.surface import (
     error_map,
@@ -24,6 +24,7 @@ from regolith_studio.harmonics.surface import (
     radii,
     reconstruct,
 )
+from tests.filling import filled
 
 UNIT_SPHERE = ShCoefficients([np.sqrt(4 * np.pi)])
 
@@ -174,18 +175,17 @@ def test_that_shortfalls_are_those_of_chords_under_the_unit_circle():
 def test_that_compiled_and_plain_kernels_agree(rough):
     particle = rough(3)
     cosines = np.array([-0.5, 0.2, 0.9])
-    for one, two in zip(
-        _fields(particle.values, 3, cosines, 5), _fields.py_func(particle.values, 3, cosines, 5), strict=True
-    ):
-        np.testing.assert_allclose(one, two, atol=1e-14)
+    arguments, fields = (particle.values, 3, cosines), np.zeros((3, 3, 5))
+    one, two = (filled(f, arguments, *fields)[:3] for f in (_fill_fields, _fill_fields.py_func))
+    np.testing.assert_allclose(one, two, atol=1e-14)
     directions = fibonacci_directions(4)
     basis, values = harmonics(directions, 3), np.empty(4)
-    np.testing.assert_allclose(
-        synthesis.weighted_sum.py_func(basis, particle.values), particle.values @ basis
-    )
+    arguments, nothing = (basis, particle.values), np.zeros(basis.shape[1])
+    plain, _ = filled(synthesis._add_weighted.py_func, arguments, nothing)
+    np.testing.assert_allclose(plain, particle.values @ basis)
     synthesis._evaluate.py_func(directions, particle.values, 3, values)
     np.testing.assert_allclose(values, particle.values @ basis, atol=1e-14)
     sphere = icosphere(1)
     assert flat_volume.py_func(sphere.vertices, sphere.faces) == pytest.approx(sphere.volume, rel=1e-13)
-    sums = synthesis.running_sums.py_func(basis, particle.values, 3)
+    sums, _ = filled(synthesis._fill_running_sums.py_func, arguments, np.zeros((4, basis.shape[1])))
     np.testing.assert_allclose(sums, synthesis.running_sums(basis, particle.values, 3), atol=1e-15)

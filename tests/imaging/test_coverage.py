@@ -5,7 +5,8 @@ import pytest
 
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.imaging.coverage import _covered, coverage
+from regolith_studio.imaging.coverage import _fill_coverage, coverage
+from tests.filling import filled
 
 CORNERS = np.array(list(np.ndindex(2, 2, 2)), dtype=float)
 HULL = Mesh(CORNERS, np.empty((0, 3), dtype=np.int64)).hull
@@ -40,5 +41,6 @@ def test_that_shares_add_up_to_the_volume(centre: tuple[float, float, float]) ->
 
 def test_that_the_kernel_is_its_python() -> None:
     ball = Mesh(4.2 + 2.5 * icosphere(1).vertices, icosphere(1).faces)
-    one, other = (f(ball.vertices, ball.faces, 9, 9, 9, 2) for f in (_covered, _covered.py_func))
+    arguments, share = (ball.vertices, ball.faces, 2), np.empty((9, 9, 9), dtype=np.float32)
+    one, other = (filled(f, arguments, share)[0] for f in (_fill_coverage, _fill_coverage.py_func))
     assert np.allclose(one, other, atol=1e-6)

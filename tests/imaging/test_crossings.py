@@ -6,8 +6,9 @@ import pytest
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.self_intersection import count_self_intersections
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.imaging.crossings import _doubtful, corner_normals, uncrossed
+from regolith_studio.imaging.crossings import _add_corner_normals, _mark_doubtful, corner_normals, uncrossed
 from regolith_studio.imaging.mask_surface import mask_mesh
+from tests.filling import filled
 
 SPHERE = icosphere(3)
 BALL = Mesh(9.0 * SPHERE.vertices + 12.2, SPHERE.faces)
@@ -56,7 +57,9 @@ def test_that_the_kernels_are_their_python() -> None:
     inside = np.linalg.norm(np.moveaxis(np.indices((24, 24, 24)), 0, -1) - 12.2, axis=-1) < 9.0
     inside[8:16] = False
     normals = corner_normals(BALL.vertices, BALL.faces)
-    assert np.allclose(normals, corner_normals.py_func(BALL.vertices, BALL.faces))
-    one, other = (f(BALL.vertices, BALL.faces, normals, inside) for f in (_doubtful, _doubtful.py_func))
+    plain, _ = filled(_add_corner_normals.py_func, (BALL.vertices, BALL.faces), np.zeros(normals.shape))
+    assert np.allclose(normals, plain)
+    arguments, unmarked = (BALL.vertices, BALL.faces, normals, inside), np.zeros(len(BALL.faces), dtype=bool)
+    one, other = (filled(f, arguments, unmarked)[0] for f in (_mark_doubtful, _mark_doubtful.py_func))
     assert np.array_equal(one, other)
     assert 0 < np.count_nonzero(one) < len(one)

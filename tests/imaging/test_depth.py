@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from regolith_studio.imaging.depth import DEEPEST, _squared, depth
+from regolith_studio.imaging.depth import DEEPEST, _fill_squared, depth
+from tests.filling import filled
 
 
 def masks() -> list[np.ndarray]:
@@ -27,4 +28,6 @@ def test_that_a_mask_without_an_outside_is_deep_everywhere() -> None:
 
 def test_that_the_kernel_is_its_python() -> None:
     mask = masks()[1][:9, :8, :7].copy()
-    assert np.array_equal(_squared(mask, 3), _squared.py_func(mask, 3))
+    farthest = np.full(mask.shape, 9, dtype=np.int32)
+    one, other = (filled(f, (mask, 3), farthest)[0] for f in (_fill_squared, _fill_squared.py_func))
+    assert np.array_equal(one, other)

@@ -27,6 +27,7 @@ from regolith_studio.shape_models.shape_numbers import (
     shape_grid,
     shape_numbers,
 )
+from tests.filling import filled
 
 MODEL = MODELS["hull_field"]
 
@@ -68,8 +69,9 @@ def test_that_hulls_on_the_grid_hold_the_hull_of_its_points() -> None:
 def test_that_compiled_hulls_equal_plain_python() -> None:
     shapes = hull_grid(5, 2)
     radii = np.exp(_dented(3)[:, : len(shapes.grid.weights)]).astype(np.float32)
-    plain = supports.py_func(radii, shapes.cosines, shapes.reaches)
-    np.testing.assert_array_equal(supports(radii, shapes.cosines, shapes.reaches), plain)
+    arguments, nothing = (radii, shapes.cosines, shapes.reaches), np.zeros_like(radii)
+    plain, compiled = (filled(f, arguments, nothing)[0] for f in (supports.py_func, supports))  # type: ignore[attr-defined]
+    np.testing.assert_array_equal(compiled, plain)
     np.testing.assert_array_equal(plain, (radii[:, :, None] * shapes.cosines).max(axis=1))
     assert len(shapes.cosines) % ROWS, "the last directions are fewer than a group"
 

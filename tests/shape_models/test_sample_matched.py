@@ -18,6 +18,7 @@ from regolith_studio.shape_models.outer_numbers import SPHERICITY, of_radii
 from regolith_studio.shape_models.principal_axes import canonical, principal_axes
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.shape_models.sphere_grid import sphere_grid
+from tests.filling import filled
 
 
 def test_that_a_stretched_sphere_is_an_ellipsoid() -> None:
@@ -26,7 +27,8 @@ def test_that_a_stretched_sphere_is_an_ellipsoid() -> None:
     directions = np.random.default_rng(0).normal(size=(50, 3))
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
     axes = np.array([3.0, 2.0, 0.5])
-    found = mapped_radii(tables, np.array([0]), np.diag(1 / axes)[None], directions)
+    arguments = tables, np.array([0]), np.diag(1 / axes)[None], directions
+    found, _ = filled(mapped_radii, arguments, np.empty((1, len(directions))))
     np.testing.assert_allclose(found[0], np.linalg.norm(directions / axes, axis=1) ** -1, rtol=2e-6)
 
 
@@ -37,9 +39,9 @@ def test_that_tables_hold_the_series_between_their_nodes_and_at_the_poles(
     directions = np.random.default_rng(0).normal(size=(300, 3))
     directions[:4] = [[0, 0, 1], [0, 0, -1], [1, 0, 0], [-1, -1e-12, 0]]
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
-    found = mapped_radii(
-        radius_tables(rows), np.arange(3), np.broadcast_to(np.eye(3), (3, 3, 3)).copy(), directions
-    )
+    same = np.broadcast_to(np.eye(3), (3, 3, 3)).copy()
+    arguments = radius_tables(rows), np.arange(3), same, directions
+    found, _ = filled(mapped_radii, arguments, np.empty((3, len(directions))))
     np.testing.assert_allclose(found, rows @ harmonics(directions, 10), rtol=4e-3)
 
 
@@ -48,7 +50,9 @@ def test_that_compiled_lookups_equal_plain_python(rough_sample: Callable[..., Sa
     directions = np.array([[0.6, 0.0, 0.8], [-0.6, -0.8, 0.0]])
     maps = np.stack([np.diag([1.0, 2.0, 0.7]), np.eye(3)])
     arguments = (tables, np.array([1, 0]), maps, directions)
-    np.testing.assert_allclose(mapped_radii.py_func(*arguments), mapped_radii(*arguments), rtol=1e-12)
+    nothing = np.empty((len(arguments[1]), len(arguments[3])))
+    plain, compiled = (filled(f, arguments, nothing)[0] for f in (mapped_radii.py_func, mapped_radii))
+    np.testing.assert_allclose(plain, compiled, rtol=1e-12)
     assert _cubic.py_func(tables[0], 3, 4, 0.0, 0.0) == pytest.approx(float(tables[0, 5, 6]))
 
 

@@ -146,27 +146,6 @@ def least_extents(normals: FloatArray, points: FloatArray, edges: IntArray) -> F
 
 
 @kernel
-def loss_of(normals: FloatArray, offsets: FloatArray, crossings: FloatArray, facts: FloatArray) -> float:
-    """:func:`weighted_loss` of :func:`evaluate`; infinite where the half-spaces bound no proper polyhedron.
-
-    Parameters
-    ----------
-    facts
-        What is wanted (6), the weights (7), the weight of a ray, and 1 to measure the
-        box, else 0: shape (15,).
-    """
-    values = np.empty(6)
-    status = evaluate(normals, offsets, crossings, facts[13], facts[14] > 0.0, values)
-    return weighted_loss(values, facts[:6], facts[6:13]) if is_proper(status, values) else np.inf
-
-
-@kernel
-def is_proper(status: int, values: FloatArray) -> bool:
-    """Whether an evaluation found a polyhedron with a box of some thickness."""
-    return bool(status == FINE and not values[SHORTEST] <= 0.0)
-
-
-@kernel
 def weighted_loss(values: FloatArray, wanted: FloatArray, weights: FloatArray) -> float:
     """Eq. 9 for a particle of unit volume.
 

@@ -9,7 +9,6 @@ Joining every pair of basins whose persistence is at most h gives the watershed 
 """
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -67,7 +66,7 @@ def flood(heights: NDArray[np.float32], step_lengths: FloatArray) -> "Flooded":
     offsets = np.ascontiguousarray(_STEPS @ strides)
     distances = np.sqrt(((_STEPS * step_lengths) ** 2).sum(axis=1))
     basins = np.zeros(flat.size, dtype=np.int32)
-    founders, pairs, ridges = _flood(flat, order, offsets, distances, basins)
+    founders, pairs, ridges = _flooded(flat, order, offsets, distances, basins)
     inner = np.ascontiguousarray(basins.reshape(padded.shape)[1:-1, 1:-1, 1:-1])
     sites = np.column_stack(np.unravel_index(founders, padded.shape)) - 1
     return Flooded(inner, sites, flat[founders].astype(np.float64), pairs, ridges[:, 0], ridges[:, 1])
@@ -81,11 +80,28 @@ def _root(parents: NDArray[np.int32], basin: int) -> int:
     return basin
 
 
-@kernel
-def _doubled(values: NDArray[Any]) -> NDArray[Any]:
-    longer = np.empty((2 * values.shape[0], values.shape[1]), values.dtype)
-    longer[: values.shape[0]] = values
-    return longer
+def _flooded(
+    heights: NDArray[np.float32],
+    order: IntArray,
+    offsets: IntArray,
+    distances: FloatArray,
+    basins: NDArray[np.int32],
+) -> tuple[IntArray, IntArray, FloatArray]:
+    """Fills `basins` (flat, padded by one); returns peak voxels, pairs that meet, their ridges."""
+    size, counts, taken = 1024, np.zeros(2, np.int64), 0
+    founders, parents = np.empty(size, np.int64), np.empty(size, np.int32)
+    meetings, ridges = np.empty((size, 2), np.int64), np.empty((size, 2))
+    while True:
+        taken = _flood(
+            heights, order, offsets, distances, basins, founders, parents, meetings, ridges, counts, taken
+        )
+        if taken == len(order):
+            break
+        founders, parents, meetings, ridges = (
+            np.concatenate([each, np.empty_like(each)]) for each in (founders, parents, meetings, ridges)
+        )
+    n_basins, n_meetings = counts
+    return founders[:n_basins].copy(), meetings[:n_meetings].copy(), ridges[:n_meetings].copy()
 
 
 @kernel
@@ -95,14 +111,21 @@ def _flood(
     offsets: IntArray,
     distances: FloatArray,
     basins: NDArray[np.int32],
-) -> tuple[IntArray, IntArray, FloatArray]:
-    """Fills `basins` (flat, padded by one); returns peak voxels, pairs that meet, their ridges."""
-    founders = np.empty((1024, 1), np.int64)
-    meetings = np.empty((1024, 2), np.int64)
-    ridges = np.empty((1024, 2), np.float64)
-    parents = np.empty(len(order) // 2 + 2, np.int32)
-    n_basins, n_meetings = 0, 0
-    for voxel in order:
+    founders: IntArray,
+    parents: NDArray[np.int32],
+    meetings: IntArray,
+    ridges: FloatArray,
+    counts: IntArray,
+    taken: int,
+) -> int:
+    """Flood the voxels of `order` from number `taken` on, until a further basin has no place; the new number.
+
+    Fills basins, peak voxels, pairs that meet, their ridges and `counts`, the numbers of basins and of pairs.
+    Each meeting joins two trees of basins, so there are fewer of them than of basins.
+    """
+    n_basins, n_meetings = counts[0], counts[1]
+    for place in range(taken, len(order)):
+        voxel = order[place]
         height = heights[voxel]
         best, steepest = -1, -1.0
         for step in range(len(offsets)):
@@ -113,8 +136,9 @@ def _flood(
                     best, steepest = there - 1, slope
         if best < 0:
             if n_basins == len(founders):
-                founders = _doubled(founders)
-            founders[n_basins, 0] = voxel
+                counts[0], counts[1] = n_basins, n_meetings
+                return place
+            founders[n_basins] = voxel
             parents[n_basins] = n_basins
             n_basins += 1
             basins[voxel] = n_basins
@@ -128,13 +152,12 @@ def _flood(
             theirs = _root(parents, there - 1)
             if theirs == mine:
                 continue
-            if n_meetings == len(meetings):
-                meetings, ridges = _doubled(meetings), _doubled(ridges)
             meetings[n_meetings, 0], meetings[n_meetings, 1] = best, there - 1
-            if heights[founders[theirs, 0]] > heights[founders[mine, 0]]:
+            if heights[founders[theirs]] > heights[founders[mine]]:
                 mine, theirs = theirs, mine
             parents[theirs] = mine
-            ridges[n_meetings, 0] = heights[founders[theirs, 0]]
+            ridges[n_meetings, 0] = heights[founders[theirs]]
             ridges[n_meetings, 1] = height
             n_meetings += 1
-    return founders[:n_basins, 0].copy(), meetings[:n_meetings].copy(), ridges[:n_meetings].copy()
+    counts[0], counts[1] = n_basins, n_meetings
+    return len(order)

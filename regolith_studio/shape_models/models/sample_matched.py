@@ -199,7 +199,8 @@ class SampleMatched(DrawnByChunks):
         turn_back = Rotation.from_rotvec(-spins).as_matrix()
         inverses = (axes * lengths[parents][:, None, :]) @ turn_back @ back
         grid = sphere_grid(_mapping_degree(self.l_max), self.l_max)
-        radii = mapped_radii(self._tables, parents, np.ascontiguousarray(inverses), grid.directions)
+        radii = np.empty((len(parents), len(grid.directions)))
+        mapped_radii(self._tables, parents, np.ascontiguousarray(inverses), grid.directions, radii)
         return np.asarray(grid.expanded(radii) * np.asarray(self.gain)[degrees((self.l_max + 1) ** 2)])
 
     def roughened(self) -> "SampleMatched":

@@ -74,7 +74,7 @@ def test_that_the_pass_between_two_hills_is_where_they_meet() -> None:
 def test_that_compiled_and_plain_flooding_agree(monkeypatch: pytest.MonkeyPatch) -> None:
     distance = distance_map(blobs(2, 14), CUBE)
     compiled = flood(distance, CUBE)
-    for name in ("_flood", "_root", "_doubled"):
+    for name in ("_flood", "_root"):
         monkeypatch.setattr(flooding, name, getattr(flooding, name).py_func)
     plain = flood(distance, CUBE)
     assert np.array_equal(compiled.basins, plain.basins)
