@@ -24,7 +24,7 @@ from benchmarks.plain_loss import HAS_BOOLEANS, KEYS, PlainLoss, plain_annealing
 from regolith_studio.coarsening import warm_up
 from regolith_studio.coarsening.coarsen import coarsen
 from regolith_studio.coarsening.decimated_hull import quadric_half_spaces
-from regolith_studio.coarsening.evaluation import LossFunction
+from regolith_studio.coarsening.loss import LossFunction
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.geometry.half_spaces import HalfSpaces

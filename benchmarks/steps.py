@@ -18,7 +18,7 @@ from benchmarks.harmonics import can_cast, plain_fit, plain_surface, rough_parti
 from benchmarks.independent import least_box
 from benchmarks.plain_loss import HAS_BOOLEANS
 from regolith_studio.coarsening.coarsen import coarsen
-from regolith_studio.coarsening.evaluation import LossFunction
+from regolith_studio.coarsening.loss import LossFunction
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.dataset.build import build_dataset

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from regolith_studio.coarsening.evaluation import Evaluation
+from regolith_studio.coarsening.loss import Evaluation
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces

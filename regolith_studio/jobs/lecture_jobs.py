@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from regolith_studio.coarsening.coarsen import coarsen, settings_of
-from regolith_studio.coarsening.evaluation import Evaluation
+from regolith_studio.coarsening.loss import Evaluation
 from regolith_studio.coarsening.methods import METHODS
 from regolith_studio.coarsening.methods.annealing import AnnealingSettings
 from regolith_studio.coarsening.polyhedra import polyhedron_of

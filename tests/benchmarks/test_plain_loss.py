@@ -7,7 +7,7 @@ import pytest
 
 from benchmarks.coarsening_quality import public_errors, quality
 from benchmarks.plain_loss import PlainLoss, plain_annealing
-from regolith_studio.coarsening.evaluation import LossFunction
+from regolith_studio.coarsening.loss import LossFunction
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron

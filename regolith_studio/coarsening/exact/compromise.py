@@ -7,7 +7,6 @@ import numpy as np
 
 from regolith_studio.coarsening.core.box_search import FINE_ANGLE
 from regolith_studio.coarsening.core.planes import tangents_of
-from regolith_studio.coarsening.evaluation import LossFunction
 from regolith_studio.coarsening.exact.course import (
     CHUNK,
     LONG_POLISH,
@@ -42,6 +41,7 @@ from regolith_studio.coarsening.exact.problem import (
     Shape,
     log_sphericity,
 )
+from regolith_studio.coarsening.loss import LossFunction
 from regolith_studio.coarsening.target import Target
 from regolith_studio.geometry.arrays import FloatArray
 

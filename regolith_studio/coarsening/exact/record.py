@@ -4,8 +4,8 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
-from regolith_studio.coarsening.evaluation import LossFunction
 from regolith_studio.coarsening.exact.course import Attempt
+from regolith_studio.coarsening.loss import LossFunction
 from regolith_studio.coarsening.progress import MethodStep
 from regolith_studio.geometry.half_spaces import HalfSpaces
 

@@ -7,7 +7,6 @@ from functools import cached_property
 import numpy as np
 
 from regolith_studio.coarsening.core.box_search import DENSE_ANGLE, FINE_ANGLE, SAMPLE_ANGLE
-from regolith_studio.coarsening.evaluation import LossFunction
 from regolith_studio.coarsening.exact.boxed import FEW_FACETS, boxed
 from regolith_studio.coarsening.exact.compromise import compromise, with_facets_back
 from regolith_studio.coarsening.exact.course import Attempt, course, densely_checked, start_planes
@@ -23,6 +22,7 @@ from regolith_studio.coarsening.exact.request import (
     own_reason,
     reason_for,
 )
+from regolith_studio.coarsening.loss import LossFunction
 from regolith_studio.coarsening.lower_bounds import sphericity_reason
 from regolith_studio.coarsening.progress import MethodStep
 from regolith_studio.coarsening.result import MethodResult

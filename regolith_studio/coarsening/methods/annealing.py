@@ -7,7 +7,7 @@ import numpy as np
 
 from regolith_studio.coarsening.core.cuts import with_all_facets
 from regolith_studio.coarsening.decimated_hull import quadric_half_spaces
-from regolith_studio.coarsening.evaluation import Evaluation, LossFunction
+from regolith_studio.coarsening.loss import Evaluation, LossFunction
 from regolith_studio.coarsening.progress import MethodStep, Move
 from regolith_studio.coarsening.result import MethodResult
 from regolith_studio.coarsening.target import Target

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from regolith_studio.coarsening.evaluation import Evaluation
+from regolith_studio.coarsening.loss import Evaluation
 from regolith_studio.coarsening.methods.annealing import AnnealingSettings
 from regolith_studio.coarsening.weights import JACCARD, LossWeights
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS

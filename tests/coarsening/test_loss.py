@@ -6,7 +6,7 @@ import pytest
 from regolith_studio.coarsening.core.evaluate import least_extents
 from regolith_studio.coarsening.core.intersection import edges_of, intersect
 from regolith_studio.coarsening.decimated_hull import quadric_half_spaces
-from regolith_studio.coarsening.evaluation import LossFunction
+from regolith_studio.coarsening.loss import LossFunction
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
