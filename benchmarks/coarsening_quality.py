@@ -22,7 +22,7 @@ from benchmarks.independent import measured
 from regolith_studio.coarsening import warm_up
 from regolith_studio.coarsening.coarsen import coarsen
 from regolith_studio.coarsening.exact.request import EXACT
-from regolith_studio.coarsening.result import Coarsened
+from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.coarsening.target import Target
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.particle import Particle
@@ -123,7 +123,7 @@ def quality(
     target_milliseconds: float,
     level: str,
     n_facets: int,
-    errors: Callable[[Target, Coarsened], NDArray[np.float64]],
+    errors: Callable[[Target, CoarseningResult], NDArray[np.float64]],
 ) -> Quality:
     """One line: each target coarsened once."""
     table, results, times = [], [], []
@@ -157,12 +157,12 @@ def quality(
     )
 
 
-def public_errors(_target: Target, result: Coarsened) -> NDArray[np.float64]:
+def public_errors(_target: Target, result: CoarseningResult) -> NDArray[np.float64]:
     """Relative errors of the public descriptors."""
     return np.array([result.errors[key] for key in KEPT])
 
 
-def independent_errors(target: Target, result: Coarsened) -> NDArray[np.float64]:
+def independent_errors(target: Target, result: CoarseningResult) -> NDArray[np.float64]:
     """Relative errors of descriptors measured by scipy and brute force."""
     planes = target.in_unit_frame(result.half_spaces)
     found = measured(planes.normals, planes.offsets, STEP)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from regolith_studio.errors import EnvironmentProblem
 
 if TYPE_CHECKING:
-    from regolith_studio.coarsening.result import Coarsened
+    from regolith_studio.coarsening.result import CoarseningResult
     from regolith_studio.geometry.mesh import Mesh
     from regolith_studio.geometry.particle import Particle
     from regolith_studio.jobs.coarsening_jobs import CoarsenedParticle
@@ -62,7 +62,7 @@ def draw_apart(draw: Callable[..., None], arguments: tuple[Any, ...], path: Path
     stage.replace(path)
 
 
-def _draw(particle: "Mesh", fit: "Mesh", coarse: "Coarsened", l_max: int, path: Path) -> None:
+def _draw(particle: "Mesh", fit: "Mesh", coarse: "CoarseningResult", l_max: int, path: Path) -> None:
     from regolith_studio.scene.figure import three_views, view_titles
 
     three_views(particle, fit, coarse, view_titles(l_max, coarse), path)

@@ -1,4 +1,4 @@
-"""The door to all methods: coarsen one particle."""
+"""Coarsen one particle by any of the methods."""
 
 import dataclasses
 from collections.abc import Generator, Mapping
@@ -11,7 +11,7 @@ from regolith_studio.coarsening.lower_bounds import attainable_errors
 from regolith_studio.coarsening.methods import METHODS, CoarseningMethod
 from regolith_studio.coarsening.polyhedra import polyhedron_of
 from regolith_studio.coarsening.progress import CoarseningProgress, MethodStep
-from regolith_studio.coarsening.result import Coarsened, MethodResult
+from regolith_studio.coarsening.result import CoarseningResult, MethodResult
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.descriptors.catalogue import CATALOGUE
@@ -35,7 +35,7 @@ def coarsen(
     seed: int = 0,
     particle_index: int = 0,
     settings: Any = None,
-) -> Coarsened:
+) -> CoarseningResult:
     """The convex polyhedron with `n_facets` facets that stands for `mesh` (section 2.4).
 
     Parameters
@@ -60,12 +60,12 @@ def coarsen(
     GeometryError
         If the mesh is open, flat or encloses no volume.
     """
-    _, run = _begun(mesh, n_facets, method, weights, seed, particle_index, settings)
+    _, run = _prepare(mesh, n_facets, method, weights, seed, particle_index, settings)
     while True:
         try:
             next(run)
         except StopIteration as end:
-            result: Coarsened = end.value
+            result: CoarseningResult = end.value
             return result
 
 
@@ -77,14 +77,14 @@ def coarsening_steps(
     seed: int = 0,
     particle_index: int = 0,
     settings: Any = None,
-) -> Generator[CoarseningProgress, None, Coarsened]:
-    """As :func:`coarsen`, telling each step; the first step comes at once and has a polyhedron."""
-    target, run = _begun(mesh, n_facets, method, weights, seed, particle_index, settings)
+) -> Generator[CoarseningProgress, None, CoarseningResult]:
+    """As :func:`coarsen`, yielding each step; the first one has a polyhedron and comes at once."""
+    target, run = _prepare(mesh, n_facets, method, weights, seed, particle_index, settings)
     while True:
         try:
             step = next(run)
         except StopIteration as end:
-            result: Coarsened = end.value
+            result: CoarseningResult = end.value
             return result
         polyhedron = None
         if step.half_spaces is not None:
@@ -92,7 +92,7 @@ def coarsening_steps(
         yield CoarseningProgress(step.step, step.steps, step.loss, polyhedron, target.centre)
 
 
-def _begun(
+def _prepare(
     mesh: Mesh | Target,
     n_facets: int,
     method: str,
@@ -100,7 +100,7 @@ def _begun(
     seed: int,
     particle_index: int,
     settings: Any,
-) -> tuple[Target, Generator[MethodStep, None, Coarsened]]:
+) -> tuple[Target, Generator[MethodStep, None, CoarseningResult]]:
     """The target, and the method's steps with the measured result at their end."""
     chosen = _method(method)
     weights = LossWeights.from_preset(DEFAULT_PRESET) if weights is None else weights
@@ -108,16 +108,16 @@ def _begun(
     target = mesh if isinstance(mesh, Target) else Target.of(mesh)
     random = np.random.SeedSequence(seed, spawn_key=(particle_index,))
     run = chosen.run(target, n_facets, weights, random, settings_of(method, settings))
-    return target, _to_the_end(run, target, method, n_facets, weights)
+    return target, _run_and_measure(run, target, method, n_facets, weights)
 
 
-def _to_the_end(
+def _run_and_measure(
     run: Generator[MethodStep, None, MethodResult],
     target: Target,
     method: str,
     n_facets: int,
     weights: LossWeights,
-) -> Generator[MethodStep, None, Coarsened]:
+) -> Generator[MethodStep, None, CoarseningResult]:
     return _measured(target, (yield from run), method, n_facets, weights)
 
 
@@ -160,14 +160,14 @@ def _check(n_facets: int, method: CoarseningMethod, weights: LossWeights, seed: 
 
 def _measured(
     target: Target, result: MethodResult, method: str, n_facets: int, weights: LossWeights
-) -> Coarsened:
+) -> CoarseningResult:
     """Measure the result by the public descriptors, independently of the method."""
     unit = result.polyhedron or ConvexPolyhedron.from_half_spaces(result.half_spaces)
     polyhedron = unit.moved(rotation=target.axes.T, scale=target.scale)
     achieved = result.achieved or describe(unit)
     errors = relative_errors(target.descriptors, achieved)
     overlap = target.jaccard_distance(unit.half_spaces)
-    return Coarsened(
+    return CoarseningResult(
         polyhedron=polyhedron,
         centre=target.centre,
         target=in_unit(target.descriptors, target.scale),

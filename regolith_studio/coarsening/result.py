@@ -43,7 +43,7 @@ class MethodResult:
 
 
 @dataclass(frozen=True)
-class Coarsened:
+class CoarseningResult:
     """A convex polyhedron that stands for a particle.
 
     Parameters

@@ -1,4 +1,4 @@
-"""Other ways to say how fine a polyhedron shall be: by triangles, or by the largest error."""
+"""Other criteria for the number of facets: a number of triangles, or the largest error."""
 
 import math
 from collections.abc import Generator, Sequence
@@ -12,7 +12,7 @@ from regolith_studio.coarsening.coarsen import (
     coarsening_steps,
 )
 from regolith_studio.coarsening.progress import CoarseningProgress
-from regolith_studio.coarsening.result import Coarsened
+from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import JACCARD, LossWeights
 from regolith_studio.errors import InputError
@@ -21,11 +21,11 @@ from regolith_studio.geometry.mesh import Mesh
 
 @dataclass(frozen=True)
 class Trial:
-    """One number of facets that was tried, and how it went."""
+    """A coarsening with one number of facets, and its largest error."""
 
     n_facets: int
     largest_error: float
-    result: Coarsened
+    result: CoarseningResult
 
 
 def facets_for_triangles(n_triangles: int) -> int:
@@ -47,7 +47,9 @@ def facets_for_triangles(n_triangles: int) -> int:
     return min(n_facets, high)
 
 
-def largest_error(result: Coarsened, weights: LossWeights, jaccard_limit: float | None = None) -> float:
+def largest_error(
+    result: CoarseningResult, weights: LossWeights, jaccard_limit: float | None = None
+) -> float:
     """Largest relative error of the weighted descriptors, beyond what no polyhedron can avoid.
 
     V and CH cannot both be met; of the one that gives way only the excess over its bound counts. With
@@ -72,7 +74,7 @@ def fewest_facets(
     seed: int = 0,
     particle_index: int = 0,
     settings: Any = None,
-) -> Generator[CoarseningProgress | Trial, None, Coarsened]:
+) -> Generator[CoarseningProgress | Trial, None, CoarseningResult]:
     """The polyhedron with the fewest facets whose weighted descriptors are all off by at most `limit`.
 
     Doubles the number of facets from 5 until the limit is met, then halves the interval; yields the steps of
@@ -130,19 +132,19 @@ def fewest_facets(
     return best.result
 
 
-def coarsen_below(mesh: Mesh | Target, limit: float, **options: Any) -> Coarsened:
+def coarsen_below(mesh: Mesh | Target, limit: float, **options: Any) -> CoarseningResult:
     """The result of :func:`fewest_facets`, whose `options` it takes."""
     steps = fewest_facets(mesh, limit, **options)
     while True:
         try:
             next(steps)
         except StopIteration as end:
-            found: Coarsened = end.value
+            found: CoarseningResult = end.value
             return found
 
 
 def check_limit(limit: float) -> None:
-    """Refuse what is no largest error.
+    """Check a limit of the largest error.
 
     Raises
     ------
@@ -153,7 +155,7 @@ def check_limit(limit: float) -> None:
         raise InputError(f"The largest error must be above 0 per cent, got {100 * limit:g}.")
 
 
-def _least(failed: Sequence[Trial], limit: float) -> Coarsened:
+def _least(failed: Sequence[Trial], limit: float) -> CoarseningResult:
     """The best of the trials, with the reason why it is not good enough."""
     least = min(failed, key=lambda trial: trial.largest_error)
     reason = (

@@ -1,4 +1,4 @@
-"""The particle as the methods see it: unit volume, in its principal axes, everything measured once."""
+"""The particle that is coarsened: at unit volume, in its principal axes, with all its descriptors."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -18,11 +18,11 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.oriented_box import OrientedBox
 from regolith_studio.geometry.vectors import along, cross, length, mixed, row
 
-SMALLEST_SPAN = 1e-150
+MIN_SPAN = 1e-150
 """Below this size the volume of a mesh cannot be told from 0."""
-GRAIN = 2.0**-30
+COORDINATE_STEP = 2.0**-30
 """Coordinates of the normalised particle are multiples of this."""
-MOST_TANGLED = 0.05
+MAX_WRONG_CROSSINGS = 0.05
 """Share of wrong crossings above which a mesh counts as intersecting itself."""
 
 
@@ -88,7 +88,7 @@ class Target:
         """
         unit, centre, scale = _normalised(mesh)
         axes = principal_axes(unit)
-        aligned = Mesh(np.round(unit.vertices @ axes.T / GRAIN) * GRAIN, unit.faces)
+        aligned = Mesh(np.round(unit.vertices @ axes.T / COORDINATE_STEP) * COORDINATE_STEP, unit.faces)
         facts = ShapeFacts(aligned)
         descriptors = Descriptors({key: CATALOGUE[key].compute(facts) for key in DEFAULT_KEYS})
         target = cls(aligned, centre, axes, scale, descriptors, facts.box)
@@ -163,7 +163,7 @@ def _normalised(mesh: Mesh) -> tuple[Mesh, FloatArray, float]:
         raise GeometryError(f"A particle needs at least 4 triangles, got {len(mesh.faces)}.")
     low, high = mesh.bounds
     size = float((high - low).max())
-    if not size > SMALLEST_SPAN:
+    if not size > MIN_SPAN:
         raise GeometryError("The mesh is a single point and encloses no volume.")
     _check_closed(mesh)
     middle = (low + high) / 2
@@ -184,7 +184,7 @@ def _check_simple(rays: RayTable) -> None:
     last[rays.first[1:][np.diff(rays.first) > 0] - 1] = True
     following = np.where(last, -1.0, np.roll(rays.sign, -1))
     wrong = float(np.mean(following == rays.sign))
-    if wrong > MOST_TANGLED:
+    if wrong > MAX_WRONG_CROSSINGS:
         raise GeometryError(
             f"The mesh intersects itself: {100 * wrong:.0f} % of its crossings with rays enter or leave twice"
             " in a row; repair it first."

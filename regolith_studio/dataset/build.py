@@ -24,7 +24,7 @@ PACKAGES = ("numpy", "scipy", "numba", "pyshtools", "scikit-image", "fast-simpli
 
 
 class CoarsenedShape(Protocol):
-    """What a dataset needs to know of a coarsened particle; ``coarsening.result.Coarsened`` has it."""
+    """What a dataset needs to know of a coarsened particle; ``coarsening.result.CoarseningResult`` has it."""
 
     @property
     def polyhedron(self) -> ConvexPolyhedron:

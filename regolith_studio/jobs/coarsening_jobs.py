@@ -8,7 +8,7 @@ from typing import Any
 
 from regolith_studio.coarsening.coarsen import DEFAULT_METHOD, FACETS_LIMITS, coarsening_steps
 from regolith_studio.coarsening.progress import CoarseningProgress
-from regolith_studio.coarsening.result import Coarsened
+from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.coarsening.stopping_criteria import Trial, fewest_facets
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import LossWeights
@@ -96,7 +96,7 @@ class CoarsenedParticle:
 
     name: str
     index: int
-    coarsened: Coarsened | None
+    coarsened: CoarseningResult | None
     problem: str = ""
     coefficients: ShCoefficients | None = None
     notes: tuple[str, ...] = ()
@@ -104,7 +104,7 @@ class CoarsenedParticle:
 
 
 def coarsen_one(mesh: Mesh, request: CoarseningRequest, particle_index: int = 0) -> Steps:
-    """Coarsen `mesh` as ordered; partial results are ``CoarseningProgress``, the result ``Coarsened``."""
+    """Coarsen `mesh` as ordered; partial results are ``CoarseningProgress``, the result ``CoarseningResult``."""
     yield Started("Coarsening")
     return (yield from _run_coarsening(mesh, request, particle_index))
 
@@ -176,7 +176,7 @@ def _run_coarsening(mesh: Mesh, request: CoarseningRequest, index: int) -> Gener
         "particle_index": index,
         "settings": dict(request.settings),
     }
-    steps: Generator[CoarseningProgress | Trial, None, Coarsened]
+    steps: Generator[CoarseningProgress | Trial, None, CoarseningResult]
     if request.largest_error is None:
         steps = coarsening_steps(_target(mesh), request.n_facets, **common)
     else:

@@ -237,7 +237,7 @@ def dataset_provenance(
         processing_steps=(
             "Meshes read and repaired.",
             *(fit if request.target == "fit" else ()),
-            f"Coarsened to {request.fineness} by the method {request.method}.",
+            f"CoarseningResult to {request.fineness} by the method {request.method}.",
             "Turned to principal axes and scaled to unit volume.",
         ),
         seed=request.seed,

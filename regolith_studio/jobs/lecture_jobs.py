@@ -11,7 +11,7 @@ from regolith_studio.coarsening.methods import METHODS
 from regolith_studio.coarsening.methods.annealing import AnnealingSettings
 from regolith_studio.coarsening.polyhedra import polyhedron_of
 from regolith_studio.coarsening.progress import MethodStep, Move
-from regolith_studio.coarsening.result import Coarsened
+from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
@@ -96,7 +96,7 @@ class AnnealingLesson:
     weights: LossWeights
     settings: AnnealingSettings
     steps: tuple[AnnealingStep, ...]
-    exact: Coarsened | None = None
+    exact: CoarseningResult | None = None
 
 
 def trace_annealing(mesh: Mesh, request: CoarseningRequest, particle_index: int = 0) -> Steps:

@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from regolith_studio.coarsening.result import Coarsened
+from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.jobs.events import Job, Started, Steps
@@ -37,7 +37,7 @@ def turn(shapes: Sequence[Shape], pose: CameraPose | None, path: Path, scale: in
 def draw_figure(
     particle: Mesh,
     fit: Mesh,
-    coarsened: Coarsened,
+    coarsened: CoarseningResult,
     titles: tuple[str, str, str],
     path: Path,
     scale: int,
@@ -69,7 +69,7 @@ def _turn(shapes: tuple[Shape, ...], pose: CameraPose | None, path: Path, scale:
 def _figure(
     particle: Mesh,
     fit: Mesh,
-    coarsened: Coarsened,
+    coarsened: CoarseningResult,
     titles: tuple[str, str, str],
     path: Path,
     scale: int,

@@ -6,7 +6,7 @@ import numpy as np
 import pyvista as pv
 from numpy.typing import NDArray
 
-from regolith_studio.coarsening.result import Coarsened
+from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.scene import annotations, cameras, palette, stage, surfaces
@@ -21,7 +21,7 @@ VIEW_SIZE = (620, 560)
 def three_views(
     particle: Mesh,
     fit: Mesh,
-    polyhedron: ConvexPolyhedron | Coarsened,
+    polyhedron: ConvexPolyhedron | CoarseningResult,
     titles: tuple[str, str, str],
     path: Path | None = None,
     direction: str = "isometric",
@@ -34,7 +34,7 @@ def three_views(
     Parameters
     ----------
     particle, fit, polyhedron
-        In the particle's frame, in micrometres; a :class:`Coarsened` knows where its polyhedron lies.
+        In the particle's frame, in micrometres; a :class:`CoarseningResult` knows where its polyhedron lies.
     titles
         One line over each view.
     path
@@ -76,19 +76,23 @@ def three_views(
 
 
 def _fill(
-    plotter: pv.Plotter, column: int, particle: Mesh, fit: Mesh, polyhedron: ConvexPolyhedron | Coarsened
+    plotter: pv.Plotter,
+    column: int,
+    particle: Mesh,
+    fit: Mesh,
+    polyhedron: ConvexPolyhedron | CoarseningResult,
 ) -> None:
     if column == 0:
         surfaces.show_particle(plotter, particle)
     elif column == 1:
         surfaces.show_fit(plotter, fit)
-    elif isinstance(polyhedron, Coarsened):
+    elif isinstance(polyhedron, CoarseningResult):
         surfaces.show_polyhedron(plotter, polyhedron.polyhedron, polyhedron.centre, palette.PAPER)
     else:
         surfaces.show_polyhedron(plotter, polyhedron, surroundings=palette.PAPER)
 
 
-def view_titles(l_max: int, polyhedron: ConvexPolyhedron | Coarsened) -> tuple[str, str, str]:
+def view_titles(l_max: int, polyhedron: ConvexPolyhedron | CoarseningResult) -> tuple[str, str, str]:
     """The titles that the window and the figures share; facets are not triangles, so both are named."""
     return (
         "CT particle",

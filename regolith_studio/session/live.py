@@ -14,7 +14,7 @@ from regolith_studio.session.tasks import Reactions, TaskBoard
 
 if TYPE_CHECKING:
     from regolith_studio.coarsening.progress import CoarseningProgress
-    from regolith_studio.coarsening.result import Coarsened
+    from regolith_studio.coarsening.result import CoarseningResult
     from regolith_studio.descriptors.describe import Descriptors
     from regolith_studio.geometry.mesh import Mesh
     from regolith_studio.harmonics.fit import FitOptions, HarmonicFit
@@ -199,7 +199,7 @@ class LiveResults:
             self._board.stop_lane(Kind.COARSENING)
             self._advance()
 
-    def _keep_coarsened(self, done: "Coarsened") -> None:
+    def _keep_coarsened(self, done: "CoarseningResult") -> None:
         history = tuple(enumerate(done.loss_history))
         self._owner.update("coarsening", coarsened=done, best=done, loss_history=history)
 

@@ -10,7 +10,7 @@ from regolith_studio.geometry.particle import Particle
 
 if TYPE_CHECKING:
     from regolith_studio.coarsening.progress import CoarseningProgress
-    from regolith_studio.coarsening.result import Coarsened
+    from regolith_studio.coarsening.result import CoarseningResult
     from regolith_studio.descriptors.describe import Descriptors
     from regolith_studio.geometry.mesh_health import MeshHealth
     from regolith_studio.harmonics.fit import HarmonicFit
@@ -72,9 +72,9 @@ class Results:
     particle_descriptors: "Descriptors | None" = None
     fit_descriptors: "Descriptors | None" = None
     fit_errors: Mapping[str, float] = field(default_factory=dict)
-    best: "CoarseningProgress | Coarsened | None" = None
+    best: "CoarseningProgress | CoarseningResult | None" = None
     coarsening_progress: "CoarseningProgress | None" = None
-    coarsened: "Coarsened | None" = None
+    coarsened: "CoarseningResult | None" = None
     loss_history: Sequence[tuple[int, float]] = ()
     lmax_study: "LmaxStudy | None" = None
     coarsening_study: "CoarseningStudy | None" = None

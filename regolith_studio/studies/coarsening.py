@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from regolith_studio.coarsening.coarsen import DEFAULT_METHOD, coarsen
 from regolith_studio.coarsening.decimated_hull import decimated_hull
-from regolith_studio.coarsening.result import Coarsened
+from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import JACCARD
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
@@ -159,7 +159,7 @@ def _row_errors(
     return [*[errors[key] for key in LOSS_KEYS], found.jaccard_distance], found.reason is None
 
 
-def _in_unit_frame(found: Coarsened) -> ConvexPolyhedron:
+def _in_unit_frame(found: CoarseningResult) -> ConvexPolyhedron:
     return found.polyhedron.moved(scale=found.target["volume"] ** (-1 / 3))
 
 

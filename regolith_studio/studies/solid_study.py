@@ -6,7 +6,7 @@ from typing import Any, Self
 
 import numpy as np
 
-from regolith_studio.coarsening.result import Coarsened
+from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.coarsening.weights import JACCARD
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
@@ -21,7 +21,7 @@ class StudiedSolid:
     Parameters
     ----------
     method, polyhedron, errors, jaccard_distance, loss, bounds, reason
-        As in :class:`regolith_studio.coarsening.result.Coarsened`.
+        As in :class:`regolith_studio.coarsening.result.CoarseningResult`.
     """
 
     method: str
@@ -33,7 +33,7 @@ class StudiedSolid:
     reason: str | None
 
     @classmethod
-    def of(cls, found: Coarsened) -> Self:
+    def of(cls, found: CoarseningResult) -> Self:
         """Of a particle just coarsened."""
         return cls(
             found.method,

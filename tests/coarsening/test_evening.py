@@ -12,7 +12,7 @@ from regolith_studio.coarsening.core.planes import gradient_of, levers_of, moved
 from regolith_studio.coarsening.exact import search
 from regolith_studio.coarsening.exact.evening import facet_charge, has_small_facets
 from regolith_studio.coarsening.progress import CoarseningProgress
-from regolith_studio.coarsening.result import Coarsened
+from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.coarsening.target import Target
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.mesh import Mesh
@@ -95,7 +95,7 @@ def test_that_the_polyhedron_with_larger_facets_is_told_as_the_last_step(
     np.testing.assert_allclose(told[-1].polyhedron.half_spaces.offsets, result.half_spaces.offsets, rtol=1e-9)
 
 
-def steps_of(target: Target, n_facets: int) -> tuple[list[CoarseningProgress], Coarsened]:
+def steps_of(target: Target, n_facets: int) -> tuple[list[CoarseningProgress], CoarseningResult]:
     steps, told = coarsening_steps(target, n_facets), []
     while True:
         try:

@@ -13,7 +13,7 @@ from regolith_studio.coarsening.exact.growth import (
     stages,
     with_waiting,
 )
-from regolith_studio.coarsening.result import Coarsened
+from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.coarsening.target import Target
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
@@ -24,7 +24,7 @@ CONDITIONS = ("volume", "sphericity", "min_diameter", "max_diameter", "aspect_ra
 
 
 @pytest.fixture(scope="module", params=[2, 5])
-def rough(request: pytest.FixtureRequest) -> Coarsened:
+def rough(request: pytest.FixtureRequest) -> CoarseningResult:
     return coarsen(bumpy(request.param, roughness=0.3), 100, "exact", seed=1)
 
 
@@ -36,14 +36,14 @@ def facets_by_scipy(planes: HalfSpaces) -> int:
     return len(np.unique(facing))
 
 
-def test_that_rough_particles_get_a_hundred_facets_and_keep_all_descriptors(rough: Coarsened) -> None:
+def test_that_rough_particles_get_a_hundred_facets_and_keep_all_descriptors(rough: CoarseningResult) -> None:
     assert max(rough.errors[key] for key in CONDITIONS) <= 1e-6
     assert rough.reason is None
     assert rough.n_facets == 100
     assert (rough.n_vertices, rough.n_triangles) == (196, 388)
 
 
-def test_that_scipy_finds_the_same_facets_and_volume(rough: Coarsened) -> None:
+def test_that_scipy_finds_the_same_facets_and_volume(rough: CoarseningResult) -> None:
     planes = rough.half_spaces
     assert facets_by_scipy(planes) == 100
     corners = HalfspaceIntersection(planes.equations, np.zeros(3)).intersections

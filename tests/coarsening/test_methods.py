@@ -10,7 +10,7 @@ from scipy.spatial import ConvexHull, HalfspaceIntersection
 from regolith_studio.coarsening.coarsen import coarsen, coarsening_steps
 from regolith_studio.coarsening.methods import METHODS
 from regolith_studio.coarsening.methods.annealing import AnnealingSettings
-from regolith_studio.coarsening.result import Coarsened
+from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
@@ -22,7 +22,7 @@ EXACT = ("volume", "sphericity", "min_diameter", "max_diameter", "aspect_ratio")
 
 
 @pytest.fixture(scope="module")
-def exact(particle: Mesh) -> Coarsened:
+def exact(particle: Mesh) -> CoarseningResult:
     return coarsen(particle, 20, "exact", seed=1)
 
 
@@ -31,14 +31,16 @@ def test_that_the_methods_announce_themselves() -> None:
     assert all(method.label for method in METHODS.values())
 
 
-def test_that_all_descriptors_but_one_are_met_and_the_hull_misses_by_its_bound(exact: Coarsened) -> None:
+def test_that_all_descriptors_but_one_are_met_and_the_hull_misses_by_its_bound(
+    exact: CoarseningResult,
+) -> None:
     for key in EXACT:
         assert exact.errors[key] < 1e-6
     assert exact.errors["convex_hull_volume"] == pytest.approx(exact.bounds["convex_hull_volume"], abs=1e-6)
     assert exact.reason is None
 
 
-def test_that_scipy_finds_the_same_volume_and_sphericity(exact: Coarsened) -> None:
+def test_that_scipy_finds_the_same_volume_and_sphericity(exact: CoarseningResult) -> None:
     planes = exact.half_spaces
     hull = ConvexHull(HalfspaceIntersection(planes.equations, np.zeros(3)).intersections)
     assert hull.volume == pytest.approx(exact.target["volume"], rel=1e-8)
@@ -46,13 +48,13 @@ def test_that_scipy_finds_the_same_volume_and_sphericity(exact: Coarsened) -> No
     assert sphericity == pytest.approx(exact.target["sphericity"], rel=1e-8)
 
 
-def test_that_every_half_space_bounds_a_facet(exact: Coarsened) -> None:
+def test_that_every_half_space_bounds_a_facet(exact: CoarseningResult) -> None:
     assert exact.n_facets == exact.n_facets_asked == 20
     assert exact.n_vertices == 36
     assert exact.n_triangles == 68
 
 
-def test_that_the_result_lies_where_the_particle_lies(exact: Coarsened, particle: Mesh) -> None:
+def test_that_the_result_lies_where_the_particle_lies(exact: CoarseningResult, particle: Mesh) -> None:
     assert exact.centre == pytest.approx(particle.centroid, rel=1e-12)
     size = particle.volume ** (1 / 3)
     assert np.linalg.norm(exact.mesh.centroid - particle.centroid) < 0.1 * size
@@ -60,25 +62,27 @@ def test_that_the_result_lies_where_the_particle_lies(exact: Coarsened, particle
 
 
 @pytest.mark.parametrize("scale", [1e-9, 1e9])
-def test_that_the_unit_of_length_does_not_matter(exact: Coarsened, particle: Mesh, scale: float) -> None:
+def test_that_the_unit_of_length_does_not_matter(
+    exact: CoarseningResult, particle: Mesh, scale: float
+) -> None:
     other = coarsen(particle.moved(scale=scale), 20, "exact", seed=1)
     assert other.jaccard_distance == pytest.approx(exact.jaccard_distance, abs=1e-6)
     assert other.half_spaces.offsets == pytest.approx(exact.half_spaces.offsets * scale, rel=1e-5)
 
 
-def test_that_the_orientation_does_not_matter(exact: Coarsened, particle: Mesh) -> None:
+def test_that_the_orientation_does_not_matter(exact: CoarseningResult, particle: Mesh) -> None:
     turn = np.array([[0.36, 0.48, -0.8], [-0.8, 0.6, 0.0], [0.48, 0.64, 0.6]])
     other = coarsen(particle.moved(rotation=turn), 20, "exact", seed=1)
     assert other.jaccard_distance == pytest.approx(exact.jaccard_distance, abs=1e-6)
     assert other.half_spaces.points == pytest.approx(exact.half_spaces.points @ turn.T, abs=1e-4)
 
 
-def test_that_the_same_seed_gives_the_same_polyhedron(exact: Coarsened, particle: Mesh) -> None:
+def test_that_the_same_seed_gives_the_same_polyhedron(exact: CoarseningResult, particle: Mesh) -> None:
     again = coarsen(particle, 20, "exact", seed=1)
     assert (again.half_spaces.points == exact.half_spaces.points).all()
 
 
-def test_that_a_result_travels_between_processes(exact: Coarsened) -> None:
+def test_that_a_result_travels_between_processes(exact: CoarseningResult) -> None:
     copy = pickle.loads(pickle.dumps(exact))
     assert copy.loss == exact.loss
     assert copy.n_triangles == exact.n_triangles
@@ -155,7 +159,7 @@ def test_that_facet_repair_keeps_all_facets(particle: Mesh) -> None:
     assert coarsen(particle, 12, "annealing", settings=options).n_facets >= 11
 
 
-def test_that_the_measured_errors_are_those_of_the_target(exact: Coarsened) -> None:
+def test_that_the_measured_errors_are_those_of_the_target(exact: CoarseningResult) -> None:
     for key in LOSS_KEYS:
         wanted, found = exact.target[key], exact.achieved[key]
         assert abs(found - wanted) / wanted == pytest.approx(exact.errors[key], abs=1e-9)
@@ -204,7 +208,7 @@ def test_that_a_hull_with_too_few_triangles_is_refused_by_the_baseline() -> None
         coarsen(icosphere(0), 50, "quadric")
 
 
-def test_that_a_mesh_inside_out_is_turned(particle: Mesh, exact: Coarsened) -> None:
+def test_that_a_mesh_inside_out_is_turned(particle: Mesh, exact: CoarseningResult) -> None:
     turned = Target.of(Mesh(particle.vertices, particle.faces[:, ::-1]))
     assert turned.descriptors["volume"] == pytest.approx(1.0)
     assert turned.descriptors["sphericity"] == pytest.approx(exact.target["sphericity"])

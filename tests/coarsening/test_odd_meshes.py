@@ -5,7 +5,7 @@ import pytest
 
 from regolith_studio.coarsening.coarsen import coarsen
 from regolith_studio.coarsening.methods import METHODS
-from regolith_studio.coarsening.result import Coarsened
+from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.coarsening.target import Target
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.mesh import Mesh
@@ -14,7 +14,7 @@ from tests.coarsening.odd_meshes import KINDS, odd_mesh
 CONDITIONS = ("volume", "sphericity", "min_diameter", "max_diameter", "aspect_ratio")
 
 
-def attempted(mesh: Mesh | Target, n_facets: int, method: str, number: int) -> Coarsened | str:
+def attempted(mesh: Mesh | Target, n_facets: int, method: str, number: int) -> CoarseningResult | str:
     """The result, or the sentence that refuses it."""
     try:
         return coarsen(mesh, n_facets, method, particle_index=number)

@@ -1,4 +1,4 @@
-"""Coarsened particles: one STL each, and ``coarsening.json`` with how well each was met."""
+"""CoarseningResult particles: one STL each, and ``coarsening.json`` with how well each was met."""
 
 from collections.abc import Sequence
 from dataclasses import asdict
@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from regolith_studio.coarsening.exact.request import EXACT
-from regolith_studio.coarsening.result import Coarsened
+from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.coarsening.weights import JACCARD
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.io.atomic import write_bytes
@@ -81,7 +81,7 @@ def _per_cent(error: float, bound: float) -> str:
     return f"{shown} (>= {100 * bound:.2g})" if bound > EXACT else shown
 
 
-def coarsening_entry(each: CoarsenedParticle, coarse: Coarsened) -> dict[str, Any]:
+def coarsening_entry(each: CoarsenedParticle, coarse: CoarseningResult) -> dict[str, Any]:
     """One particle in ``coarsening.json``, without the time that it took."""
     return {
         "name": each.name,
