@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from regolith_studio.harmonics.fit import fit_harmonics
     from regolith_studio.harmonics.surface import reconstruct
     from regolith_studio.readers.particles import read_mesh, read_particles, sample_particles
-    from regolith_studio.shape_models.models.gaussian_field import GaussianFieldModel as GaussianRadiusModel
+    from regolith_studio.shape_models.models.gaussian_field import GaussianRadiusModel as GaussianRadiusModel
 
 __version__ = "0.1.0"
 __all__ = [
@@ -45,7 +45,7 @@ __all__ = [
 ]
 
 _DOORS = {
-    "GaussianRadiusModel": "shape_models.models.gaussian_field:GaussianFieldModel",
+    "GaussianRadiusModel": "shape_models.models.gaussian_field:GaussianRadiusModel",
     "LossWeights": "coarsening.weights:LossWeights",
     "build_dataset": "dataset.build:build_dataset",
     "coarsen": "coarsening.coarsen:coarsen",

@@ -62,7 +62,10 @@ def describe(
     loaded = reading.read(meshes)
     facts = follow(measure_sample(loaded.particles, workers=jobs))
     pairs = list(zip(loaded.particles, facts, strict=True))
-    entries = [ParticleEntry(p.name, p, each.health, each.descriptors, sight=each.sight) for p, each in pairs]
+    entries = [
+        ParticleEntry(p.name, p, each.health, each.descriptors, visibility=each.visibility)
+        for p, each in pairs
+    ]
     if csv is not None:
         _write_csv(csv, entries)
     spread = _statistics(entries, weighting, border_weights) if statistics else None

@@ -115,7 +115,7 @@ def sensitivity(
 
 def check_box(box: str) -> None:
     """Refuse a box metric that there is not."""
-    from regolith_studio.descriptors.facts import BOX_METRICS
+    from regolith_studio.descriptors.shape_cache import BOX_METRICS
 
     if box not in BOX_METRICS:
         raise typer.BadParameter(f"The box must be one of {', '.join(BOX_METRICS)}, got {box!r}.")

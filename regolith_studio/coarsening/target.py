@@ -9,7 +9,7 @@ from regolith_studio.coarsening.core.overlap import exits, jaccard, shared_volum
 from regolith_studio.coarsening.core.rays import cast, fibonacci_bundle
 from regolith_studio.descriptors.catalogue import CATALOGUE, DEFAULT_KEYS
 from regolith_studio.descriptors.describe import Descriptors
-from regolith_studio.descriptors.facts import ShapeFacts
+from regolith_studio.descriptors.shape_cache import ShapeCache
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.half_spaces import HalfSpaces
@@ -88,8 +88,13 @@ class Target:
         """
         unit, centre, scale = _normalised(mesh)
         axes = principal_axes(unit)
+<<<<<<< HEAD
         aligned = Mesh(np.round(unit.vertices @ axes.T / COORDINATE_STEP) * COORDINATE_STEP, unit.faces)
-        facts = ShapeFacts(aligned)
+        facts = ShapeCache(aligned)
+=======
+        aligned = Mesh(np.round(unit.vertices @ axes.T / GRAIN) * GRAIN, unit.faces)
+        facts = ShapeCache(aligned)
+>>>>>>> 237acc3 (Merge harmonics into modules of one idea each and delete what nothing uses)
         descriptors = Descriptors({key: CATALOGUE[key].compute(facts) for key in DEFAULT_KEYS})
         target = cls(aligned, centre, axes, scale, descriptors, facts.box)
         _check_simple(target.rays)

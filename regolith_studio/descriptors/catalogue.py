@@ -1,6 +1,6 @@
 """The catalogue of descriptors (section 2.2 and what users of shape analysis expect).
 
-A descriptor is one function of :class:`ShapeFacts` and one row of `CATALOGUE`; sliders, loss terms,
+A descriptor is one function of :class:`ShapeCache` and one row of `CATALOGUE`; sliders, loss terms,
 table columns and invariance tests follow from the row. S, I and L stand for the edges
 D_min <= D_int <= D_max of the minimum-volume bounding box.
 """
@@ -10,11 +10,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from regolith_studio.descriptors.facts import ShapeFacts
+from regolith_studio.descriptors.shape_cache import ShapeCache
 from regolith_studio.geometry.feret import feret_max, feret_min
 from regolith_studio.geometry.mean_incidence import mean_incidence
 
-__all__ = ["CATALOGUE", "DEFAULT_KEYS", "LOSS_KEYS", "Descriptor", "ShapeFacts"]
+__all__ = ["CATALOGUE", "DEFAULT_KEYS", "LOSS_KEYS", "Descriptor", "ShapeCache"]
 
 
 @dataclass(frozen=True)
@@ -46,119 +46,119 @@ class Descriptor:
     label: str
     dimension: int
     formula: str
-    compute: Callable[[ShapeFacts], float]
+    compute: Callable[[ShapeCache], float]
     in_loss: bool = False
     costly: bool = False
 
 
-def volume(facts: ShapeFacts) -> float:
+def volume(facts: ShapeCache) -> float:
     """Volume enclosed by the surface."""
     return facts.volume
 
 
-def equivalent_radius(facts: ShapeFacts) -> float:
+def equivalent_radius(facts: ShapeCache) -> float:
     """Radius of the sphere with the same volume."""
     return float((3.0 * facts.volume / (4.0 * np.pi)) ** (1 / 3))
 
 
-def surface_area(facts: ShapeFacts) -> float:
+def surface_area(facts: ShapeCache) -> float:
     """Area of the surface."""
     return facts.surface_area
 
 
-def sphericity(facts: ShapeFacts) -> float:
+def sphericity(facts: ShapeCache) -> float:
     """Wadell's true sphericity, 1 for a sphere; the printed Eq. 1 has a 3 too many in its denominator."""
     return float(np.cbrt(np.pi) * (6.0 * facts.volume) ** (2 / 3) / facts.surface_area)
 
 
-def min_diameter(facts: ShapeFacts) -> float:
+def min_diameter(facts: ShapeCache) -> float:
     """Shortest edge of the minimum-volume bounding box."""
     return facts.box.min_diameter
 
 
-def intermediate_diameter(facts: ShapeFacts) -> float:
+def intermediate_diameter(facts: ShapeCache) -> float:
     """Middle edge of the minimum-volume bounding box."""
     return facts.box.intermediate_diameter
 
 
-def max_diameter(facts: ShapeFacts) -> float:
+def max_diameter(facts: ShapeCache) -> float:
     """Longest edge of the minimum-volume bounding box."""
     return facts.box.max_diameter
 
 
-def aspect_ratio(facts: ShapeFacts) -> float:
+def aspect_ratio(facts: ShapeCache) -> float:
     """D_max / D_min (Eq. 2)."""
     return facts.box.max_diameter / facts.box.min_diameter
 
 
-def convex_hull_volume(facts: ShapeFacts) -> float:
+def convex_hull_volume(facts: ShapeCache) -> float:
     """Volume of the convex hull."""
     return facts.hull.volume
 
 
-def convexity(facts: ShapeFacts) -> float:
+def convexity(facts: ShapeCache) -> float:
     """Share of the convex hull that the particle fills, also called solidity."""
     return facts.volume / facts.hull.volume
 
 
-def elongation(facts: ShapeFacts) -> float:
+def elongation(facts: ShapeCache) -> float:
     """Zingg's I / L (1935): 1 for no elongation, towards 0 for needles."""
     return facts.box.intermediate_diameter / facts.box.max_diameter
 
 
-def flatness(facts: ShapeFacts) -> float:
+def flatness(facts: ShapeCache) -> float:
     """Zingg's S / I (1935): 1 for no flatness, towards 0 for flakes."""
     return facts.box.min_diameter / facts.box.intermediate_diameter
 
 
-def corey_shape_factor(facts: ShapeFacts) -> float:
+def corey_shape_factor(facts: ShapeCache) -> float:
     """S / sqrt(L I), Corey (1949)."""
     return float(facts.box.min_diameter / np.sqrt(facts.box.max_diameter * facts.box.intermediate_diameter))
 
 
-def krumbein_sphericity(facts: ShapeFacts) -> float:
+def krumbein_sphericity(facts: ShapeCache) -> float:
     """Intercept sphericity (S I / L^2)^(1/3), Krumbein (1941)."""
     return float(np.cbrt(facts.box.min_diameter * facts.box.intermediate_diameter)) / float(
         np.cbrt(facts.box.max_diameter**2)
     )
 
 
-def max_feret_diameter(facts: ShapeFacts) -> float:
+def max_feret_diameter(facts: ShapeCache) -> float:
     """Largest distance between two points of the particle."""
     return feret_max(facts.hull)
 
 
-def min_feret_diameter(facts: ShapeFacts) -> float:
+def min_feret_diameter(facts: ShapeCache) -> float:
     """Smallest distance between two parallel planes that hold the particle."""
     return feret_min(facts.hull)
 
 
-def roundness(facts: ShapeFacts) -> float:
+def roundness(facts: ShapeCache) -> float:
     """Mean over the surface of |n . x| / |x| about the centroid, after Bullard and Garboczi (2013)."""
     return mean_incidence(facts.mesh, facts.mesh.centroid)
 
 
-def angularity(facts: ShapeFacts) -> float:
+def angularity(facts: ShapeCache) -> float:
     """Area of the hull over that of its ellipsoid: Kuo and Freeman's (2000) index, areas for perimeters."""
     return facts.hull.surface_area / facts.hull_ellipsoid_area
 
 
-def roughness(facts: ShapeFacts) -> float:
+def roughness(facts: ShapeCache) -> float:
     """Area of the surface over that of the hull: Kuo and Freeman's (2000) index, areas for perimeters."""
     return facts.surface_area / facts.hull.surface_area
 
 
-def principal_moment_min(facts: ShapeFacts) -> float:
+def principal_moment_min(facts: ShapeCache) -> float:
     """Smallest principal moment of inertia at density 1."""
     return float(facts.principal_moments[0])
 
 
-def principal_moment_mid(facts: ShapeFacts) -> float:
+def principal_moment_mid(facts: ShapeCache) -> float:
     """Middle principal moment of inertia at density 1."""
     return float(facts.principal_moments[1])
 
 
-def principal_moment_max(facts: ShapeFacts) -> float:
+def principal_moment_max(facts: ShapeCache) -> float:
     """Largest principal moment of inertia at density 1."""
     return float(facts.principal_moments[2])
 

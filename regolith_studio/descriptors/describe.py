@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
 from regolith_studio.descriptors.catalogue import CATALOGUE, DEFAULT_KEYS
-from regolith_studio.descriptors.facts import ShapeFacts
+from regolith_studio.descriptors.shape_cache import ShapeCache
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.mesh import Mesh
 
@@ -70,7 +70,7 @@ def describe(
     """
     wanted = DEFAULT_KEYS if keys is None else tuple(keys)
     _check_keys(wanted)
-    facts = ShapeFacts(solid, box_metric)
+    facts = ShapeCache(solid, box_metric)
     return Descriptors({key: CATALOGUE[key].compute(facts) for key in wanted})
 
 

@@ -21,18 +21,6 @@ from numpy.typing import ArrayLike
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
-from regolith_studio.harmonics.spectrum import PowerSpectrum
-
-__all__ = [
-    "CONVENTION",
-    "PowerSpectrum",
-    "ShCoefficients",
-    "checked_degree",
-    "degrees",
-    "from_pyshtools",
-    "orders",
-    "to_pyshtools",
-]
 
 CONVENTION = (
     "Real spherical harmonics, orthonormal on the unit sphere, without the Condon-Shortley phase; "
@@ -117,11 +105,6 @@ class ShCoefficients:
     def scaled(self, factor: float) -> "ShCoefficients":
         """All radii times `factor`."""
         return ShCoefficients(self.values * factor)
-
-    def power_spectrum(self) -> PowerSpectrum:
-        """Mean of c_lm^2 over the orders of each degree."""
-        sums = np.add.reduceat(self.values**2, np.arange(self.l_max + 1) ** 2)
-        return PowerSpectrum(sums / (2 * np.arange(self.l_max + 1) + 1), self.mean_radius)
 
 
 def checked_degree(l_max: int, highest: int) -> int:

@@ -10,12 +10,17 @@ from numpy.typing import ArrayLike
 from regolith_studio.errors import GeometryError, InputError
 from regolith_studio.geometry.arrays import FloatArray, locked_floats
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.harmonics.closed_surface import checked_solid
 from regolith_studio.harmonics.coefficients import ShCoefficients, checked_degree
-from regolith_studio.harmonics.radius_function import DEFAULT_RULE, RULES, RadiusFunction, sample_radius
-from regolith_studio.harmonics.reference import REFERENCES, Ellipsoid
+from regolith_studio.harmonics.radius_function import (
+    DEFAULT_RULE,
+    RULES,
+    RadiusFunction,
+    require_solid,
+    sample_radius,
+)
+from regolith_studio.harmonics.reference_surface import REFERENCES, Ellipsoid
 from regolith_studio.harmonics.star_point import STAR_POINT_RULES, centre_of_mass, least_hidden_volume
-from regolith_studio.harmonics.transform import SAMPLING_DEGREE, RayGrid, expand, ray_grid, smoothed
+from regolith_studio.harmonics.transform import SAMPLING_DEGREE, RayGrid, analyse, band_limited, ray_grid
 from regolith_studio.harmonics.visibility import hidden_surface_share
 
 HIDDEN_TOLERANCE = 0.01
@@ -161,7 +166,6 @@ def fit_harmonics(
     sampling_degree: int = SAMPLING_DEGREE,
     rule: str = DEFAULT_RULE,
     reference: str = "sphere",
-    grid: str = "glq",
 ) -> HarmonicFit:
     """Expand the radius function of a closed mesh.
 
@@ -176,9 +180,7 @@ def fit_harmonics(
     rule
         Key of ``radius_function.RULES``.
     reference
-        Key of ``reference.REFERENCES``.
-    grid
-        Key of ``transform.GRIDS``.
+        Key of ``reference_surface.REFERENCES``.
 
     Raises
     ------
@@ -190,8 +192,8 @@ def fit_harmonics(
     checked_degree(l_max, sampling_degree)
     if reference not in REFERENCES:
         raise InputError(f"The reference must be one of {', '.join(REFERENCES)}, got {reference!r}.")
-    rays = ray_grid(sampling_degree, grid)
-    solid = checked_solid(mesh)
+    rays = ray_grid(sampling_degree)
+    solid = require_solid(mesh)
     radius, notes = _sampled(solid, star_point, rays, rule)
     ellipsoid = REFERENCES[reference](solid)
     fit = expand_radius(radius, rays, l_max, ellipsoid)
@@ -206,8 +208,8 @@ def expand_radius(
     """The expansion of a radius function that was sampled on a grid; its mesh is not looked at."""
     unit = 1.0 if reference is None else reference.radii(rays.directions)
     samples = radius.radii / unit
-    coefficients = expand(rays, samples, l_max)
-    difference = smoothed(rays, samples, l_max) - samples
+    coefficients = analyse(rays, samples, l_max)
+    difference = band_limited(rays, samples, l_max) - samples
     return HarmonicFit(
         coefficients,
         radius.star_point,

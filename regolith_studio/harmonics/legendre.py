@@ -1,4 +1,13 @@
-"""Real orthonormal spherical harmonics at given directions, from stable Legendre recursions."""
+"""Real orthonormal spherical harmonics at directions, and transforms on rings of latitude.
+
+The Legendre functions come from stable recursions. The transforms are an FFT along each ring and Legendre
+sums across the rings.
+"""
+
+# SHTOOLS has the same transforms, but lets FFTW choose its plans by timing (``FFTW_MEASURE``): the last bits
+# of a result then depend on the process and on the load of the machine. Here they do not.
+
+from math import isqrt
 
 import numpy as np
 
@@ -42,28 +51,6 @@ def fill_legendre(cosine: float, sine: float, factors: FloatArray, p: FloatArray
 
 
 @kernel
-def legendre(cosine: float, sine: float, l_max: int) -> FloatArray:
-    """What :func:`fill_legendre` gives at one angle; zero above the diagonal."""
-    p = np.zeros((l_max + 1, l_max + 1))
-    fill_legendre(cosine, sine, legendre_factors(l_max), p)
-    return p
-
-
-@kernel
-def legendre_slopes(p: FloatArray, cosine: float, sine: float) -> FloatArray:
-    """Derivatives of `legendre` with respect to the polar angle, same shape; `sine` must not be zero."""
-    n = len(p)
-    slopes = np.zeros((n, n))
-    for l in range(n):  # noqa: E741
-        for m in range(l + 1):
-            lower = 0.0
-            if l > m:
-                lower = np.sqrt((2.0 * l + 1.0) / (2.0 * l - 1.0) * (l * l - m * m)) * p[l - 1, m]
-            slopes[l, m] = (l * cosine * p[l, m] - lower) / sine
-    return slopes
-
-
-@kernel
 def fill_basis(directions: FloatArray, l_max: int, basis: FloatArray) -> None:
     """Y_lm at unit `directions` (n, 3) into `basis` ((l_max + 1)^2, n), row k = l^2 + l + m."""
     factors, p = legendre_factors(l_max), np.zeros((l_max + 1, l_max + 1))
@@ -86,3 +73,79 @@ def harmonics(directions: FloatArray, l_max: int) -> FloatArray:
     basis = np.empty(((l_max + 1) ** 2, len(directions)))
     fill_basis(np.ascontiguousarray(directions, dtype=np.float64), l_max, basis)
     return basis
+
+
+def analyse_rings(samples: FloatArray, cosines: FloatArray, weights: FloatArray, l_max: int) -> FloatArray:
+    """Coefficients up to `l_max` of a function on rings of latitude, by quadrature.
+
+    Parameters
+    ----------
+    samples
+        At longitudes 2 pi j / n of each ring, shape (rings, n) with n > 2 `l_max`.
+    cosines, weights
+        Of the polar angle of each ring, and its quadrature weight; the weights sum to 2.
+
+    Returns
+    -------
+    ndarray
+        Shape ((l_max + 1)^2,), index k = l^2 + l + m.
+    """
+    n = samples.shape[1]
+    waves = np.fft.rfft(samples, axis=1)[:, : l_max + 1] * (2 * np.pi / n * weights)[:, None]
+    values = np.zeros((l_max + 1) ** 2)
+    _sum_over_rings(waves.real.copy(), -waves.imag, cosines, l_max, values)
+    return values
+
+
+def synthesise_rings(values: FloatArray, cosines: FloatArray, n_longitudes: int) -> FloatArray:
+    """Values on rings of the function with given coefficients: inverse of :func:`analyse_rings`.
+
+    Parameters
+    ----------
+    values
+        Coefficients, shape ((l_max + 1)^2,).
+    cosines
+        Of the polar angle of each ring.
+    n_longitudes
+        Greater than 2 l_max.
+
+    Returns
+    -------
+    ndarray
+        Shape (rings, n_longitudes).
+    """
+    l_max = isqrt(len(values)) - 1
+    even, odd = np.zeros((len(cosines), l_max + 1)), np.zeros((len(cosines), l_max + 1))
+    _sum_over_degrees(values, cosines, even, odd)
+    waves = (even - 1j * odd) * (n_longitudes / 2)
+    waves[:, 0] *= 2.0
+    return np.fft.irfft(waves, n_longitudes, axis=1)
+
+
+@kernel
+def _sum_over_rings(
+    even: FloatArray, odd: FloatArray, cosines: FloatArray, l_max: int, values: FloatArray
+) -> None:
+    """Add the cosine and sine waves (rings, l_max + 1) times the Legendre functions to `values`."""
+    factors, p = legendre_factors(l_max), np.zeros((l_max + 1, l_max + 1))
+    for i in range(len(cosines)):
+        fill_legendre(cosines[i], np.sqrt(max(0.0, 1.0 - cosines[i] ** 2)), factors, p)
+        for l in range(l_max + 1):  # noqa: E741
+            values[l * l + l] += p[l, 0] * even[i, 0]
+            for m in range(1, l + 1):
+                values[l * l + l + m] += p[l, m] * even[i, m]
+                values[l * l + l - m] += p[l, m] * odd[i, m]
+
+
+@kernel
+def _sum_over_degrees(values: FloatArray, cosines: FloatArray, even: FloatArray, odd: FloatArray) -> None:
+    """Add the amplitudes of cosine and sine waves on each ring to `even` and `odd` (rings, l_max + 1)."""
+    l_max = even.shape[1] - 1
+    factors, p = legendre_factors(l_max), np.zeros((l_max + 1, l_max + 1))
+    for i in range(len(cosines)):
+        fill_legendre(cosines[i], np.sqrt(max(0.0, 1.0 - cosines[i] ** 2)), factors, p)
+        for l in range(l_max + 1):  # noqa: E741
+            even[i, 0] += p[l, 0] * values[l * l + l]
+            for m in range(1, l + 1):
+                even[i, m] += p[l, m] * values[l * l + l + m]
+                odd[i, m] += p[l, m] * values[l * l + l - m]

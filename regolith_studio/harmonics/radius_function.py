@@ -5,11 +5,11 @@ radius is then defined by one of the rules below. The default keeps the particle
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from regolith_studio.errors import GeometryError, InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats, locked_integers
@@ -83,10 +83,6 @@ class RadiusFunction:
         """Three times the volume per solid angle behind the first crossing, shape (n,)."""
         return np.maximum(self.volume**3 - self.first**3, 0.0)
 
-    def with_rule(self, rule: str) -> "RadiusFunction":
-        """The same rays by another rule."""
-        return replace(self, rule=rule)
-
 
 def sample_radius(
     mesh: Mesh, star_point: ArrayLike, directions: ArrayLike, rule: str = DEFAULT_RULE
@@ -118,15 +114,15 @@ def sample_radius(
 
 
 def _crossings(mesh: Mesh, centre: FloatArray, rays: FloatArray) -> FloatArray:
-    """A row a ray, shape (n, 5): first, last, signed sum of r^3, number and sum of signs of crossings."""
+    """One row a ray, shape (n, 5): first, last, signed sum of r^3, number and sum of signs of crossings."""
     hits = radial_hits(mesh, centre, rays)
     table = np.zeros((len(rays), 5))
-    _sum_by_ray(hits.ray, hits.distance, hits.sign, table)
+    _sum_crossings(hits.ray, hits.distance, hits.sign, table)
     return table
 
 
 @kernel
-def _sum_by_ray(ray: IntArray, distance: FloatArray, sign: IntArray, table: FloatArray) -> None:
+def _sum_crossings(ray: IntArray, distance: FloatArray, sign: IntArray, table: FloatArray) -> None:
     for k in range(len(ray)):
         row = table[ray[k]]
         if row[3] == 0.0:
@@ -159,3 +155,53 @@ def _beside(rays: FloatArray, attempt: int) -> FloatArray:
     axis = np.roll(np.array([0.37, -0.61, 0.70]), attempt)
     beside = rays + angle * np.cross(axis, rays)
     return np.asarray(beside / np.linalg.norm(beside, axis=1, keepdims=True))
+
+
+def is_closed(mesh: Mesh) -> bool:
+    """Whether each edge occurs as often in one direction as in the other.
+
+    Only then are volume, inside and outside defined. Corners at equal coordinates count as one, so that seams
+    do not matter. Hashes of the edges, with the sign of their direction, are summed modulo 2^64: an open mesh
+    passes with a probability of 5e-20.
+    """
+    corner = _vertex_words(mesh)[mesh.faces]
+    start, end = corner, np.roll(corner, -1, axis=1)
+    forward = start < end
+    low, high = np.where(forward, start, end), np.where(forward, end, start)
+    word = _mixed(low + _mixed(high))
+    word[start == end] = 0
+    total = np.where(forward, word, ~word + np.uint64(1)).sum(dtype=np.uint64)
+    return bool(total == 0)
+
+
+def require_solid(mesh: Mesh) -> Mesh:
+    """The mesh itself, if it is closed and encloses a positive volume.
+
+    Raises
+    ------
+    GeometryError
+        If it is open, flat or inside out.
+    """
+    if len(mesh.faces) < 4:
+        raise GeometryError(f"A particle needs at least four triangles, this mesh has {len(mesh.faces)}.")
+    if not is_closed(mesh):
+        raise GeometryError("The mesh is open or its triangles are not wound alike: repair it first.")
+    size = float(np.ptp(mesh.bounds, axis=0).max())
+    if not mesh.volume > 1e-12 * size**3:
+        state = "is inside out" if mesh.volume < -1e-12 * size**3 else "encloses no volume"
+        raise GeometryError(f"The mesh {state}: its signed volume is {mesh.volume:.3g}.")
+    return mesh
+
+
+def _vertex_words(mesh: Mesh) -> NDArray[np.uint64]:
+    """A word for each vertex, equal for equal coordinates, shape (n,)."""
+    bits = (mesh.vertices + 0.0).view(np.uint64)
+    return _mixed(bits[:, 0] + _mixed(bits[:, 1] + _mixed(bits[:, 2])))
+
+
+def _mixed(words: NDArray[np.uint64]) -> NDArray[np.uint64]:
+    """The finaliser of SplitMix64 (Steele, Lea and Flood 2014): a bijection that scatters all bits."""
+    mixed = words + np.uint64(0x9E3779B97F4A7C15)
+    mixed = (mixed ^ (mixed >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+    mixed = (mixed ^ (mixed >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+    return mixed ^ (mixed >> np.uint64(31))

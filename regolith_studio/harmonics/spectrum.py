@@ -1,20 +1,24 @@
-"""The angular power spectrum of a particle, and what it says about form and roughness."""
+"""Angular power spectra of particles and samples, and the shares of form, roundness and roughness."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import chdtri
 
+from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, locked_floats
+from regolith_studio.harmonics.coefficients import ShCoefficients
 
 DEGREE_RANGES: Mapping[str, tuple[int, int]] = MappingProxyType(
     {"form": (1, 4), "roundness": (5, 15), "roughness": (16, 30)}
 )
 """First and last degree of the three scales of a particle's shape. Where one scale ends is a choice:
 degree l has 2 l waves round the particle, so these are more than 45, 45 to 12 and under 12 degrees."""
+
+N_RESAMPLES = 1000
+"""Bootstrap samples behind a confidence band."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,6 +70,13 @@ class PowerSpectrum:
         return float(np.sqrt(variance)) / self.mean_radius
 
 
+def power_spectrum(coefficients: ShCoefficients) -> PowerSpectrum:
+    """Spectrum of one particle: the mean of c_lm^2 over the orders of each degree."""
+    degree = np.arange(coefficients.l_max + 1)
+    sums = np.add.reduceat(coefficients.values**2, degree**2)
+    return PowerSpectrum(sums / (2 * degree + 1), coefficients.mean_radius)
+
+
 def roughness_split(
     spectrum: PowerSpectrum, ranges: Mapping[str, tuple[int, int]] = DEGREE_RANGES
 ) -> dict[str, float]:
@@ -73,13 +84,46 @@ def roughness_split(
     return {name: spectrum.deviation(first, last) for name, (first, last) in ranges.items()}
 
 
-def with_gaussian_band(spectrum: PowerSpectrum, confidence: float = 0.95) -> PowerSpectrum:
-    """A particle's spectrum with the band in which the true A_l of a Gaussian field lies.
+def sample_spectrum(
+    particles: Sequence[ShCoefficients],
+    confidence: float = 0.95,
+    rng: np.random.Generator | None = None,
+) -> PowerSpectrum:
+    """Spectrum of a sample, by the unbiased estimates of section 2.3, with bootstrap confidence bands.
 
-    (2 l + 1) times the estimate over the true value follows chi-square with 2 l + 1 degrees of freedom.
+    mu is the mean of c_00, A_0 its variance and A_l the mean of c_lm^2.
+
+    The mean of c_lm for l >= 1 is zero by the model, so that nothing is subtracted there. The bands are
+    percentiles over resampled particles, not over coefficients: those of one particle are not
+    independent.
+
+    Parameters
+    ----------
+    particles
+        Coefficients of at least two particles; cut to the lowest degree among them.
+    confidence
+        Share that the band holds.
+    rng
+        Source of the resampling; a fixed one if ``None``.
+
+    Raises
+    ------
+    InputError
+        If there are fewer than two particles.
     """
-    freedom = 2 * np.arange(spectrum.l_max + 1) + 1
-    tail = (1 - confidence) / 2
-    low = spectrum.values * freedom / chdtri(freedom, tail)
-    high = spectrum.values * freedom / chdtri(freedom, 1 - tail)
-    return PowerSpectrum(spectrum.values, spectrum.mean_radius, low, high)
+    if len(particles) < 2:
+        raise InputError(f"The spectrum of a sample needs at least two particles, got {len(particles)}.")
+    l_max = min(particle.l_max for particle in particles)
+    powers = np.stack([power_spectrum(particle.truncated(l_max)).values for particle in particles])
+    firsts = np.array([particle.values[0] for particle in particles])
+    generator = np.random.default_rng(np.random.SeedSequence(0)) if rng is None else rng
+    resampled = np.empty((N_RESAMPLES, l_max + 1))
+    for row in resampled:  # one resample at a time: a sample may have a hundred thousand particles
+        pick = generator.integers(len(particles), size=len(particles))
+        row[:] = np.bincount(pick, minlength=len(particles)) / len(particles) @ powers
+        row[0] = firsts[pick].var(ddof=1)
+    tail = 50 * (1 - confidence)
+    low, high = np.percentile(resampled, [tail, 100 - tail], axis=0)
+    estimate = powers.mean(axis=0)
+    estimate[0] = firsts.var(ddof=1)
+    return PowerSpectrum(estimate, float(firsts.mean() / np.sqrt(4 * np.pi)), low, high)

@@ -1,6 +1,7 @@
-"""From coefficients back to a closed surface: radii, mesh, volume and area (Eq. 4)."""
+"""From coefficients to a closed surface: radii, mesh and volume (Eq. 4)."""
 
 from collections.abc import Iterable, Iterator
+from functools import cache
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -10,27 +11,28 @@ from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.kernels import kernel
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.harmonics import quadrature
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.fit import HarmonicFit
-from regolith_studio.harmonics.icosphere_edges import icosphere_edges
-from regolith_studio.harmonics.quadrature import SurfaceMeasures
+from regolith_studio.harmonics.legendre import fill_legendre, legendre_factors
 from regolith_studio.harmonics.radius_function import DEFAULT_RULE, sample_radius
+from regolith_studio.harmonics.reference_surface import Ellipsoid
 from regolith_studio.harmonics.synthesis import (
+    icosphere_edges,
     radii_along,
     radii_between,
     radii_by_degree,
     radii_on_icosphere,
 )
+from regolith_studio.harmonics.transform import evaluate_on_grid, ray_grid
 
 DEFAULT_LEVEL = 4
 """Icosphere level of reconstructed meshes: 2,562 vertices, 5,120 faces."""
 
-Expanded = HarmonicFit | ShCoefficients
-"""What describes a surface: a fit, or bare coefficients about the origin."""
+Expansion = HarmonicFit | ShCoefficients
+"""A fit, or bare coefficients about the origin."""
 
 
-def reconstruct(expanded: Expanded, l_max: int | None = None, level: int = DEFAULT_LEVEL) -> Mesh:
+def reconstruct(expansion: Expansion, l_max: int | None = None, level: int = DEFAULT_LEVEL) -> Mesh:
     """Closed mesh of the expansion cut at `l_max`, in the frame of the particle.
 
     The vertices lie along those of an icosphere. They stand out a little from the smooth surface, by as
@@ -44,20 +46,20 @@ def reconstruct(expanded: Expanded, l_max: int | None = None, level: int = DEFAU
     InputError
         If `l_max` is out of range.
     """
-    fit = as_fit(expanded, l_max)
+    fit = as_fit(expansion, l_max)
     radius = radii_on_icosphere(fit.coefficients, level)
     return _meshed(fit, radius, radii_between(fit.coefficients, level), level)
 
 
 def gallery(
-    expanded: Expanded, degrees: Iterable[int], level: int = DEFAULT_LEVEL
+    expansion: Expansion, degrees: Iterable[int], level: int = DEFAULT_LEVEL
 ) -> Iterator[tuple[int, Mesh | None]]:
     """The expansion cut at each of `degrees` (Fig. 2), or ``None`` where a radius is negative.
 
     Much cheaper than as many calls of :func:`reconstruct`: the sums are carried from degree to degree.
     """
     wanted = list(degrees)
-    fit = as_fit(expanded, max(wanted, default=0))
+    fit = as_fit(expansion, max(wanted, default=0))
     radius, between = radii_by_degree(fit.coefficients, level)
     for degree in wanted:
         cut = as_fit(fit, degree)
@@ -67,29 +69,12 @@ def gallery(
             yield degree, None
 
 
-def radii(expanded: Expanded, directions: ArrayLike, l_max: int | None = None) -> FloatArray:
+def radii(expansion: Expansion, directions: ArrayLike, l_max: int | None = None) -> FloatArray:
     """Radius of the expansion along unit `directions` (n, 3), shape (n,); it may be negative."""
-    fit = as_fit(expanded, l_max)
+    fit = as_fit(expansion, l_max)
     rays = np.ascontiguousarray(directions, dtype=np.float64)
     found = radii_along(fit.coefficients, rays)
     return found if fit.reference is None else found * fit.reference.radii(rays)
-
-
-def measures(expanded: Expanded, l_max: int | None = None) -> SurfaceMeasures:
-    """Volume and area of the smooth surface of the expansion cut at `l_max`."""
-    fit = as_fit(expanded, l_max)
-    return quadrature.measure(fit.coefficients, fit.reference)
-
-
-def error_map(
-    fit: HarmonicFit, mesh: Mesh, l_max: int | None = None, level: int = DEFAULT_LEVEL
-) -> FloatArray:
-    """Radius of the fit minus radius of its particle, at the vertices of ``reconstruct(fit, l_max, level)``.
-
-    Shape (n,), in the unit of the mesh; positive where the fit stands out. For a slider cast the rays
-    once (:func:`particle_radii`) and subtract.
-    """
-    return radii(fit, icosphere(level).vertices, l_max) - particle_radii(fit, mesh, level)
 
 
 def particle_radii(fit: HarmonicFit, mesh: Mesh, level: int = DEFAULT_LEVEL) -> FloatArray:
@@ -98,7 +83,7 @@ def particle_radii(fit: HarmonicFit, mesh: Mesh, level: int = DEFAULT_LEVEL) -> 
     return sample_radius(mesh, fit.star_point, icosphere(level).vertices, rule).radii
 
 
-def as_fit(expanded: Expanded, l_max: int | None = None) -> HarmonicFit:
+def as_fit(expansion: Expansion, l_max: int | None = None) -> HarmonicFit:
     """The expansion cut at `l_max`; bare coefficients get the origin as star point.
 
     Raises
@@ -106,9 +91,9 @@ def as_fit(expanded: Expanded, l_max: int | None = None) -> HarmonicFit:
     InputError
         If `l_max` is out of range.
     """
-    if isinstance(expanded, ShCoefficients):
-        return HarmonicFit(expanded if l_max is None else expanded.truncated(l_max), np.zeros(3))
-    return expanded if l_max is None else expanded.truncated(l_max)
+    if isinstance(expansion, ShCoefficients):
+        return HarmonicFit(expansion if l_max is None else expansion.truncated(l_max), np.zeros(3))
+    return expansion if l_max is None else expansion.truncated(l_max)
 
 
 def _meshed(fit: HarmonicFit, radius: FloatArray, between: FloatArray, level: int) -> Mesh:
@@ -122,13 +107,13 @@ def _meshed(fit: HarmonicFit, radius: FloatArray, between: FloatArray, level: in
     sphere = icosphere(level)
     lifted = np.maximum(radius + edges.shortfalls(radius, between), radius / 2)
     vertices = sphere.vertices * lifted[:, None]
-    volume = quadrature.enclosed_volume(fit.coefficients, fit.reference)
-    factor = np.cbrt(volume / flat_volume(vertices, sphere.faces))
+    volume = enclosed_volume(fit.coefficients, fit.reference)
+    factor = np.cbrt(volume / _flat_volume(vertices, sphere.faces))
     return Mesh(vertices * factor + fit.star_point, sphere.faces)
 
 
 @kernel
-def flat_volume(vertices: FloatArray, faces: IntArray) -> float:
+def _flat_volume(vertices: FloatArray, faces: IntArray) -> float:
     """Volume of the cones from the origin to the triangles: that of the mesh, if it is closed."""
     total = 0.0
     for f in range(len(faces)):
@@ -147,3 +132,55 @@ def _refuse_negative(fit: HarmonicFit, radius: FloatArray) -> None:
             f"directions (lowest {radius.min():.3g}) and bounds no solid: choose another l_max, star point "
             "or reference."
         )
+
+
+def enclosed_volume(coefficients: ShCoefficients, reference: Ellipsoid | None = None) -> float:
+    """Signed volume of the surface, the integral of r^3 / 3; exact to rounding without a reference.
+
+    The quadrature is exact from a grid of degree 1.5 l_max on.
+    """
+    if reference is not None:
+        return _volume_on_grid(coefficients, reference, max(60, 2 * coefficients.l_max))
+    grid = ray_grid(max(1, 3 * coefficients.l_max // 2 + 1))
+    return 4 * np.pi / 3 * grid.mean(evaluate_on_grid(grid, coefficients) ** 3)
+
+
+def _volume_on_grid(coefficients: ShCoefficients, reference: Ellipsoid, degree: int) -> float:
+    """Volume of expansion times reference, on a Gauss-Legendre grid of `degree`."""
+    cosines, weights = _gauss_legendre(degree)
+    n_longitudes = 2 * degree + 1
+    radius = np.zeros((len(cosines), n_longitudes))
+    _fill_radius(coefficients.values, coefficients.l_max, cosines, radius)
+    phi = 2 * np.pi / n_longitudes * np.arange(n_longitudes)[None, :]
+    z = np.broadcast_to(cosines[:, None], radius.shape)
+    ring = np.sqrt(1 - z**2)
+    directions = np.stack([ring * np.cos(phi), ring * np.sin(phi), z], axis=-1).reshape(-1, 3)
+    radius = radius * reference.radii(directions).reshape(radius.shape)
+    return float(weights * 2 * np.pi / n_longitudes @ (radius**3).sum(axis=1)) / 3
+
+
+@cache
+def _gauss_legendre(degree: int) -> tuple[FloatArray, FloatArray]:
+    """Cosines of the polar angles and weights (sum 2), shapes (degree + 1,)."""
+    cosines, weights = np.polynomial.legendre.leggauss(degree + 1)
+    return cosines, weights
+
+
+@kernel
+def _fill_radius(values: FloatArray, l_max: int, cosines: FloatArray, radius: FloatArray) -> None:
+    """Add the radius on rings of latitude to `radius`, shape (rings, longitudes)."""
+    n_longitudes = radius.shape[1]
+    cosine = np.cos(2 * np.pi / n_longitudes * np.arange(n_longitudes))
+    sines = np.sin(2 * np.pi / n_longitudes * np.arange(n_longitudes))
+    factors, p = legendre_factors(l_max), np.zeros((l_max + 1, l_max + 1))
+    for j in range(len(cosines)):
+        fill_legendre(cosines[j], np.sqrt(1 - cosines[j] ** 2), factors, p)
+        for m in range(l_max + 1):
+            a, b = 0.0, 0.0
+            for degree in range(m, l_max + 1):
+                k = degree * degree + degree
+                a += values[k + m] * p[degree, m]
+                if m > 0:
+                    b += values[k - m] * p[degree, m]
+            for i in range(n_longitudes):
+                radius[j, i] += a * cosine[(m * i) % n_longitudes] + b * sines[(m * i) % n_longitudes]

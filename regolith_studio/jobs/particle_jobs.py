@@ -14,9 +14,8 @@ from regolith_studio.geometry.mesh_health import MeshHealth, inspect
 from regolith_studio.geometry.particle import Particle, defect_triangles
 from regolith_studio.harmonics.coefficients import checked_degree
 from regolith_studio.harmonics.fit import DEFAULT_FIT_OPTIONS, FitOptions, HarmonicFit
-from regolith_studio.harmonics.sight import Sight, sight
 from regolith_studio.harmonics.surface import reconstruct
-from regolith_studio.harmonics.visibility import hidden_faces
+from regolith_studio.harmonics.visibility import StarPointVisibility, hidden_faces, star_point_visibility
 from regolith_studio.jobs.events import Failed, Job, Partial, Progress, Started, Steps
 from regolith_studio.jobs.executor import Executor, open_executor, value_of
 from regolith_studio.readers.particles import (
@@ -63,18 +62,18 @@ class MeasuredParticle:
         ``None`` where the mesh has none, for example because it is flat.
     problem
         Why, in one sentence.
-    sight
+    visibility
         What its star point cannot see; ``None`` where the mesh has no inside, for example because it is open.
     """
 
     health: MeshHealth
     descriptors: Descriptors | None
     problem: str = ""
-    sight: Sight | None = None
+    visibility: StarPointVisibility | None = None
 
 
 def measure_particle(particle: Particle, box_metric: str = "exact") -> MeasuredParticle:
-    """Health, descriptors and sight of one particle; never raises for what is wrong with the mesh."""
+    """Health, descriptors and visibility of one particle; never raises for what is wrong with the mesh."""
     known = particle.repair
     health = known.health_after if known and known.mesh is particle.mesh else inspect(particle.mesh)
     seen = _seen(particle)
@@ -84,14 +83,14 @@ def measure_particle(particle: Particle, box_metric: str = "exact") -> MeasuredP
         return MeasuredParticle(health, None, str(error), seen)
 
 
-def _seen(particle: Particle) -> Sight | None:
+def _seen(particle: Particle) -> StarPointVisibility | None:
     try:
-        return sight(particle.mesh)
+        return star_point_visibility(particle.mesh)
     except RegolithError:
         return None
 
 
-def find_faults(particle: Particle, seen: Sight | None = None) -> Steps:
+def find_faults(particle: Particle, seen: StarPointVisibility | None = None) -> Steps:
     """Where a mesh is wrong or was before it was mended, and what its star point cannot see.
 
     Returns the corners (k, 3, 3) of the triangles of each kind, as ``defect_triangles`` names them, and

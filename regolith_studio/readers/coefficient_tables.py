@@ -8,8 +8,8 @@ import numpy as np
 
 from regolith_studio.errors import FileError, GeometryError, InputError
 from regolith_studio.geometry.particle import Particle, Source
-from regolith_studio.harmonics.coefficient_tables import from_complex_rows, from_shtools_rows
 from regolith_studio.harmonics.coefficients import ShCoefficients
+from regolith_studio.harmonics.io import from_complex_rows, from_shtools_rows
 from regolith_studio.readers.error_messages import counted, sentence_about
 from regolith_studio.readers.file_bytes import sha256_of
 from regolith_studio.readers.sandbox.parent import Guard, shared_guard

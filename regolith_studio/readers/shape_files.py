@@ -11,9 +11,10 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
 from regolith_studio.errors import FileError, InputError, of_the_entry
-from regolith_studio.harmonics import files as fit_files
+from regolith_studio.harmonics import io as fit_io
 from regolith_studio.harmonics.coefficients import CONVENTION, ShCoefficients
 from regolith_studio.harmonics.fit import HarmonicFit
+from regolith_studio.harmonics.sphere_grid import sphere_grid
 from regolith_studio.harmonics.surface import radii
 from regolith_studio.readers.error_messages import printable, sentence_about
 from regolith_studio.readers.file_bytes import read_bytes, read_npz
@@ -22,7 +23,6 @@ from regolith_studio.shape_models import files as model_files
 from regolith_studio.shape_models.materials import MaterialCard, card_from, materials
 from regolith_studio.shape_models.protocol import FittedModel
 from regolith_studio.shape_models.sample import Sample
-from regolith_studio.shape_models.sphere_grid import sphere_grid
 
 LARGEST_TEXT = 512 * 1024**2
 REFERENCE_DEGREE = 60
@@ -81,7 +81,7 @@ def read_shape_source(text: str) -> ShapeSource:
     document = _document(path, content)
     kind = document.get("format")
     try:
-        if kind == fit_files.FORMAT:
+        if kind == fit_io.FORMAT:
             return _sample(path, document, found)
         if kind == model_files.FORMAT:
             return ShapeSource(_model(path, document), path.stem, found)
@@ -133,7 +133,7 @@ def _sample(path: Path, document: Mapping[str, Any], digest: str) -> ShapeSource
             sentence_about(path, "is a broken fit: its NPZ file holds other arrays than a fit's.")
         )
     try:
-        fits = fit_files.fits_from(document, arrays)
+        fits = fit_io.fits_from(document, arrays)
     except (KeyError, TypeError, ValueError):
         said = "is a broken fit: the arrays in its NPZ file are not of the shape or type that a fit has."
         raise FileError(sentence_about(path, said)) from None

@@ -7,7 +7,7 @@ from typing import Any, Self
 from regolith_studio.coarsening.coarsen import DEFAULT_METHOD, DEFAULT_PRESET, FACETS_LIMITS, settings_of
 from regolith_studio.coarsening.stopping_criteria import check_limit, facets_for_triangles
 from regolith_studio.coarsening.weights import LossWeights
-from regolith_studio.descriptors.facts import BOX_METRICS
+from regolith_studio.descriptors.shape_cache import BOX_METRICS
 from regolith_studio.errors import InputError
 from regolith_studio.harmonics.fit import DEFAULT_FIT_OPTIONS, FitOptions
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest

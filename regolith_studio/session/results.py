@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from regolith_studio.descriptors.describe import Descriptors
     from regolith_studio.geometry.mesh_health import MeshHealth
     from regolith_studio.harmonics.fit import HarmonicFit
-    from regolith_studio.harmonics.sight import Sight
+    from regolith_studio.harmonics.visibility import StarPointVisibility
     from regolith_studio.session.origins import Place
     from regolith_studio.studies.coarsening import CoarseningStudy
     from regolith_studio.studies.lmax import LmaxStudy
@@ -28,7 +28,7 @@ class ParticleEntry:
     ----------
     place
         Where a recipe finds it again; ``None`` if nowhere.
-    sight
+    visibility
         What its star point cannot see; follows with the health, ``None`` where the mesh has no inside.
     """
 
@@ -37,7 +37,7 @@ class ParticleEntry:
     health: "MeshHealth | None" = None
     descriptors: "Descriptors | None" = None
     place: "Place | None" = None
-    sight: "Sight | None" = None
+    visibility: "StarPointVisibility | None" = None
 
 
 @dataclass(frozen=True)

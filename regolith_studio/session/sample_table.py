@@ -139,7 +139,9 @@ def sample_table(entries: Iterable[ParticleEntry]) -> Table:
     """
     measured = [(entry, entry.health) for entry in entries if entry.health is not None]
     named = [replace(entry.particle, name=entry.id) for entry, _health in measured]
-    facts = [MeasuredParticle(health, entry.descriptors, sight=entry.sight) for entry, health in measured]
+    facts = [
+        MeasuredParticle(health, entry.descriptors, visibility=entry.visibility) for entry, health in measured
+    ]
     table = descriptor_table(named, facts)
     if not has_weights(entry for entry, _health in measured):
         return table

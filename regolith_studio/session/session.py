@@ -399,7 +399,10 @@ class Session:
             for at, facts in enumerate(seen):
                 if rows[at].health is None:
                     rows[at] = dataclasses.replace(
-                        rows[at], health=facts.health, descriptors=facts.descriptors, sight=facts.sight
+                        rows[at],
+                        health=facts.health,
+                        descriptors=facts.descriptors,
+                        visibility=facts.visibility,
                     )
             self.particles = tuple(rows)
             self.events.particles.emit()

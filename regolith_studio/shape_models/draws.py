@@ -13,10 +13,9 @@ from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats,
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.coefficients import ShCoefficients
-from regolith_studio.harmonics.icosphere_edges import icosphere_edges
+from regolith_studio.harmonics.sphere_grid import enclosed_volumes, sphere_grid
 from regolith_studio.harmonics.surface import DEFAULT_LEVEL, reconstruct
-from regolith_studio.harmonics.synthesis import radii_between, radii_on_icosphere
-from regolith_studio.shape_models.sphere_grid import enclosed_volumes, sphere_grid
+from regolith_studio.harmonics.synthesis import icosphere_edges, radii_between, radii_on_icosphere
 
 Scale = Literal["radius", "log_radius"]
 EXPONENTIAL_DEGREE = 3

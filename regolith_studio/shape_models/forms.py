@@ -7,7 +7,7 @@ the star point.
 import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.shape_models.sphere_grid import SphereGrid
+from regolith_studio.harmonics.sphere_grid import SphereGrid
 
 _LEAST_MOMENT = 1e-30
 

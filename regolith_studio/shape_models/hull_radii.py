@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.kernels import kernel
-from regolith_studio.shape_models.sphere_grid import SphereGrid, sphere_grid
+from regolith_studio.harmonics.sphere_grid import SphereGrid, sphere_grid
 
 Floats = NDArray[np.float32]
 

@@ -8,7 +8,7 @@ import numpy as np
 from regolith_studio.geometry.arrays import BoolArray, FloatArray
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.legendre import harmonics
-from regolith_studio.shape_models.sphere_grid import enclosed_volumes, sphere_grid
+from regolith_studio.harmonics.sphere_grid import enclosed_volumes, sphere_grid
 
 SAFE_SHARE = 0.15
 """Lowest radius on the coarse grid, as a share of the mean, above which no closer look is taken."""

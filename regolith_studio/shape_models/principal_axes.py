@@ -7,7 +7,7 @@ import numpy as np
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.rotation import rotated
-from regolith_studio.shape_models.sphere_grid import enclosed_volumes, sphere_grid
+from regolith_studio.harmonics.sphere_grid import enclosed_volumes, sphere_grid
 
 _BATCH = 500
 

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
 from regolith_studio.harmonics.coefficients import ShCoefficients
-from regolith_studio.shape_models.sphere_grid import enclosed_volumes, sphere_grid
+from regolith_studio.harmonics.sphere_grid import enclosed_volumes, sphere_grid
 
 FEWEST = 2
 IDENTICAL = 1e-9

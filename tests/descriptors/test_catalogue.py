@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import dblquad
 
-from regolith_studio.descriptors.catalogue import CATALOGUE, DEFAULT_KEYS, LOSS_KEYS, ShapeFacts
+from regolith_studio.descriptors.catalogue import CATALOGUE, DEFAULT_KEYS, LOSS_KEYS, ShapeCache
 from regolith_studio.geometry import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
 from tests.geometry.solids import cuboid, random_polyhedron, rotation, rough_stone
@@ -17,7 +17,7 @@ SOLIDS = {
 
 
 def value(key: str, mesh: Mesh) -> float:
-    return CATALOGUE[key].compute(ShapeFacts(mesh))
+    return CATALOGUE[key].compute(ShapeCache(mesh))
 
 
 @pytest.mark.parametrize("scale", [1e-9, 1e-3, 1e9])

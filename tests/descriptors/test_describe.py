@@ -7,7 +7,7 @@ import pytest
 
 from regolith_studio.descriptors.catalogue import CATALOGUE, DEFAULT_KEYS
 from regolith_studio.descriptors.describe import Descriptors, describe
-from regolith_studio.descriptors.facts import ShapeFacts
+from regolith_studio.descriptors.shape_cache import ShapeCache
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry import ConvexPolyhedron, HalfSpaces, Mesh
 from tests.geometry.solids import cuboid, random_polyhedron, rough_stone
@@ -26,7 +26,7 @@ def test_that_only_what_is_asked_for_is_worked_out() -> None:
 
 
 def test_that_facts_are_lazy() -> None:
-    facts = ShapeFacts(rough_stone(1))
+    facts = ShapeCache(rough_stone(1))
     CATALOGUE["sphericity"].compute(facts)
     assert not {"hull", "box", "principal_moments"} & set(vars(facts))
 

@@ -5,7 +5,14 @@ import pytest
 from scipy.special import sph_harm_y
 
 from regolith_studio.geometry.sphere_points import fibonacci_directions
-from regolith_studio.harmonics.legendre import fill_basis, harmonics, legendre, legendre_slopes
+from regolith_studio.harmonics import legendre, shtools
+from regolith_studio.harmonics.coefficients import ShCoefficients, from_pyshtools, to_pyshtools
+from regolith_studio.harmonics.legendre import (
+    analyse_rings,
+    fill_basis,
+    harmonics,
+    synthesise_rings,
+)
 from regolith_studio.harmonics.transform import ray_grid
 
 
@@ -37,20 +44,70 @@ def test_that_harmonics_are_defined_at_the_poles():
         np.testing.assert_allclose(basis[degree**2 + degree], [wanted, (-1) ** degree * wanted], rtol=1e-14)
 
 
-@pytest.mark.parametrize("theta", [0.1, 1.2, 2.9])
-def test_that_slopes_are_derivatives_with_respect_to_the_polar_angle(theta):
-    step = 1e-6
-    ahead, behind = (legendre(np.cos(t), np.sin(t), 12) for t in (theta + step, theta - step))
-    here = legendre(np.cos(theta), np.sin(theta), 12)
-    slopes = legendre_slopes(here, np.cos(theta), np.sin(theta))
-    np.testing.assert_allclose(slopes, (ahead - behind) / (2 * step), atol=1e-7)
-
-
 def test_that_compiled_and_plain_kernels_agree():
     directions = fibonacci_directions(7)
     compiled, plain = np.empty((25, 7)), np.empty((25, 7))
     fill_basis(directions, 4, compiled)
     fill_basis.py_func(directions, 4, plain)
     np.testing.assert_allclose(compiled, plain, rtol=1e-14)
-    p = legendre.py_func(0.3, np.sqrt(1 - 0.09), 4)
-    np.testing.assert_allclose(legendre_slopes.py_func(p, 0.3, 0.9), legendre_slopes(p, 0.3, 0.9), rtol=1e-14)
+
+
+@pytest.fixture
+def grid(request):
+    """Nodes of Gauss and Legendre for a degree, and samples on them."""
+    degree = request.param
+    zeros, weights = shtools.call("expand.SHGLQ", degree)
+    samples = np.random.default_rng(degree).normal(size=(degree + 1, 2 * degree + 1))
+    return degree, zeros, weights, samples
+
+
+@pytest.mark.parametrize("grid", [1, 12, 61], indirect=True)
+def test_that_coefficients_and_samples_are_those_of_shtools(grid):
+    degree, zeros, weights, samples = grid
+    options = {"norm": 4, "csphase": 1}
+    theirs = from_pyshtools(shtools.call("expand.SHExpandGLQ", samples, weights, zeros, **options)).values
+    ours = analyse_rings(samples, zeros, weights, degree)
+    np.testing.assert_allclose(ours, theirs, rtol=0, atol=1e-13)
+    cilm = to_pyshtools(ShCoefficients(theirs))
+    there = shtools.call("expand.MakeGridGLQ", cilm, zeros, lmax=degree, **options)
+    np.testing.assert_allclose(synthesise_rings(theirs, zeros, 2 * degree + 1), there, rtol=0, atol=1e-12)
+
+
+def test_that_the_sampling_theorem_of_driscoll_and_healy_is_that_of_shtools():
+    n, l_max = 26, 12
+    samples = np.random.default_rng(3).normal(size=(n, 2 * n))
+    theirs = shtools.call("expand.SHExpandDH", samples, norm=4, sampling=2, csphase=1, lmax_calc=l_max)
+    weights = np.asarray(shtools.call("utils.DHaj", n))
+    ours = analyse_rings(samples, np.cos(np.pi * np.arange(n) / n), 2 * weights / weights.sum(), l_max)
+    np.testing.assert_allclose(ours, from_pyshtools(theirs).values, rtol=0, atol=1e-13)
+
+
+@pytest.mark.parametrize("grid", [12, 61], indirect=True)
+def test_that_bits_do_not_depend_on_where_samples_lie(grid):
+    degree, zeros, weights, samples = grid
+    first = analyse_rings(samples, zeros, weights, degree)
+    back = synthesise_rings(first, zeros, 2 * degree + 1)
+    for shift in range(8):
+        moved = np.empty(samples.size + 8)[shift : shift + samples.size].reshape(samples.shape)
+        moved[:] = samples
+        assert np.array_equal(analyse_rings(moved, zeros, weights, degree), first)
+        again = np.empty(first.size + 8)[shift : shift + first.size]
+        again[:] = first
+        assert np.array_equal(synthesise_rings(again, zeros, 2 * degree + 1), back)
+
+
+def test_that_compiled_sums_are_those_of_the_reference():
+    rng, cosines = np.random.default_rng(1), np.array([-1.0, -0.3, 0.2, 0.9])
+    even, odd, values = rng.normal(size=(4, 6)), rng.normal(size=(4, 6)), rng.normal(size=36)
+    over_rings, over_degrees = [], []
+    for rings, degrees in (
+        (legendre._sum_over_rings, legendre._sum_over_degrees),
+        (legendre._sum_over_rings.py_func, legendre._sum_over_degrees.py_func),
+    ):
+        sums, waves = np.zeros(36), np.zeros((2, 4, 6))
+        rings(even, odd, cosines, 5, sums)
+        degrees(values, cosines, *waves)
+        over_rings.append(sums)
+        over_degrees.append(waves)
+    np.testing.assert_allclose(*over_rings, atol=1e-14)
+    np.testing.assert_allclose(*over_degrees, atol=1e-14)

@@ -25,12 +25,12 @@ THREADS = """
 from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 from regolith_studio.harmonics.coefficients import ShCoefficients
-from regolith_studio.harmonics.transform import evaluate_on_grid, expand, ray_grid
+from regolith_studio.harmonics.transform import analyse, evaluate_on_grid, ray_grid
 
 kept = ShCoefficients(np.random.default_rng(0).normal(size=21**2))
-grids = [ray_grid(degree, kind) for kind in ("glq", "dh2") for degree in (20, 24, 31)]
+grids = [ray_grid(degree) for degree in (20, 22, 24, 28, 31, 35)]
 def there_and_back(grid):
-    return expand(grid, evaluate_on_grid(grid, kept), 20).values
+    return analyse(grid, evaluate_on_grid(grid, kept), 20).values
 wanted = [there_and_back(grid) for grid in grids]
 with ThreadPoolExecutor(4) as pool:
     found = list(pool.map(there_and_back, grids * 100))

@@ -12,7 +12,7 @@ from regolith_studio.dem.engine import Found
 from regolith_studio.dem.engines.yade import YadeEngine
 from regolith_studio.errors import FileError
 from regolith_studio.readers.formats import MeshFormat, ParsedMesh
-from regolith_studio.shape_models.models.gaussian_field import GaussianFieldModel
+from regolith_studio.shape_models.models.gaussian_field import GaussianRadiusModel
 
 
 class LunarMethod(QuadricMethod):
@@ -20,7 +20,7 @@ class LunarMethod(QuadricMethod):
     label = "Lunar method"
 
 
-class LunarModel(GaussianFieldModel):
+class LunarModel(GaussianRadiusModel):
     key = "lunar_model"
     label = "Lunar model"
 

@@ -17,10 +17,11 @@ import pytest
 from regolith_studio.dataset.folder_io import dataset_files, read_document
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.harmonics.files import write_fits
 from regolith_studio.harmonics.fit import fit_harmonics
 from regolith_studio.readers.shape_files import read_shape_source
+from regolith_studio.session.outputs.fits import FittedSample, write_fits
 from regolith_studio.session.project import Project, read_project
 from regolith_studio.session.recipe import Recipe, read_recipe
 from regolith_studio.shape_models.files import write_model
@@ -108,7 +109,10 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
     sphere = icosphere(2)
     bodies = [Mesh(sphere.vertices * axes, sphere.faces) for axes in ((3, 2, 1.5), (2, 2, 1), (4, 3, 2))]
     fits = [fit_harmonics(body, 3, sampling_degree=8) for body in bodies]
-    write_fits(folder / "fit", list("abc"), fits)
+    write_fits(
+        folder / "fit",
+        FittedSample.of([Particle(name, body) for name, body in zip("abc", bodies, strict=True)], fits),
+    )
     model = MODELS["gaussian_field"]
     sample = Sample(np.stack([fit.coefficients.values for fit in fits]))
     write_model(folder / "model", model.fit(sample, model.Settings(3)))

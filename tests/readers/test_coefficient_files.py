@@ -5,10 +5,10 @@ import pytest
 from scipy.special import sph_harm_y
 
 from regolith_studio.errors import FileError
-from regolith_studio.harmonics.coefficient_tables import complex_rows, shtools_rows
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.legendre import harmonics
 from regolith_studio.readers.coefficient_tables import read_coefficients
+from tests.harmonics.tables import complex_rows, shtools_rows
 
 RNG = np.random.default_rng(6)
 VALUES = np.concatenate([[30.0], RNG.normal(size=35)])

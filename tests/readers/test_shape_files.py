@@ -11,12 +11,13 @@ import pytest
 
 from regolith_studio.errors import FileError, InputError
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.harmonics.files import write_fits
 from regolith_studio.harmonics.fit import fit_harmonics
 from regolith_studio.harmonics.surface import radii
 from regolith_studio.readers.file_bytes import read_npz
 from regolith_studio.readers.shape_files import is_shape_source, radius_of, read_shape_source
+from regolith_studio.session.outputs.fits import FittedSample, write_fits
 from regolith_studio.shape_models.files import write_model
 from regolith_studio.shape_models.materials import MaterialCard, materials, write_card
 from regolith_studio.shape_models.models import MODELS
@@ -34,7 +35,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     place = tmp_path_factory.mktemp("shapes")
     bodies = {"a": (3.0, 2.0, 1.5), "b": (2.0, 2.0, 1.0), "c": (4.0, 3.0, 2.0)}
     fits = [fit_harmonics(ellipsoid(*axes), 6, sampling_degree=20) for axes in bodies.values()]
-    write_fits(place / "fit", list(bodies), fits)
+    particles = [Particle(name, ellipsoid(*axes)) for name, axes in bodies.items()]
+    write_fits(place / "fit", FittedSample.of(particles, fits))
     sample = Sample(np.stack([fit.coefficients.values for fit in fits]))
     write_model(place / "model", MODELS["gaussian_field"].fit(sample, MODELS["gaussian_field"].Settings(4)))
     write_card(materials()["ma165"], place / "card.json")

@@ -19,14 +19,15 @@ import pytest
 from regolith_studio.dataset.folder_io import dataset_files, read_document
 from regolith_studio.errors import DatasetError, FileError
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.harmonics.files import write_fits
 from regolith_studio.harmonics.fit import fit_harmonics
 from regolith_studio.readers.coefficient_tables import read_coefficients
 from regolith_studio.readers.file_bytes import read_npz
 from regolith_studio.readers.sandbox.tasks import read_number_rows
 from regolith_studio.readers.sandbox.volume_tasks import checked_slices, opened_volume
 from regolith_studio.readers.shape_files import read_shape_source
+from regolith_studio.session.outputs.fits import FittedSample, write_fits
 from regolith_studio.session.project import Project, read_project
 from regolith_studio.session.recipe import Recipe, read_recipe
 from regolith_studio.shape_models.files import write_model
@@ -110,7 +111,10 @@ def write_all(place: Path) -> None:
     sphere = icosphere(2)
     bodies = [Mesh(sphere.vertices * axes, sphere.faces) for axes in ((3, 2, 1.5), (2, 2, 1), (4, 3, 2))]
     fits = [fit_harmonics(body, 3, sampling_degree=8) for body in bodies]
-    write_fits(place / "fit/fit", list("abc"), fits)
+    write_fits(
+        place / "fit/fit",
+        FittedSample.of([Particle(name, body) for name, body in zip("abc", bodies, strict=True)], fits),
+    )
     sample = Sample(np.stack([fit.coefficients.values for fit in fits]))
     model = MODELS["gaussian_field"]
     write_model(place / "model/model", model.fit(sample, model.Settings(3)))

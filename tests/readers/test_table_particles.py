@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from regolith_studio.errors import FileError, GeometryError
-from regolith_studio.harmonics.coefficient_tables import complex_rows
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.readers.particles import read_mesh, read_particles, weights_in
+from tests.harmonics.tables import complex_rows
 
 
 def table_of(values) -> str:

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from regolith_studio.harmonics.coefficient_tables import from_complex_rows
 from regolith_studio.harmonics.coefficients import degrees, orders
+from regolith_studio.harmonics.io import from_complex_rows
 from regolith_studio.shape_models.sample import Sample
 
 

@@ -8,6 +8,7 @@ from regolith_studio.descriptors.describe import describe
 from regolith_studio.errors import InputError
 from regolith_studio.harmonics.coefficients import ShCoefficients, orders
 from regolith_studio.harmonics.legendre import harmonics
+from regolith_studio.harmonics.sphere_grid import sphere_grid
 from regolith_studio.harmonics.surface import reconstruct
 from regolith_studio.shape_models.draws import virtual_mesh
 from regolith_studio.shape_models.judging import novelty
@@ -17,7 +18,6 @@ from regolith_studio.shape_models.models.sample_matched import MODEL, SampleMatc
 from regolith_studio.shape_models.outer_numbers import SPHERICITY, of_radii
 from regolith_studio.shape_models.principal_axes import canonical, principal_axes
 from regolith_studio.shape_models.sample import Sample
-from regolith_studio.shape_models.sphere_grid import sphere_grid
 from tests.filling import filled
 
 

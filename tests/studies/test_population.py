@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from regolith_studio.errors import InputError
-from regolith_studio.harmonics.coefficient_tables import from_complex_rows
 from regolith_studio.harmonics.coefficients import degrees, orders
+from regolith_studio.harmonics.io import from_complex_rows
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.studies.population import KEYS, N_FLOOR_SPLITS, PopulationStudy, population_study
 from regolith_studio.studies.population_distances import Distances, distances

@@ -26,7 +26,7 @@ def entry(mesh, mended=True):
     notes = done.health_before.problems + done.actions if done else ()
     particle = Particle("one", done.mesh if done else mesh, notes=notes, repair=done)
     known = measure_particle(particle)
-    return ParticleEntry("one", particle, known.health, known.descriptors, sight=known.sight)
+    return ParticleEntry("one", particle, known.health, known.descriptors, visibility=known.visibility)
 
 
 def ugly():
@@ -87,7 +87,7 @@ def test_that_nothing_is_reported_before_it_is_measured(panel):
 
 def test_that_the_legend_names_what_was_found_with_its_number(panel):
     ours = entry(ugly())
-    found = played(find_faults(ours.particle, ours.sight))
+    found = played(find_faults(ours.particle, ours.visibility))
     panel.show_legend({kind: len(triangles) for kind, triangles in found.items()})
     words = panel.legend.text().replace("&nbsp;", " ")
     assert "closed holes (1)" in words

@@ -12,8 +12,8 @@ from regolith_studio.dataset.streaming import StoredShape
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.geometry.particle import Source
 from regolith_studio.harmonics.coefficients import ShCoefficients
-from regolith_studio.harmonics.files import fits_from
 from regolith_studio.harmonics.fit import HarmonicFit
+from regolith_studio.harmonics.io import fits_from
 from regolith_studio.io.atomic import staged_file, staged_folder, write_bytes
 from regolith_studio.io.json_text import JsonListWriter
 from regolith_studio.io.tables import csv_bytes

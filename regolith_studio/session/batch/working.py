@@ -11,8 +11,8 @@ import numpy as np
 from regolith_studio.dataset.streaming import stored_shape
 from regolith_studio.errors import Cancelled
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.harmonics.files import fits_document
 from regolith_studio.harmonics.fit import DEFAULT_FIT_OPTIONS, FitOptions, HarmonicFit
+from regolith_studio.harmonics.io import fits_document
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.jobs.coarsening_jobs import CoarsenedParticle, CoarseningRequest, coarsen_particle
 from regolith_studio.jobs.events import Failed, Finished, Job, JobResult, Progress, Started, Step, Steps

@@ -9,9 +9,9 @@ from regolith_studio.io.tables import Column, Table
 from regolith_studio.jobs.particle_jobs import MeasuredParticle
 
 SHARES = ("hidden_surface_share", "unrepresentable_volume_share")
-"""What no radius function keeps, of :class:`~regolith_studio.harmonics.sight.Sight`."""
+"""What no radius function keeps, of :class:`~regolith_studio.harmonics.visibility.StarPointVisibility`."""
 UNSEEN = dict.fromkeys((*SHARES, "star_point", "star_point_rule"))
-"""In the place of :meth:`~regolith_studio.harmonics.sight.Sight.as_dict` where a mesh has no inside."""
+"""Instead of ``StarPointVisibility.as_dict`` where a mesh has no inside."""
 _POWERS = {0: "", 1: "um", 2: "um^2", 3: "um^3", 5: "um^5"}
 
 
@@ -23,7 +23,7 @@ def described(particle: Particle, facts: MeasuredParticle) -> dict[str, Any]:
     """
     entry: dict[str, Any] = {"name": particle.name, "group": particle.group, "unit": "um"}
     entry |= dict(facts.descriptors or {})
-    entry["health"] = facts.health.as_dict() | (facts.sight.as_dict() if facts.sight else UNSEEN)
+    entry["health"] = facts.health.as_dict() | (facts.visibility.as_dict() if facts.visibility else UNSEEN)
     entry |= _mended(particle, facts)
     entry["notes"] = list(particle.notes)
     if particle.weight != 1.0:
@@ -84,7 +84,7 @@ def descriptor_table(particles: Sequence[Named], facts: Sequence[MeasuredParticl
             particle.name,
             particle.group,
             *[_value(each, key) for key in keys],
-            *(getattr(each.sight, key, None) for key in SHARES),
+            *(getattr(each.visibility, key, None) for key in SHARES),
             each.health.sound,
             " ".join(filter(None, [*each.health.problems, each.problem])),
             " ".join(getattr(getattr(particle, "repair", None), "actions", ())),

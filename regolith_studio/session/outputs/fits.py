@@ -10,10 +10,9 @@ import numpy as np
 
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.particle import Particle, Source
-from regolith_studio.harmonics import files
+from regolith_studio.harmonics import io as fit_io
 from regolith_studio.harmonics.fit import HarmonicFit
-from regolith_studio.harmonics.sample_spectrum import sample_spectrum
-from regolith_studio.harmonics.spectrum import PowerSpectrum, roughness_split
+from regolith_studio.harmonics.spectrum import PowerSpectrum, power_spectrum, roughness_split, sample_spectrum
 from regolith_studio.harmonics.surface import reconstruct
 from regolith_studio.io.atomic import write_bytes
 from regolith_studio.io.json_text import json_bytes
@@ -60,16 +59,16 @@ class FittedSample:
     def spectrum(self) -> PowerSpectrum | None:
         """A_l of the sample; of the particle itself if there is only one."""
         if len(self.fits) == 1:
-            return self.fits[0].coefficients.power_spectrum()
+            return power_spectrum(self.fits[0].coefficients)
         return sample_spectrum([fit.coefficients for fit in self.fits]) if self.fits else None
 
 
 def write_fits(stem: Path, sample: FittedSample) -> tuple[Path, Path]:
-    """Write ``<stem>.json`` and ``<stem>.npz``, as :mod:`regolith_studio.harmonics.files` defines them."""
+    """Write ``<stem>.json`` and ``<stem>.npz``, as :mod:`regolith_studio.harmonics.io` defines them."""
     names = [particle.name for particle in sample.particles]
     text, numbers = (stem.with_name(stem.name + suffix) for suffix in (".json", ".npz"))
     arrays = io.BytesIO()
-    np.savez_compressed(arrays, **files.fits_arrays(names, sample.fits))  # type: ignore[arg-type]
+    np.savez_compressed(arrays, **fit_io.fits_arrays(names, sample.fits))  # type: ignore[arg-type]
     write_bytes(numbers, arrays.getvalue())
     write_bytes(text, json_bytes(fits_document(sample) | {"arrays": numbers.name}))
     return text, numbers
@@ -98,11 +97,11 @@ def write_surfaces(folder: Path, sample: FittedSample, level: int) -> dict[str, 
 def fits_document(sample: FittedSample) -> dict[str, Any]:
     """What ``FIT.json`` holds: the fits, the sample's spectrum, sources and notes, and what failed."""
     names = [particle.name for particle in sample.particles]
-    document = files.fits_document(names, sample.fits)
+    document = fit_io.fits_document(names, sample.fits)
     for entry, particle, fit in zip(document["particles"], sample.particles, sample.fits, strict=True):
         entry["group"] = particle.group
         entry["sha256"] = particle.source.sha256 if particle.source else None
-        spectrum = fit.coefficients.power_spectrum()
+        spectrum = power_spectrum(fit.coefficients)
         entry["power_spectrum"] = spectrum.values.tolist()
         entry["deviation_by_scale"] = roughness_split(spectrum)
         entry["notes"] = list(particle.notes)

@@ -104,7 +104,7 @@ class GaussianField(DrawnByChunks):
         return {"mean": self.mean, "spectrum": self.spectrum.tolist(), "unit": self.unit}, {}
 
 
-class GaussianFieldModel:
+class GaussianRadiusModel:
     """Unbiased estimates: mu = mean of c_00, A_0 its variance (n - 1), A_l = mean of c_lm^2."""
 
     key = KEY
@@ -132,4 +132,4 @@ class GaussianFieldModel:
         return GaussianField(float(values["mean"]), values["spectrum"], str(values["unit"]))
 
 
-MODEL = GaussianFieldModel()
+MODEL = GaussianRadiusModel()

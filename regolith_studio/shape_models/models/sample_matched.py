@@ -25,6 +25,7 @@ from scipy.spatial.transform import Rotation
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
 from regolith_studio.harmonics.coefficients import degrees
+from regolith_studio.harmonics.sphere_grid import enclosed_volumes, sphere_grid
 from regolith_studio.shape_models.chunks import CHUNK, DrawnByChunks, chunks
 from regolith_studio.shape_models.draws import Draws
 from regolith_studio.shape_models.linear_maps import Tables, mapped_radii, radius_tables
@@ -34,7 +35,6 @@ from regolith_studio.shape_models.protocol import SizeRange
 from regolith_studio.shape_models.roughness import roughness_gain
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.shape_models.size_law import LogNormalSizes, checked_bounds
-from regolith_studio.shape_models.sphere_grid import enclosed_volumes, sphere_grid
 
 KEY = "sample_matched"
 OVERSAMPLING = 2

@@ -8,6 +8,7 @@ from PySide6.QtCore import QPointF
 from PySide6.QtGui import QColor
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
+from regolith_studio.harmonics.spectrum import power_spectrum
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.results import Results
 from regolith_studio.ui.theme import Theme
@@ -56,7 +57,7 @@ class SpectrumPanel(QWidget):
         self.plot.set_empty(results.fit is None)
         if results.fit is None:
             return
-        shares = 100.0 * results.fit.coefficients.power_spectrum().relative_amplitudes[1:]
+        shares = 100.0 * power_spectrum(results.fit.coefficients).relative_amplitudes[1:]
         self.plot.shares = shares
         self._draw(np.log10(np.maximum(shares, 1e-12)), choices.l_max)
         theme = self.plot.theme

@@ -172,7 +172,7 @@ def _rows(entry: ParticleEntry, now: MeshHealth) -> tuple[_Row, ...]:
     if done is not None and done.dropped_bodies:
         share = _percent(1.0 - done.kept_volume_share)
         rows.append(_Row(tr("Left out"), tr("Share of the volume in bodies that were left out"), "", share))
-    seen = entry.sight
+    seen = entry.visibility
     hidden = ("", "") if seen is None else (seen.hidden_surface_share, seen.unrepresentable_volume_share)
     about = tr("Hidden from the star point, so that no radius function can represent it")
     names = (tr("Hidden surface"), tr("Hidden volume"))

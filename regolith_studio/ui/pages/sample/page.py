@@ -208,7 +208,7 @@ class SamplePage(PageWidget):
             self.health.show_entry(entry)
             if entry.health is None:
                 return
-            job = Job(find_faults, (entry.particle, entry.sight))
+            job = Job(find_faults, (entry.particle, entry.visibility))
             self._context.start(tr("Looking for faults"), job, self._take_faults, lane="faults")
 
     def _take_faults(self, found: dict[str, FloatArray]) -> None:

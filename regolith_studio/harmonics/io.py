@@ -1,20 +1,112 @@
-"""Coefficients as other programs print them: complex ``l m Re Im`` rows, and SHTOOLS' ``l m C S``.
+"""Coefficients as other programs write them, and fits as a JSON document with arrays.
 
-Pure functions of arrays of numbers. Reading a file that nobody vouches for belongs to ``readers``.
+Pure functions of arrays and documents; ``readers`` opens the files.
 """
 
+from collections.abc import Mapping, Sequence
 from math import isqrt
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.harmonics.coefficients import ShCoefficients, degrees, orders
+from regolith_studio.harmonics.coefficients import CONVENTION, ShCoefficients, degrees, orders
+from regolith_studio.harmonics.fit import HarmonicFit
+from regolith_studio.harmonics.reference_surface import Ellipsoid
 
-HIGHEST_TABLE_DEGREE = 200
+FORMAT = "regolith-studio fit"
+MAX_TABLE_DEGREE = 200
 SYMMETRY_TOLERANCE = 1e-4
 """Largest violation of a_{l,-m} = (-1)^m conj(a_lm), as a share of the largest coefficient."""
+
+
+def fits_document(names: Sequence[str], fits: Sequence[HarmonicFit], unit: str = "um") -> dict[str, Any]:
+    """The JSON document of several fits, cut at the lowest degree among them."""
+    return {
+        "format": FORMAT,
+        "version": 1,
+        "convention": CONVENTION,
+        "unit": unit,
+        "l_max": _common_degree(fits),
+        "particles": [
+            _entry(name, fit.truncated(_common_degree(fits))) for name, fit in zip(names, fits, strict=True)
+        ],
+    }
+
+
+def fits_arrays(names: Sequence[str], fits: Sequence[HarmonicFit]) -> dict[str, NDArray[Any]]:
+    """The arrays that go with :func:`fits_document`.
+
+    ``names`` of shape (n,), ``coefficients`` (n, (l_max + 1)^2) and ``star_points`` (n, 3).
+    """
+    l_max = _common_degree(fits)
+    rows = [fit.coefficients.truncated(l_max).values for fit in fits]
+    return {
+        "names": np.array(list(names), dtype=np.str_),
+        "coefficients": np.array(rows).reshape(len(fits), (l_max + 1) ** 2),
+        "star_points": np.array([fit.star_point for fit in fits]).reshape(len(fits), 3),
+    }
+
+
+def fits_from(document: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> dict[str, HarmonicFit]:
+    """The fits by name, from a document and its arrays: inverse of the two functions above.
+
+    Raises
+    ------
+    InputError
+        If they do not belong together or a coefficient is not finite.
+    """
+    entries, rows, points = document["particles"], arrays["coefficients"], arrays["star_points"]
+    if not len(entries) == len(rows) == len(points):
+        raise InputError(
+            f"The fit names {len(entries)} particles but holds coefficients of {len(rows)}: its two files do "
+            "not belong together."
+        )
+    return {
+        entry["name"]: _fit(entry, row, point)
+        for entry, row, point in zip(entries, rows, points, strict=True)
+    }
+
+
+def _common_degree(fits: Sequence[HarmonicFit]) -> int:
+    return min((fit.l_max for fit in fits), default=0)
+
+
+def _entry(name: str, fit: HarmonicFit) -> dict[str, Any]:
+    ellipsoid = fit.reference
+    return {
+        "name": name,
+        "star_point": fit.star_point.tolist(),
+        "mean_radius": fit.coefficients.mean_radius,
+        "hidden_surface_share": fit.hidden_surface_share,
+        "unrepresentable_volume_share": fit.unrepresentable_volume_share,
+        "radial_error": fit.radial_error,
+        "largest_radial_error": fit.largest_radial_error,
+        "rule": fit.rule,
+        "sampling_degree": fit.sampling_degree,
+        "reference": None
+        if ellipsoid is None
+        else {"axes": ellipsoid.axes.tolist(), "semi_axes": ellipsoid.semi_axes.tolist()},
+        "notes": list(fit.notes),
+    }
+
+
+def _fit(entry: Mapping[str, Any], row: NDArray[Any], point: NDArray[Any]) -> HarmonicFit:
+    given = entry["reference"]
+    return HarmonicFit(
+        ShCoefficients(row),
+        point,
+        hidden_surface_share=entry["hidden_surface_share"],
+        unrepresentable_volume_share=entry["unrepresentable_volume_share"],
+        radial_error=entry["radial_error"],
+        largest_radial_error=entry["largest_radial_error"],
+        reference=None if given is None else Ellipsoid(given["axes"], given["semi_axes"]),
+        rule=entry["rule"],
+        sampling_degree=entry["sampling_degree"],
+        notes=tuple(entry["notes"]),
+    )
 
 
 def from_complex_rows(rows: ArrayLike) -> ShCoefficients:
@@ -41,20 +133,6 @@ def from_complex_rows(rows: ArrayLike) -> ShCoefficients:
     full[degree**2 + degree + order] = values
     _check_symmetry(full, degree, order)
     return ShCoefficients(_real_from_complex(full))
-
-
-def complex_rows(coefficients: ShCoefficients) -> FloatArray:
-    """Rows ``l m Re Im``, m = -l .. l, shape ((l_max + 1)^2, 4): inverse of :func:`from_complex_rows`."""
-    degree, order = degrees(len(coefficients)), orders(len(coefficients))
-    size = np.abs(order)
-    sign = np.where(size % 2, -1.0, 1.0)
-    cosine = coefficients.values[degree**2 + degree + size]
-    sine = np.where(size > 0, coefficients.values[degree**2 + degree - size], 0.0)
-    scale = np.where(size > 0, 1 / np.sqrt(2), 1.0)
-    mirrored = np.where(order < 0, sign, 1.0)
-    real = sign * scale * cosine * mirrored
-    imaginary = -sign * scale * sine * mirrored * np.where(order < 0, -1.0, 1.0)
-    return np.column_stack([degree, order, real, imaginary])
 
 
 def from_shtools_rows(rows: ArrayLike, norm: str = "4pi") -> ShCoefficients:
@@ -85,16 +163,6 @@ def from_shtools_rows(rows: ArrayLike, norm: str = "4pi") -> ShCoefficients:
     return ShCoefficients(values * (np.sqrt(4 * np.pi) if norm == "4pi" else 1.0))
 
 
-def shtools_rows(coefficients: ShCoefficients, norm: str = "4pi") -> FloatArray:
-    """Rows ``l m C S``, m >= 0, shape (n, 4): inverse of :func:`from_shtools_rows`."""
-    degree, order = degrees(len(coefficients)), orders(len(coefficients))
-    keep = order >= 0
-    degree, order = degree[keep], order[keep]
-    values = coefficients.values / (np.sqrt(4 * np.pi) if norm == "4pi" else 1.0)
-    sine = np.where(order > 0, values[degree**2 + degree - order], 0.0)
-    return np.column_stack([degree, order, values[degree**2 + degree + order], sine])
-
-
 def _checked_rows(rows: ArrayLike, width: int) -> tuple[FloatArray, IntArray, IntArray]:
     """The rows, their degrees and their orders."""
     table = np.asarray(rows, dtype=np.float64)
@@ -109,12 +177,12 @@ def _checked_rows(rows: ArrayLike, width: int) -> tuple[FloatArray, IntArray, In
         )
     degree, order = table[:, 0].astype(np.int64), table[:, 1].astype(np.int64)
     wrong = (degree != table[:, 0]) | (order != table[:, 1]) | (np.abs(order) > degree)
-    wrong |= degree > HIGHEST_TABLE_DEGREE
+    wrong |= degree > MAX_TABLE_DEGREE
     if wrong.any():
         row = int(np.flatnonzero(wrong)[0])
         raise InputError(
             f"Row {row + 1} begins with {table[row, 0]:g} {table[row, 1]:g}: expected a degree l from 0 to "
-            f"{HIGHEST_TABLE_DEGREE} and an order m from -l to l."
+            f"{MAX_TABLE_DEGREE} and an order m from -l to l."
         )
     index, counts = np.unique(degree**2 + degree + order, return_counts=True)
     if (counts > 1).any():

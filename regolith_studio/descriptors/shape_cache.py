@@ -23,7 +23,7 @@ BOX_METRICS: dict[str, Callable[[Mesh | ConvexPolyhedron], OrientedBox]] = {
 """Bounding boxes to take D_min and D_max from; ``trimesh`` only for comparison with the paper's program."""
 
 
-class ShapeFacts:
+class ShapeCache:
     """Lazily computed facts about one particle, read by the functions of the catalogue.
 
     Parameters

@@ -1,8 +1,8 @@
-"""Reference surfaces: what the radius is divided by before it is expanded.
+"""Reference surfaces, by whose radius that of the particle is divided before it is expanded.
 
-A flat or elongated grain about a sphere needs high degrees for its plain form alone, and a series that
-ends too early swings about it. Divided by the radius of the best-fit ellipsoid the function is nearly
-constant, and the same l_max leaves less to swing.
+About a sphere, a flat or elongated particle needs high degrees for its overall form alone, and a short series
+oscillates. Divided by the radius of the best-fit ellipsoid, the function is nearly constant and oscillates
+less at the same l_max.
 """
 
 from collections.abc import Callable
@@ -43,17 +43,6 @@ class Ellipsoid:
         """Radius along unit `directions` (n, 3), shape (n,)."""
         return np.asarray(np.linalg.norm(directions @ self.axes.T / self.semi_axes, axis=1) ** -1)
 
-    def gradients(self, directions: FloatArray) -> FloatArray:
-        """Surface gradient of the radius on the unit sphere, shape (n, 3), tangential."""
-        pull = directions @ self._shape_matrix
-        radial = np.einsum("ij,ij->i", pull, directions)
-        return np.asarray(-(radial**-1.5)[:, None] * (pull - radial[:, None] * directions))
-
-    @property
-    def _shape_matrix(self) -> FloatArray:
-        """M of u^T M u = r^-2."""
-        return np.asarray(self.axes.T @ np.diag(self.semi_axes**-2.0) @ self.axes)
-
 
 def best_fit_ellipsoid(mesh: Mesh) -> Ellipsoid:
     """The ellipsoid with the volume and the principal moments of inertia of a closed mesh."""
@@ -68,4 +57,4 @@ REFERENCES: dict[str, Callable[[Mesh], Ellipsoid | None]] = {
     "sphere": lambda _mesh: None,
     "ellipsoid": best_fit_ellipsoid,
 }
-"""What the radius can be divided by; ``None`` stands for the unit sphere, that is for nothing."""
+"""Reference surface of a mesh, by key; ``None`` is the unit sphere: no division."""

@@ -1,4 +1,4 @@
-"""What a star point sees: shells whose hidden parts are known, and what a fit says of the same mesh."""
+"""Hidden parts of meshes where they are known, and agreement with the fit of the same mesh."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,7 @@ from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.fit import fit_harmonics
-from regolith_studio.harmonics.sight import sight
+from regolith_studio.harmonics.visibility import star_point_visibility
 
 BALL = icosphere(3)
 
@@ -32,7 +32,7 @@ def revolved(profile):
 
 
 def test_that_nothing_of_a_ball_is_hidden():
-    seen = sight(BALL.moved(shift=(5, 6, 7), scale=3.0))
+    seen = star_point_visibility(BALL.moved(shift=(5, 6, 7), scale=3.0))
     assert seen.hidden_surface_share == seen.unrepresentable_volume_share == 0.0
     assert seen.star_point == pytest.approx((15, 18, 21))
     assert seen.rule == "centre_of_mass"
@@ -40,18 +40,18 @@ def test_that_nothing_of_a_ball_is_hidden():
 
 def test_that_a_hat_brim_hides_what_a_fit_says_is_hidden():
     mushroom = revolved([(0, -2), (0.5, -2), (0.5, 0), (2, -1.2), (2.2, 0.3), (1, 1), (0, 1.2)])
-    seen, fit = sight(mushroom), fit_harmonics(mushroom, star_point=None)
+    seen, fit = star_point_visibility(mushroom), fit_harmonics(mushroom, star_point=None)
     assert seen.hidden_surface_share == fit.hidden_surface_share > 0.02
     assert seen.unrepresentable_volume_share == pytest.approx(fit.unrepresentable_volume_share, abs=0.005)
 
 
 def test_that_a_bowl_is_seen_from_a_point_inside_its_wall():
     bowl = revolved([(0, -1), (0.8, -0.6), (1, 0), (0.95, 0), (0.75, -0.5), (0, -0.9)])
-    seen = sight(bowl)
+    seen = star_point_visibility(bowl)
     assert seen.rule == "least_hidden_volume"
     assert seen.hidden_surface_share > 0.2
 
 
 def test_that_an_open_mesh_has_no_inside_to_look_from():
     with pytest.raises(GeometryError, match="open"):
-        sight(Mesh(BALL.vertices, BALL.faces[1:]))
+        star_point_visibility(Mesh(BALL.vertices, BALL.faces[1:]))

@@ -1,4 +1,4 @@
-"""Tables of other programs, and the two files of a fitted sample."""
+"""Tables of other programs, and the document and arrays of a fitted sample."""
 
 import csv
 import json
@@ -10,17 +10,17 @@ from scipy.special import sph_harm_y
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.sphere_points import fibonacci_directions
-from regolith_studio.harmonics.coefficient_tables import (
-    complex_rows,
+from regolith_studio.harmonics.coefficients import ShCoefficients, degrees, orders, to_pyshtools
+from regolith_studio.harmonics.fit import HarmonicFit, fit_harmonics
+from regolith_studio.harmonics.io import (
+    fits_arrays,
+    fits_document,
+    fits_from,
     from_complex_rows,
     from_shtools_rows,
-    shtools_rows,
 )
-from regolith_studio.harmonics.coefficients import ShCoefficients, degrees, orders, to_pyshtools
-from regolith_studio.harmonics.files import fits_from, write_fits
-from regolith_studio.harmonics.fit import HarmonicFit, fit_harmonics
-from regolith_studio.harmonics.quadrature import measure_on_grid
-from regolith_studio.harmonics.surface import radii
+from regolith_studio.harmonics.surface import radii, reconstruct
+from tests.harmonics.tables import complex_rows, shtools_rows
 
 
 def test_that_complex_rows_sum_up_to_the_radius_with_scipys_harmonics(rough):
@@ -86,23 +86,21 @@ def test_that_shtools_tables_are_checked(rough):
         from_shtools_rows(complex_rows(rough(2)))
 
 
-def test_that_a_fitted_sample_comes_back_from_its_two_files(rough, ellipsoid, tmp_path):
+def test_that_a_fitted_sample_comes_back_from_its_document_and_arrays(rough, ellipsoid):
     calm = fit_harmonics(ellipsoid(3.0, 2.0, 1.0, level=2), 4, sampling_degree=10, reference="ellipsoid")
     fits = [HarmonicFit(rough(6), np.array([1.0, 2.0, 3.0]), notes=("Look out.",)), calm]
-    text, numbers = write_fits(tmp_path / "new" / "sample", ["one", "two"], fits)
-    document = json.loads(text.read_text("utf-8"))
+    document = json.loads(json.dumps(fits_document(["one", "two"], fits)))
     assert "orthonormal" in document["convention"]
     assert "without the Condon-Shortley phase" in document["convention"]
     assert document["unit"] == "um"
-    with np.load(numbers) as arrays:
-        back = fits_from(document, arrays)
+    back = fits_from(document, fits_arrays(["one", "two"], fits))
     np.testing.assert_array_equal(back["one"].coefficients.values, rough(6).truncated(4).values)
     np.testing.assert_array_equal(back["one"].star_point, [1.0, 2.0, 3.0])
     np.testing.assert_array_equal(back["two"].reference.semi_axes, calm.reference.semi_axes)
     assert back["one"].notes == ("Look out.",)
 
 
-def test_that_files_of_two_samples_do_not_mix():
+def test_that_documents_and_arrays_of_two_samples_do_not_mix():
     document = {"particles": [{}, {}]}
     arrays = {"coefficients": np.ones((1, 4)), "star_points": np.zeros((1, 3))}
     with pytest.raises(InputError, match=r"do not belong together"):
@@ -127,13 +125,13 @@ def test_that_volume_and_area_of_real_particles_are_the_published_ones(real_data
         volume, area, used = row[6], row[7], int(row[11])
         particle = from_complex_rows(rows)
         candidates = [particle.truncated(k) for k in ((28, 30) if used == 28 else (used,))]
-        gap = min(_gap(measure_on_grid(cut, 60), volume, area) for cut in candidates)
+        gap = min(_gap(reconstruct(cut, level=5), volume, area) for cut in candidates)
         worst = max(worst, gap)
     assert worst < 0.005, f"volume or area is off by {worst:.2%}"
 
 
-def _gap(found, volume, area):
-    return max(abs(found[0] / volume - 1), abs(found[1] / area - 1))
+def _gap(surface, volume, area):
+    return max(abs(surface.volume / volume - 1), abs(surface.surface_area / area - 1))
 
 
 def test_that_the_mean_radius_is_the_first_complex_coefficient_over_root_four_pi(rough):
