@@ -44,7 +44,7 @@ def smooth_edges(plotter: Any) -> None:
         plotter.enable_anti_aliasing("msaa", multi_samples=4)
 
 
-def picture_of(plotter: Any, scale: int = 1, transparent: bool = False) -> Picture:
+def thumbnail(plotter: Any, scale: int = 1, transparent: bool = False) -> Picture:
     """What a plotter with one renderer shows, at a multiple of its size.
 
     Shape (height, width, 3), or 4 with transparency, which is told from pictures on black and on white:

@@ -31,7 +31,7 @@ class ActivityDock(QDockWidget):
         wiring.hear("exported", self._note_export)
         self.tasks.cancelRequested.connect(session.cancel)
         self.tasks.pauseRequested.connect(session.pause)
-        toast.said.connect(self.log.add)
+        toast.shown.connect(self.log.add)
 
     def _note_export(self, folder: object) -> None:
         self.log.add("note", tr("A dataset was written to {folder}.", folder=folder))

@@ -24,7 +24,7 @@ from regolith_studio.session.preferences import Preferences
 from regolith_studio.ui import main_window
 from regolith_studio.ui.application import make_application
 from regolith_studio.ui.translation.language import Translator, fall_silent, speak
-from regolith_studio.ui.widgets.formula import FORMULAS, all_set
+from regolith_studio.ui.widgets.formula import THREAD_NAME, all_outlines_made
 from regolith_studio.ui.wiring import Wiring
 
 
@@ -51,7 +51,7 @@ def nothing_left_behind(request):
     yield
     request.node.funcargs.clear()  # pytest holds on to them longer than it needs
     for each in threading.enumerate():
-        if each.name == FORMULAS:  # one line may be under way
+        if each.name == THREAD_NAME:  # one line may be under way
             each.join(20.0)
     _settle()
     left = _newcomers() + [each.name for each in threading.enumerate() if each not in threads]
@@ -80,7 +80,7 @@ def settled(wait):
     def run(window, seconds=60.0):
         def rests():
             refreshed = all(each.idle for each in window.findChildren(Wiring))
-            return refreshed and not window.session.tasks and all_set()
+            return refreshed and not window.session.tasks and all_outlines_made()
 
         wait(rests, seconds)
         wait(rests, seconds)  # what the last refreshment has set off

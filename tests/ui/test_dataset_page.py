@@ -25,7 +25,7 @@ from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.dataset import PAGE
 from regolith_studio.ui.theme import DARK, LIGHT
-from regolith_studio.ui.widgets.thumbnails import AT_ONCE, painted, picture_of
+from regolith_studio.ui.widgets.thumbnails import AT_ONCE, painted, thumbnail
 from regolith_studio.ui.widgets.toast import Toast
 from regolith_studio.ui.wiring import Wiring
 
@@ -285,7 +285,7 @@ def test_that_the_first_dataset_opens_the_library_with_its_simulations(chosen, t
 @pytest.mark.usefixtures("app")
 def test_that_a_picture_shows_a_lit_solid_on_a_clear_ground() -> None:
     cube = grains(1)[0].mesh.hull
-    image = picture_of(cube, "#c08040", 64).toImage()
+    image = thumbnail(cube, "#c08040", 64).toImage()
     assert (image.width(), image.height()) == (64, 64)
     assert image.pixelColor(1, 1).alpha() == 0
     assert image.pixelColor(32, 32).alpha() == 255

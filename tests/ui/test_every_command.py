@@ -70,7 +70,7 @@ class Witness:
         ):
             monkeypatch.setattr(owner, name, self._answering(name, answer))
         monkeypatch.setattr(sys, "excepthook", lambda *error: self.wrong.append(error))
-        window.toast.said.connect(self._hear)
+        window.toast.shown.connect(self._hear)
 
     def _answering(self, name, answer):
         def reply(*_arguments, **_options):

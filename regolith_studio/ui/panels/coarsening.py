@@ -1,4 +1,4 @@
-"""How the particle is coarsened: facets, what is imitated, method and its settings, seed."""
+"""Settings of the coarsening: size of the polyhedron, target, method and its settings, seed."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -28,7 +28,7 @@ from regolith_studio.ui.widgets.labels import heading, remark
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
 
 STOPS = {"facets": mark("Facets n"), "triangles": mark("Triangles"), "error": mark("Error ≤")}
-FACES = NumberSpec(
+FACETS = NumberSpec(
     "",
     mark("Number of facets"),
     FACETS_LIMITS[0],
@@ -60,11 +60,11 @@ ERROR = NumberSpec(
 TARGET_LABELS = {"fit": mark("Spherical-harmonics fit"), "particle": mark("CT particle")}
 SEED_LIMIT = 2**31 - 1
 LINES = 2
-"""Of why a request could not be met, that are seen without scrolling."""
+"""Visible lines of the reason why a request could not be met."""
 
 
 class CoarseningPanel(QWidget):
-    """Edits the coarsening, all but the weights of its loss."""
+    """Edits the choices of the coarsening, apart from the weights of its loss."""
 
     FIELDS = (
         *("stop_at", "n_facets", "n_triangles", "largest_error"),
@@ -79,7 +79,7 @@ class CoarseningPanel(QWidget):
         self.stop_at = ChoiceBox("stop_at", tr("What says how fine the polyhedron is"), STOPS)
         self.stop_at.setToolTip(self.stop_at.accessibleName())
         self.stop_at.setMinimumContentsLength(max(len(tr(label)) for label in STOPS.values()))
-        self.n_facets = _amount(FACES, "n_facets")
+        self.n_facets = _amount(FACETS, "n_facets")
         self.n_triangles = _amount(TRIANGLES, "n_triangles")
         self.largest_error = _amount(ERROR, "largest_error")
         self._amounts = {"facets": self.n_facets, "triangles": self.n_triangles, "error": self.largest_error}
@@ -105,7 +105,7 @@ class CoarseningPanel(QWidget):
         self._show_amount()
 
     def value(self) -> dict[str, Any]:
-        """All of it."""
+        """The edited choices."""
         form = self._forms.get(self.method.value())
         settings = form.value() if form else {}
         return {
@@ -120,7 +120,7 @@ class CoarseningPanel(QWidget):
         }
 
     def setValue(self, value: Mapping[str, Any]) -> None:
-        """Show other choices."""
+        """Show other choices without emitting a signal."""
         self.stop_at.setValue(value["stop_at"])
         self.n_facets.setValue(value["n_facets"])
         self.n_triangles.setValue(value["n_triangles"])
@@ -135,7 +135,7 @@ class CoarseningPanel(QWidget):
             form.setValue(dict(value["settings"]))
 
     def set_outcome(self, sentence: str | None) -> None:
-        """Say why a request could not be met, or nothing."""
+        """Show why a request could not be met, or nothing."""
         self.outcome.setText(retold(sentence) if sentence else "")
         self.outcome.setVisible(bool(sentence))
 
@@ -145,15 +145,15 @@ class CoarseningPanel(QWidget):
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
-        self._fold()
+        self._wrap_rows()
 
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
         if event.type() in (QEvent.Type.FontChange, QEvent.Type.StyleChange):
-            self._fold()
+            self._wrap_rows()
 
-    def _fold(self) -> None:
-        """Boxes stand below their labels where beside them their own would end in dots."""
+    def _wrap_rows(self) -> None:
+        """Wrap the rows of the form where combo boxes would elide their labels."""
         labels = [self._form.labelForField(box) for box in (self.method, self.target)]
         beside = max(label.sizeHint().width() for label in labels) + self._form.horizontalSpacing()
         narrow = self.width() < beside + max(box.whole_width() for box in (self.method, self.target))
@@ -234,7 +234,7 @@ def _amount(spec: NumberSpec, name: str) -> NumberSlider:
 
 
 def _share(percent: float) -> float:
-    """A percentage as a fraction that is written with as few digits."""
+    """A percentage as a fraction, rounded so that it has a short decimal form."""
     return round(percent / 100.0, 9)
 
 

@@ -13,7 +13,7 @@ from regolith_studio.ui.widgets.heat_table import HeatTable
 from regolith_studio.ui.widgets.labels import plain_symbol
 from regolith_studio.ui.widgets.study_frame import StudyFrame
 
-WAITING = mark(
+PLACEHOLDER = mark(
     "Root mean squared relative error of each descriptor, one row a loss function, as in Fig. 8 of the paper."
 )
 HEADERS = (*(plain_symbol(CATALOGUE[key].symbol) for key in LOSS_KEYS), "Jaccard")
@@ -21,13 +21,13 @@ KEYS = (*LOSS_KEYS, JACCARD)
 
 
 class CoarseningStudyPanel(QWidget):
-    """A row a loss function, a column a descriptor, percentages in the cells."""
+    """A table with a row per loss function and a column per descriptor, in per cent."""
 
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("coarsening_study")
         self._study: Any = None
-        self.table = HeatTable(tr(WAITING))
+        self.table = HeatTable(tr(PLACEHOLDER))
         self.frame = StudyFrame("coarsening_study", self.table)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
@@ -43,7 +43,7 @@ class CoarseningStudyPanel(QWidget):
         self._study = study
         labels, ends = [retold(row.label) for row in study.rows], study.bands.tolist()
         self.table.set_values(labels, HEADERS, study.rmsre, (ends[0], ends[1]))
-        self._tell_bands()
+        self._set_tool_tips()
         count = tr_count("RMSRE [%], 1 particle", "RMSRE [%], {count} particles", len(study.names))
         count += ", " + tr("{share:.0%} bootstrap intervals", share=study.confidence)
         if study.box_metric != "exact":
@@ -53,10 +53,10 @@ class CoarseningStudyPanel(QWidget):
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
         self.table.set_theme(theme)
-        self._tell_bands()
+        self._set_tool_tips()
 
-    def _tell_bands(self) -> None:
-        """Values with their bootstrap intervals, where a cell is pointed at."""
+    def _set_tool_tips(self) -> None:
+        """Set the tool tips of the cells: values with bootstrap intervals."""
         study = self._study
         if study is None or len(self.table.values()) != len(study.rows):
             return

@@ -1,4 +1,4 @@
-"""The descriptors themselves, with their units: particle, fit, polyhedron."""
+"""Table of the descriptors of particle, fit and polyhedron, with units."""
 
 from collections.abc import Mapping
 
@@ -23,16 +23,16 @@ from regolith_studio.ui.widgets.table import FontRowHeight
 _UNITS = {0: "", 1: " [µm]", 2: " [µm²]", 3: " [µm³]", 5: " [µm⁵]"}
 COLUMNS = (mark("Particle"), mark("Fit"), mark("Polyhedron"))
 NARROW_COLUMNS = (mark("Particle"), mark("Fit"), mark("Solid"))
-_ROOM_FOR_LABELS = 490
-_LETTERS = 44
-"""Width below which heads and numbers are short, in digits."""
+_MIN_LABEL_WIDTH = 490
+_NARROW_DIGITS = 44
+"""Width in digits below which headers and numbers are short."""
 _RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
 DIGITS, NARROW_DIGITS = 4, 3
-"""Of the numbers; the tool tip of a cell has them all."""
+"""Significant digits of the numbers; tool tips have six."""
 
 
 class DescriptorTablePanel(QWidget):
-    """One row a descriptor of the catalogue."""
+    """A table with a row per descriptor of the catalogue."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -69,7 +69,7 @@ class DescriptorTablePanel(QWidget):
 
     @property
     def _narrow(self) -> bool:
-        return self.width() < self.fontMetrics().horizontalAdvance("0" * _LETTERS)
+        return self.width() < self.fontMetrics().horizontalAdvance("0" * _NARROW_DIGITS)
 
     def _fill(self) -> None:
         digits = NARROW_DIGITS if self._narrow else DIGITS
@@ -86,7 +86,7 @@ class DescriptorTablePanel(QWidget):
         for number, key in enumerate(self._keys):
             row = CATALOGUE[key]
             short = plain_symbol(row.symbol) + _UNITS[row.dimension]
-            item = QTableWidgetItem(f"{tr(row.label)} {short}" if self.width() > _ROOM_FOR_LABELS else short)
+            item = QTableWidgetItem(f"{tr(row.label)} {short}" if self.width() > _MIN_LABEL_WIDTH else short)
             item.setToolTip(f"{tr(row.label)}: {tr(row.formula)}")
             self.table.setVerticalHeaderItem(number, item)
 

@@ -1,4 +1,4 @@
-"""Relative errors of fit and polyhedron, descriptor by descriptor (Eq. 8)."""
+"""Bar plot of the relative errors of fit and polyhedron (Eq. 8)."""
 
 import math
 
@@ -17,7 +17,7 @@ KEYS = (*LOSS_KEYS, JACCARD)
 
 
 class ErrorBarsPanel(QWidget):
-    """Grouped bars; faint while a coarsening is replaced, with a line at what no polyhedron can undercut."""
+    """Errors per descriptor with their lower bounds; faint while the polyhedron is being replaced."""
 
     def __init__(self) -> None:
         super().__init__()

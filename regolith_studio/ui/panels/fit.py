@@ -1,4 +1,4 @@
-"""The degree at which the spherical-harmonics series is cut, and what the fit cannot show."""
+"""Settings of the spherical-harmonics fit, and what the fit cannot represent."""
 
 from collections.abc import Mapping
 from functools import partial
@@ -51,12 +51,12 @@ TIPS = {
     ),
 }
 
-LINES, MOST_LINES = 4, 7
-"""Of what the fit cannot keep, that are seen without scrolling: in low windows, and in high ones."""
+LINES, MAX_LINES = 4, 7
+"""Visible lines of warnings, in low and in high windows."""
 
 
 class FitPanel(QWidget):
-    """Edits l_max and how radii are taken."""
+    """Edits l_max, star point, radius rule and reference."""
 
     FIELDS = ("l_max", "star_point", "rule", "reference")
     valueChanged = Signal(dict)  # noqa: N815
@@ -83,7 +83,7 @@ class FitPanel(QWidget):
         for widget in (
             self.l_max,
             self.more,
-            FixedHeightText((self.findings, self.warnings), LINES, MOST_LINES),
+            FixedHeightText((self.findings, self.warnings), LINES, MAX_LINES),
         ):
             layout.addWidget(widget)
         self.set_findings(None)
@@ -91,7 +91,7 @@ class FitPanel(QWidget):
         self.l_max.editingFinished.connect(self.editingFinished)
 
     def value(self) -> dict[str, Any]:
-        """All of it."""
+        """The edited choices."""
         return {"l_max": int(self.l_max.value()), **{name: box.value() for name, box in self.ways.items()}}
 
     def setValue(self, value: Mapping[str, Any]) -> None:
@@ -101,7 +101,7 @@ class FitPanel(QWidget):
             box.setValue(value[name])
 
     def set_findings(self, fit: Any | None) -> None:
-        """Say what the radius function of a ``HarmonicFit`` cannot represent."""
+        """Show what the radius function of a ``HarmonicFit`` cannot represent."""
         if fit is None:
             self.findings.setText(tr("Not fitted yet."))
             self.findings.show()

@@ -13,18 +13,18 @@ from regolith_studio.ui.widgets.labels import rich_symbol
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 from regolith_studio.ui.widgets.study_frame import StudyFrame
 
-WAITING = mark(
+PLACEHOLDER = mark(
     "Root mean squared relative error of each descriptor against l<sub>max</sub>, as in Fig. 3 of the paper."
 )
 
 
 class LmaxStudyPanel(QWidget):
-    """A curve a descriptor, a line at the l_max chosen now, and the smallest l_max that is enough."""
+    """A curve per descriptor, a marker at the chosen l_max, and the smallest l_max within a tolerance."""
 
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("lmax_study")
-        self.plot = CurvePlot(tr("Maximum degree l<sub>max</sub>"), "RMSRE [%]", tr(WAITING))
+        self.plot = CurvePlot(tr("Maximum degree l<sub>max</sub>"), "RMSRE [%]", tr(PLACEHOLDER))
         self.frame = StudyFrame("lmax_study", self.plot)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
@@ -59,7 +59,7 @@ class LmaxStudyPanel(QWidget):
         self._answer()
 
     def show_l_max(self, l_max: int) -> None:
-        """Mark the degree chosen now."""
+        """Mark the chosen degree."""
         self.plot.set_marker(float(l_max))
 
     def set_theme(self, theme: Theme) -> None:
@@ -67,7 +67,7 @@ class LmaxStudyPanel(QWidget):
         self.plot.set_theme(theme)
 
     def _asked(self) -> QWidget:
-        """How large an error may be, and the answer."""
+        """The row with the tolerance and the smallest sufficient l_max."""
         self.tolerance = QDoubleSpinBox()
         self.tolerance.setObjectName("lmax_study_tolerance")
         self.tolerance.setAccessibleName(tr("Largest error in percent"))

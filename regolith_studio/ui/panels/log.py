@@ -1,4 +1,4 @@
-"""What was said since the window opened, with the details of what went wrong."""
+"""Log of the messages since the window opened, with the details of errors."""
 
 import time
 
@@ -7,12 +7,12 @@ from PySide6.QtWidgets import QApplication, QHBoxLayout, QPlainTextEdit, QPushBu
 from regolith_studio.ui.translation import mark, tr
 
 LIMIT = 2000
-"""Lines kept."""
+"""Maximum number of lines."""
 MOODS = {"note": mark("note"), "problem": mark("problem")}
 
 
 class LogPanel(QWidget):
-    """One line a sentence, its details indented below."""
+    """A line per message, with its details indented below."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -32,7 +32,7 @@ class LogPanel(QWidget):
         layout.addLayout(row)
 
     def add(self, mood: str, sentence: str, details: str = "") -> None:
-        """Note down a sentence of the mood ``note`` or ``problem``."""
+        """Add a message of the kind ``note`` or ``problem``."""
         clock = time.strftime("%H:%M:%S")
         lines = [f"{clock}  {tr(MOODS[mood]):8s} {sentence}"]
         lines += [f"          {line}" for line in details.splitlines()]

@@ -1,4 +1,4 @@
-"""The weights of the loss (Eq. 9): one slider and number field a term, presets with a modified mark."""
+"""Weights of the loss (Eq. 9), a slider for each term, with presets."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -17,15 +17,15 @@ from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec, a
 from regolith_studio.ui.widgets.presets import PresetBar, PresetEntry
 
 OWN = "own:"
-"""Begins the keys of own presets."""
+"""Prefix of the keys of own presets."""
 SLIDER_END = 2.0
 LARGEST = 100.0
 LINES = 3
-"""Of where a preset comes from, that are seen without scrolling."""
+"""Visible lines of the origin of a preset."""
 
 
 def weight_spec(key: str) -> NumberSpec:
-    """The slider of one term; the catalogue knows its symbol and formula."""
+    """Label, range and tool tip of the weight of a term."""
     if key == JACCARD:
         label, name, formula = "Jaccard", tr("Jaccard distance"), tr("Jaccard distance, Eq. 7 (paper: IoU)")
     else:
@@ -44,8 +44,8 @@ def weight_spec(key: str) -> NumberSpec:
 class LossPanel(QWidget):
     """Edits the weights, and the shipped preset that they come from.
 
-    An own preset is a set of weights with the shipped preset that it began with: to the rest of the program
-    it is that preset with other weights, so that recipes and projects need nobody's own presets.
+    An own preset is a set of weights with the shipped preset that it is derived from. The rest of the program
+    sees that preset with modified weights, so that recipes and projects do not depend on own presets.
     """
 
     FIELDS = ("weights", "preset")
@@ -74,7 +74,7 @@ class LossPanel(QWidget):
         return {"weights": weights, "preset": self._preset}
 
     def setValue(self, value: Mapping[str, Any]) -> None:
-        """Show other weights."""
+        """Show other weights without emitting a signal."""
         for key, slider in self.sliders.items():
             slider.setValue(value["weights"][key])
         self._preset = value["preset"]
@@ -82,11 +82,11 @@ class LossPanel(QWidget):
         self._show_mark()
 
     def is_modified(self) -> bool:
-        """Whether the weights are no longer those of the preset that is shown."""
+        """Whether the weights differ from those of the selected preset."""
         return bool(self.value()["weights"] != self._known[self._chosen].weights)
 
     def save_as(self, name: str) -> None:
-        """Keep the present weights as an own preset.
+        """Save the present weights as an own preset.
 
         Raises
         ------
@@ -100,7 +100,7 @@ class LossPanel(QWidget):
         self._show_mark()
 
     def delete(self, key: str) -> None:
-        """Forget an own preset; the weights stay as they are."""
+        """Delete an own preset; the weights stay."""
         self._own.remove(key.removeprefix(OWN))
         self._list()
         self._chosen = self._source(self.value()["weights"])
@@ -131,7 +131,7 @@ class LossPanel(QWidget):
         )
 
     def _source(self, weights: LossWeights) -> str:
-        """Key of the preset that weights come from: one that has them, or the one that was chosen last."""
+        """Key of the preset with these weights, or else of the one that was selected last."""
         known = self._known
         now = [key for key, each in known.items() if each.name == self._preset and each.weights == weights]
         if self._chosen in now or (not now and self._chosen in known):

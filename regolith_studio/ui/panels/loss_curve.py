@@ -1,4 +1,4 @@
-"""The loss (Eq. 9) step by step; the curve grows while the coarsening runs."""
+"""Plot of the loss (Eq. 9) against the steps of the coarsening, updated while it runs."""
 
 from itertools import accumulate
 
@@ -11,7 +11,7 @@ from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 
 
 class LossCurvePanel(QWidget):
-    """One curve."""
+    """Current and best loss of the coarsening."""
 
     def __init__(self) -> None:
         super().__init__()

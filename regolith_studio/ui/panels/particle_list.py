@@ -1,4 +1,4 @@
-"""The list of open particles: name, group, volume, sphericity, aspect ratio, health of the mesh."""
+"""List of the open particles: name, group, volume, sphericity, aspect ratio, health of the mesh."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -23,23 +23,23 @@ from regolith_studio.ui.widgets.particle_table_model import (
 from regolith_studio.ui.widgets.table import ListTable
 
 WORDS = 2
-"""Columns of words; those of numbers follow."""
+"""Text columns, which precede those of numbers."""
 
 
 @dataclass(frozen=True)
 class ListColumn:
-    """One column of the list.
+    """A column of the list.
 
     Parameters
     ----------
     title
-        Above it, with the unit.
+        Header, with the unit.
     tip
-        What it means.
+        Tool tip of the header.
     key
-        What it is sorted by.
+        Sort key.
     text
-        What it shows.
+        Text of a cell.
     """
 
     title: str
@@ -114,7 +114,7 @@ class _Model(ParticleTableModel):
 
 
 class ParticleListPanel(QWidget):
-    """Edits which particle is on screen."""
+    """Selects the current particle."""
 
     FIELDS = ("selected",)
     valueChanged = Signal(dict)  # noqa: N815
@@ -138,20 +138,20 @@ class ParticleListPanel(QWidget):
         self.table.selectionModel().currentRowChanged.connect(self._clicked)
 
     def value(self) -> dict[str, str]:
-        """The id of the particle on screen."""
+        """The id of the current particle."""
         return {"selected": self._selected}
 
     def setValue(self, value: Mapping[str, Any]) -> None:
-        """Mark a particle as the one on screen."""
+        """Set the current particle."""
         self._selected = value["selected"]
         self._mark()
 
     def entries(self) -> tuple[ParticleEntry, ...]:
-        """What is listed."""
+        """The listed particles."""
         return self._model.entries
 
     def set_entries(self, entries: Sequence[ParticleEntry]) -> None:
-        """List other particles, or the same ones with more known about them."""
+        """List other particles, or the same ones with new data."""
         entries = tuple(entries)
         if entries == self._model.entries:
             return

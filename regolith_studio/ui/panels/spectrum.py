@@ -1,4 +1,4 @@
-"""The angular power spectrum of the particle: bars up to the chosen l_max are drawn full."""
+"""Angular power spectrum of the particle; bars beyond the chosen l_max are faint."""
 
 import math
 
@@ -16,11 +16,11 @@ from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.plots.base import Numbers, Plot
 
 DECADES = 6.5
-"""Shown below the highest bar."""
+"""Range of the axis below the highest bar."""
 
 
 class SpectrumPlot(Plot):
-    """Tells the amplitude under the mouse, and all of them as numbers."""
+    """Amplitudes with tool tips."""
 
     shares: np.ndarray[tuple[int], np.dtype[np.float64]] = np.empty(0)
 
@@ -35,7 +35,7 @@ class SpectrumPlot(Plot):
 
 
 class SpectrumPanel(QWidget):
-    """sqrt(A_l) as a share of the mean radius, on a logarithmic scale."""
+    """sqrt(A_l) relative to the mean radius, on a logarithmic scale."""
 
     def __init__(self) -> None:
         super().__init__()

@@ -1,4 +1,4 @@
-"""Everything that is running, one row each: progress, time left, a button that stops it."""
+"""List of the running tasks: progress, remaining time, stop button."""
 
 import time
 from collections.abc import Sequence
@@ -22,7 +22,7 @@ from regolith_studio.ui.widgets.labels import remark
 
 
 def time_left(done: int, total: int, seconds: float) -> str:
-    """A few words on how long the rest will take; empty while nothing can be said."""
+    """Estimated remaining time as text; empty while it is unknown."""
     if not 0 < done < total or seconds < 1.0:
         return ""
     rest = seconds * (total - done) / done
@@ -34,7 +34,7 @@ def time_left(done: int, total: int, seconds: float) -> str:
 
 
 class _Clock:
-    """Seconds that a task has been at work, without its pauses."""
+    """Seconds that a task has been running, without its pauses."""
 
     def __init__(self) -> None:
         self._worked, self._since = 0.0, time.monotonic()
@@ -44,7 +44,7 @@ class _Clock:
         return self._worked + (time.monotonic() - self._since if self._running else 0.0)
 
     def run(self, running: bool) -> None:
-        """Go on, or stand still."""
+        """Start or pause."""
         self._worked, self._since, self._running = self.seconds(), time.monotonic(), running
 
 
@@ -65,8 +65,8 @@ class _Row:
 
     def show(self, task: Task) -> None:
         self.clock.run(not task.paused)
-        told = filter(None, (task.title, task.message))
-        self.title.setText(": ".join(map(retold, told)))
+        parts = filter(None, (task.title, task.message))
+        self.title.setText(": ".join(map(retold, parts)))
         self.bar.setRange(0, task.total)
         self.bar.setValue(task.done)
         rest = time_left(task.done, task.total, self.clock.seconds())
@@ -77,7 +77,7 @@ class _Row:
 
 
 class TaskListPanel(QWidget):
-    """Rows come and go with the tasks; where there is no room for all of them they are scrolled."""
+    """A row per task in a scroll area."""
 
     cancelRequested = Signal(int)  # noqa: N815
     pauseRequested = Signal(int, bool)  # noqa: N815
@@ -107,7 +107,7 @@ class TaskListPanel(QWidget):
         layout.addWidget(area)
 
     def show_tasks(self, tasks: Sequence[Task]) -> None:
-        """List these instead."""
+        """List other tasks."""
         listed = {task.id for task in tasks}
         for number in [number for number in self._rows if number not in listed]:
             self._remove(number)

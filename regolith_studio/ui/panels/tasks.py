@@ -1,4 +1,4 @@
-"""What is running, in the status bar: title, progress, a button that stops it."""
+"""The running task in the status bar: title, progress, stop button."""
 
 import time
 from collections.abc import Sequence
@@ -13,13 +13,13 @@ from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.labels import ElidedLabel
 
-PATIENCE = 250
-"""Milliseconds that something must run before it is worth a progress bar."""
+SHOW_DELAY = 250
+"""Milliseconds after which a running task is shown."""
 IDLE = mark("Ready")
 
 
 class TasksPanel(QWidget):
-    """Shows the oldest of the running tasks; the others are counted."""
+    """Shows the oldest running task and the number of others."""
 
     cancelRequested = Signal(int)  # noqa: N815
 
@@ -46,18 +46,18 @@ class TasksPanel(QWidget):
         layout.addWidget(self.stop)
         layout.addWidget(self.text, 1)
         self._make_room()
-        self._timer = QTimer(self, interval=PATIENCE, singleShot=True)
+        self._timer = QTimer(self, interval=SHOW_DELAY, singleShot=True)
         self._timer.timeout.connect(self._show)
         self.stop.clicked.connect(self._request)
         self.set_theme(current_theme())
         self._show()
 
     def value(self) -> tuple[Task, ...]:
-        """The tasks that are running."""
+        """The running tasks."""
         return self._tasks
 
     def setValue(self, tasks: Sequence[Task]) -> None:
-        """Show these; short ones never appear."""
+        """Show other tasks, those that run longer than :data:`SHOW_DELAY`."""
         now = time.monotonic()
         self._tasks = tuple(tasks)
         self._since = {task.id: self._since.get(task.id, now) for task in self._tasks}
@@ -73,11 +73,11 @@ class TasksPanel(QWidget):
             self._make_room()
 
     def _make_room(self) -> None:
-        """As high with work as without: the views keep their size when it begins."""
+        """The same height with and without tasks, so that the views keep their size."""
         self.setFixedHeight(max(self.stop.sizeHint().height() + 4, self.fontMetrics().height() + 4))
 
     def _show(self) -> None:
-        patience = time.monotonic() - PATIENCE / 1000
+        patience = time.monotonic() - SHOW_DELAY / 1000
         seen = [task for task in self._tasks if self._since[task.id] <= patience]
         if len(seen) < len(self._tasks) and not self._timer.isActive():
             self._timer.start()

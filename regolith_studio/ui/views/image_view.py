@@ -72,7 +72,7 @@ class ImageView(QWidget):
         self._render()
         self._scale_bar.suspended = True
         try:
-            return stage.picture_of(self._plotter, scale, transparent)
+            return stage.thumbnail(self._plotter, scale, transparent)
         finally:
             self._scale_bar.suspended = False
             self._ask()

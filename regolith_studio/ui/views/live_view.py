@@ -128,7 +128,7 @@ class LiveView(QWidget):
     def shot(self, scale: int = 1, transparent: bool = False) -> Picture:
         self._scale_bar.suspended = True
         try:
-            return stage.picture_of(self._canvas, scale, transparent)
+            return stage.thumbnail(self._canvas, scale, transparent)
         finally:
             self._scale_bar.suspended = False
             self._canvas.update()

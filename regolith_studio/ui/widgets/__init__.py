@@ -1,1 +1,1 @@
-"""Widgets that know nothing of particles: sliders, plots, toasts."""
+"""General widgets: number sliders, combo boxes, forms, tables, plots, messages."""

@@ -1,11 +1,11 @@
-"""Content that is folded away until it is asked for."""
+"""A section that a button expands and collapses."""
 
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QToolButton, QVBoxLayout, QWidget
 
 
 class Collapsible(QWidget):
-    """A button with an arrow, and what it unfolds."""
+    """A button with an arrow, and content that it shows or hides; collapsed at first."""
 
     def __init__(self, title: str, content: QWidget) -> None:
         super().__init__()
@@ -26,7 +26,7 @@ class Collapsible(QWidget):
         self.set_open(False)
 
     def set_open(self, is_open: bool) -> None:
-        """Unfold or fold."""
+        """Expand or collapse."""
         self.button.setChecked(is_open)
         self.button.setArrowType(Qt.ArrowType.DownArrow if is_open else Qt.ArrowType.RightArrow)
         self.content.setVisible(is_open)

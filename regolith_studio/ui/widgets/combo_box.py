@@ -1,4 +1,4 @@
-"""Boxes that offer some keys by their labels, and end in dots where a label has no room."""
+"""Combo boxes that elide long labels, and a row that wraps the buttons behind one."""
 
 from collections.abc import Mapping, Sequence
 
@@ -17,11 +17,11 @@ from PySide6.QtWidgets import (
 from regolith_studio.ui.translation import tr
 
 MARGIN = 2
-"""Pixels that styles leave free before a label."""
+"""Pixels between the frame and the text of a combo box."""
 
 
 class ElidedComboBox(QComboBox):
-    """May be narrower than its labels: dots stand for what has no room, in the middle or at the end."""
+    """A combo box that may be narrower than its labels, which are elided in the middle or at the end."""
 
     def __init__(self, elide: Qt.TextElideMode = Qt.TextElideMode.ElideRight) -> None:
         super().__init__()
@@ -40,7 +40,7 @@ class ElidedComboBox(QComboBox):
 
 
 class ChoiceBox(ElidedComboBox):
-    """One of `entries`, which map keys to labels that are translated; may be narrower than the longest."""
+    """Selects one key of `entries`, a mapping of keys to labels, which are translated."""
 
     def __init__(self, name: str, accessible: str, entries: Mapping[str, str]) -> None:
         super().__init__()
@@ -51,29 +51,29 @@ class ChoiceBox(ElidedComboBox):
             self.addItem(words[:1].upper() + words[1:], key)
 
     def whole_width(self) -> int:
-        """Pixels in which no label ends in dots."""
+        """Width at which no label is elided."""
         labels = (self.itemText(row) for row in range(self.count()))
         widest = max(map(self.fontMetrics().horizontalAdvance, labels), default=0)
         return widest + self.width() - text_room(self)
 
     def value(self) -> str:
-        """The key that is chosen."""
+        """The selected key."""
         key: str = self.currentData()
         return key
 
     def setValue(self, key: str) -> None:
-        """Show another key, and tell nobody."""
+        """Select a key without emitting a signal."""
         with QSignalBlocker(self):
             self.setCurrentIndex(self.findData(key))
 
 
 class ComboBoxRow(QWidget):
-    """A box with buttons behind it; they stand below it where the box would have no room for its labels.
+    """A combo box with buttons behind it, or below it where its labels would be elided.
 
     Parameters
     ----------
     box
-        Takes what room there is.
+        Stretches.
     buttons
         From left to right.
     spacing
@@ -92,7 +92,7 @@ class ComboBoxRow(QWidget):
         self.refold()
 
     def refold(self) -> None:
-        """Look anew what is needed, because there are other labels."""
+        """Compute the required width again, after labels or fonts have changed."""
         metrics = self._box.fontMetrics()
         labels = [self._box.itemText(row) for row in range(self._box.count())]
         widest = max(map(metrics.horizontalAdvance, labels), default=0)
@@ -121,7 +121,7 @@ class ComboBoxRow(QWidget):
 
 
 def text_room(box: QComboBox) -> int:
-    """Pixels that a box has for its label."""
+    """Width of the label of a combo box in pixels."""
     option = QStyleOptionComboBox()
     box.initStyleOption(option)
     option.rect = QRect(0, 0, box.width(), box.height())

@@ -1,4 +1,4 @@
-"""Texts that change without moving anything."""
+"""Texts of changing length in a fixed height, so that the controls below do not move."""
 
 from collections.abc import Sequence
 
@@ -10,24 +10,24 @@ from regolith_studio.ui.translation import tr
 
 
 class FixedHeightText(QScrollArea):
-    """Texts in the room of so many lines, whatever they say: no control moves when they change.
+    """Labels in a scroll area with the height of a fixed number of lines.
 
-    More lines than that are scrolled to, by the mouse or, with the focus, by the arrow keys.
+    Further lines are scrolled by the mouse or, with the focus, by the arrow keys.
 
     Parameters
     ----------
     texts
-        Below each other; those that are hidden take no room.
+        From top to bottom; hidden ones take no space.
     lines
-        That are seen at once.
-    most
-        Lines that are seen where a column is high enough for them, see
+        Visible at once.
+    max_lines
+        Visible where a column is high enough for them, see
         :func:`~regolith_studio.ui.layout.scrolled_column`.
     """
 
-    def __init__(self, texts: Sequence[QLabel], lines: int, most: int = 0) -> None:
+    def __init__(self, texts: Sequence[QLabel], lines: int, max_lines: int = 0) -> None:
         super().__init__()
-        self._lines, self._spare, self._most = lines, 0, max(lines, most)
+        self._lines, self._spare, self._max_lines = lines, 0, max(lines, max_lines)
         self._inside = QWidget()
         column = QVBoxLayout(self._inside)
         column.setContentsMargins(0, 0, 0, 0)
@@ -43,7 +43,7 @@ class FixedHeightText(QScrollArea):
         self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self.setAccessibleName(tr("Remarks"))
         self.setWidget(self._inside)
-        self.verticalScrollBar().rangeChanged.connect(self._overflow)
+        self.verticalScrollBar().rangeChanged.connect(self._update_focus_policy)
 
     @property
     def line(self) -> int:
@@ -51,8 +51,8 @@ class FixedHeightText(QScrollArea):
         return self.fontMetrics().lineSpacing()
 
     def take_spare_lines(self, lines: int) -> int:
-        """Show more lines than usual, if that many are of use; returns how many are taken."""
-        taken = max(0, min(lines, self._most - self._lines))
+        """Show up to so many more lines; returns how many are used."""
+        taken = max(0, min(lines, self._max_lines - self._lines))
         if taken != self._spare:
             self._spare = taken
             self.updateGeometry()
@@ -73,9 +73,9 @@ class FixedHeightText(QScrollArea):
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
-        self._overflow()
+        self._update_focus_policy()
 
-    def _overflow(self, *_range: int) -> None:
-        """Tab comes here only where there is something to scroll."""
+    def _update_focus_policy(self, *_range: int) -> None:
+        """Accept the focus by Tab only if there is something to scroll."""
         more = self.verticalScrollBar().maximum() > 0
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus if more else Qt.FocusPolicy.NoFocus)

@@ -56,7 +56,7 @@ class SettingsForm(QWidget):
         self.setValue({})
 
     def value(self) -> dict[str, Scalar]:
-        """Settings that are not at their default, by name."""
+        """Settings that differ from their defaults, by name."""
         now = {name: _read(editor) for name, editor in self._editors.items()}
         return {name: value for name, value in now.items() if value != self._defaults[name]}
 
@@ -67,7 +67,7 @@ class SettingsForm(QWidget):
                 _write(editor, value.get(name, self._defaults[name]))
 
     def is_empty(self) -> bool:
-        """Whether there is nothing to set."""
+        """Whether the dataclass has no settings that can be edited."""
         return not self._editors
 
 
@@ -174,7 +174,7 @@ class ParameterForm(QWidget):
         self.setValue(kind())
 
     def value(self) -> Any:
-        """The dataclass in SI; values that were not touched keep their exact default."""
+        """The dataclass in SI; unchanged values keep their exact default."""
         return self._kind(**{name: self._read(name) for name in self._editors})
 
     def setValue(self, value: Any) -> None:
@@ -192,7 +192,7 @@ class ParameterForm(QWidget):
         }
 
     def restore(self, changes: Mapping[str, Any]) -> None:
-        """Show the defaults with these changes; what is not known or not possible is left out."""
+        """Show the defaults with these changes; unknown names are ignored."""
         known = {each.name for each in dataclasses.fields(self._kind)}
         kept = {key: float(value) for key, value in changes.items() if key in known}
         self.setValue(self._kind(**kept))

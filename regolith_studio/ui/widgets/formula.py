@@ -1,4 +1,4 @@
-"""Formulas set by matplotlib's mathtext and drawn as outlines: sharp at any size, in the theme's ink."""
+"""Formulas in matplotlib's mathtext, drawn as vector outlines in the text colour of the theme."""
 
 from contextlib import suppress
 from functools import cache
@@ -15,33 +15,33 @@ from PySide6.QtWidgets import QSizePolicy, QWidget
 from regolith_studio.studies.one_at_a_time import DRAWING
 
 EM = 100.0
-"""Size at which outlines are made; they are scaled when drawn."""
+"""Font size of the outlines, which are scaled when drawn."""
 MAGNIFICATION = 1.25
 """Size of the letters of a formula in units of the widget's font."""
 LEADING = 0.62
 """Space between two lines in units of the letters."""
-SMALLEST = 0.55
-"""A formula shrinks to the height it has, but not below this share of its size; to the width, as it must."""
-LEAST_HEIGHT = 0.75
-"""Share of its height that a formula asks for at least."""
-FORMULAS = "formulas"
-"""Name of the thread that sets them."""
-MOST_KEPT = 512
-"""Lines whose outlines are at hand."""
+MIN_SCALE = 0.55
+"""A formula is scaled down to the available height at most by this factor; to the width without limit."""
+MIN_HEIGHT = 0.75
+"""Minimum height of the widget as a share of its size hint."""
+THREAD_NAME = "formulas"
+"""Name of the thread that makes outlines."""
+CACHE_SIZE = 512
+"""Lines whose outlines are kept."""
 
 _outlines: dict[str, QPainterPath] = {}
 
 
 class FormulaLabel(QWidget):
-    """Lines of mathtext, one below the other, as large as the font of the widget says.
+    """Lines of mathtext from top to bottom, scaled with the font of the widget.
 
-    A line takes up to 40 ms to set: lines that are not at hand are set by a thread, one at a time, and what
-    was there before is seen until all are.
+    An outline takes up to 40 ms to make: missing ones are made by a thread, one at a time, and the previous
+    lines stay visible until all are there.
 
     Parameters
     ----------
     words
-        What the formula says, for screen readers.
+        Accessible name.
     """
 
     def __init__(self, words: str) -> None:
@@ -53,11 +53,11 @@ class FormulaLabel(QWidget):
         self.setAccessibleName(words)
 
     def lines(self) -> tuple[str, ...]:
-        """What is shown, or will be in a moment, as mathtext."""
+        """The lines as mathtext, which may not be visible yet."""
         return self._asked
 
     def set_lines(self, *lines: str) -> None:
-        """Show other lines, as soon as they are set."""
+        """Show other lines as soon as their outlines are made."""
         if lines == self._asked:
             return
         self._asked = lines
@@ -66,14 +66,14 @@ class FormulaLabel(QWidget):
         if all(line in _outlines for line in lines):
             self.take()
         else:
-            _setting().want(self)
+            _outline_maker().want(self)
 
     def missing(self) -> str | None:
-        """A line that is not at hand, if there is one."""
+        """A line without outline, if there is one."""
         return next((line for line in self._asked if line not in _outlines), None)
 
     def take(self) -> None:
-        """Show what was asked for."""
+        """Show the lines of :meth:`set_lines`."""
         self._lines = self._asked
         self.updateGeometry()
         self.update()
@@ -84,7 +84,7 @@ class FormulaLabel(QWidget):
         return QSize(round(widest * scale) + 2, round(self._height() * scale) + 2)
 
     def minimumSizeHint(self) -> QSize:
-        return QSize(40, round(LEAST_HEIGHT * self.sizeHint().height()))
+        return QSize(40, round(MIN_HEIGHT * self.sizeHint().height()))
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: ARG002
         if not self._lines:
@@ -97,7 +97,7 @@ class FormulaLabel(QWidget):
         widest = max(outline(line).boundingRect().right() for line in self._lines)
         wide = (self.width() - 2) / max(widest * natural, 1.0)
         high = (self.height() - 2) / max(self._height() * natural, 1.0)
-        scale = natural * min(max(SMALLEST, min(1.0, high)), wide)
+        scale = natural * min(max(MIN_SCALE, min(1.0, high)), wide)
         painter.translate(1, (self.height() - self._height() * scale) / 2)
         painter.scale(scale, scale)
         for line in self._lines:
@@ -117,11 +117,11 @@ class FormulaLabel(QWidget):
         return sum(boxes) + LEADING * EM * max(0, len(boxes) - 1)
 
 
-class _Setting(QObject):
-    """Sets the lines of all labels, one after the other, in a thread: the window goes on answering."""
+class _OutlineMaker(QObject):
+    """Makes the outlines of all labels, one line after the other, in a thread."""
 
     _ended = Signal(str)
-    """A line has been set, or cannot be."""
+    """A line is finished, or has failed."""
 
     def __init__(self, parent: QObject | None) -> None:
         super().__init__(parent)
@@ -130,28 +130,28 @@ class _Setting(QObject):
         self._ended.connect(self._go_on, Qt.ConnectionType.QueuedConnection)
 
     def want(self, label: FormulaLabel) -> None:
-        """Set what this label misses."""
+        """Make the outlines that a label lacks."""
         self._labels[label] = None
         if not self._busy:
             self._begin()
 
     @property
     def idle(self) -> bool:
-        """Whether nothing is being set, nor waits for that."""
+        """Whether no outline is being made or waited for."""
         return not self._busy
 
     def _begin(self) -> None:
         for label in list(self._labels):
             if shiboken6.isValid(label) and (line := label.missing()) is not None:
                 self._busy = True
-                Thread(target=self._set, args=(line,), daemon=True, name=FORMULAS).start()
+                Thread(target=self._set, args=(line,), daemon=True, name=THREAD_NAME).start()
                 return
             del self._labels[label]
             if shiboken6.isValid(label):
                 label.take()
 
     def _set(self, line: str) -> None:
-        """In the thread; nobody hears of the end if the program has ended meanwhile."""
+        """Run in the thread; the signal has no receiver if the program has ended meanwhile."""
         try:
             outline(line)
         finally:
@@ -160,33 +160,33 @@ class _Setting(QObject):
 
     def _go_on(self, line: str) -> None:
         self._busy = False
-        if line not in _outlines:  # the thread has said why
+        if line not in _outlines:  # the thread has raised
             for label in [each for each in self._labels if line in each.lines()]:
                 del self._labels[label]
         self._begin()
 
 
 @cache
-def _setting() -> _Setting:
-    return _Setting(QCoreApplication.instance())
+def _outline_maker() -> _OutlineMaker:
+    return _OutlineMaker(QCoreApplication.instance())
 
 
-def all_set() -> bool:
-    """Whether every formula is seen as it was asked for last."""
-    return _setting().idle
+def all_outlines_made() -> bool:
+    """Whether every formula shows its latest lines."""
+    return _outline_maker().idle
 
 
 def outline(line: str) -> QPainterPath:
-    """The outlines of a line of mathtext, the base line at y = 0, y downwards.
+    """Outlines of a line of mathtext, the base line at y = 0, y downwards.
 
     Raises
     ------
     ValueError
-        If it is no mathtext.
+        If it is not valid mathtext.
     """
     if line not in _outlines:
         made = _outlined(line)
-        if len(_outlines) >= MOST_KEPT:
+        if len(_outlines) >= CACHE_SIZE:
             _outlines.pop(next(iter(_outlines)), None)  # another thread may prepare formulas
         _outlines[line] = made
     return _outlines[line]
@@ -216,6 +216,6 @@ def _outlined(line: str) -> QPainterPath:
 
 
 def _line_box(line: str) -> QRectF:
-    """Of a line, at least as high as a letter with a descender."""
+    """Bounding box of a line, at least as high as a letter with a descender."""
     least = QRectF(0.0, -0.75 * EM, 1.0, 0.95 * EM)
     return outline(line).boundingRect().united(least)

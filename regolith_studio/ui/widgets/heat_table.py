@@ -1,4 +1,4 @@
-"""A table of percentages whose cells are the darker the larger they are."""
+"""A heat map table of percentages."""
 
 import math
 from collections.abc import Sequence
@@ -19,18 +19,18 @@ from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.table import FontRowHeight
 
-_ROWS_SHARE, _ROWS_LEAST = 0.33, 0.2
-"""Of the width, that the names of the rows take at most, and that they keep where columns need the rest."""
-LEAST, MARGINS = 24, 6
-"""Pixels of the narrowest column, and of what is free around its name or number."""
+_MAX_HEADER_SHARE, _MIN_HEADER_SHARE = 0.33, 0.2
+"""Limits of the vertical header's width as a share of the width of the table."""
+MIN_COLUMN, MARGINS = 24, 6
+"""Minimum width of a column, and the free pixels around its text."""
 SPARE = 11
-"""Pixels between two rows."""
+"""Pixels of a row in addition to its lines of text."""
 Bands = tuple[Sequence[Sequence[float]], Sequence[Sequence[float]]]
-"""Lower and upper ends of the intervals of a table."""
+"""Lower and upper ends of intervals, one for each cell."""
 
 
 def percentage(share: float) -> str:
-    """A share in per cent with as many digits as can be read at a glance; a dash where there is none."""
+    """A share in per cent with one or two decimals; a dash for NaN."""
     percent = 100.0 * share
     if not math.isfinite(percent):
         return "–"
@@ -40,12 +40,12 @@ def percentage(share: float) -> str:
 
 
 def _short(share: float) -> str:
-    """A share in per cent with two digits, for the end of an interval."""
+    """A share in per cent for the end of an interval, rounded to whole numbers from 10 % on."""
     return f"{100.0 * share:.0f}" if share >= 0.1 else percentage(share)
 
 
 class HeatTable(QWidget):
-    """Shows shares as percentages, or a sentence where there are none yet."""
+    """Shows shares as percentages on a coloured background, or a placeholder text."""
 
     def __init__(self, placeholder: str) -> None:
         super().__init__()
@@ -55,11 +55,11 @@ class HeatTable(QWidget):
         self.table = numbers_table(tr("Table of errors"))
         self._rows = FontRowHeight(self.table, SPARE)
         self._stack = QStackedLayout(self)
-        self._stack.addWidget(remark_in_the_middle(placeholder))
+        self._stack.addWidget(centred_remark(placeholder))
         self._stack.addWidget(self.table)
 
     def values(self) -> tuple[tuple[float, ...], ...]:
-        """What is shown, as shares."""
+        """The values, as shares."""
         return self._values
 
     def set_values(
@@ -69,7 +69,7 @@ class HeatTable(QWidget):
         values: Sequence[Sequence[float]],
         bands: Bands | None = None,
     ) -> None:
-        """Show other shares, below each the ends of its interval; no rows bring back the sentence."""
+        """Show other shares, each with its interval below; without rows the placeholder is shown."""
         self._values = tuple(tuple(float(value) for value in row) for row in values)
         self._bands = bands
         self._rows.set_lines(1 if bands is None else 2)
@@ -110,7 +110,7 @@ class HeatTable(QWidget):
         keep_legible(self.table, self.width())
 
     def _band(self, row: int, column: int) -> str:
-        """A second line with the interval, where it has a width that can be read."""
+        """A second line with the interval, unless its rounded ends are equal."""
         if self._bands is None:
             return ""
         low, high = (_short(end[row][column]) for end in self._bands)
@@ -127,12 +127,12 @@ class HeatTable(QWidget):
 
 
 def numbers_table(name: str) -> QTableWidget:
-    """A table to be read only, as wide as its place.
+    """A read-only table whose columns stretch to its width.
 
     Parameters
     ----------
     name
-        For those who hear the window.
+        Accessible name.
     """
     table = QTableWidget()
     table.setAccessibleName(name)
@@ -143,18 +143,18 @@ def numbers_table(name: str) -> QTableWidget:
     table.setFrameShape(table.Shape.NoFrame)
     table.setHorizontalScrollMode(QTableWidget.ScrollMode.ScrollPerPixel)
     table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
-    table.horizontalHeader().setMinimumSectionSize(LEAST)
+    table.horizontalHeader().setMinimumSectionSize(MIN_COLUMN)
     table.verticalHeader().setTextElideMode(Qt.TextElideMode.ElideRight)
     return table
 
 
 def keep_legible(table: QTableWidget, width: int) -> None:
-    """Columns that have room for their names and numbers; a table that is too narrow is scrolled.
+    """Set the minimum width of columns to that of their texts; a table that is too narrow is scrolled.
 
     Parameters
     ----------
     width
-        Of the table. The names of the rows give way first, and end in dots.
+        Of the table. The vertical header shrinks first and elides its names.
     """
     names, cells = table.horizontalHeader().fontMetrics(), table.fontMetrics()
     heads = [table.horizontalHeaderItem(column) for column in range(table.columnCount())]
@@ -162,14 +162,15 @@ def keep_legible(table: QTableWidget, width: int) -> None:
     items = (table.item(row, at) for row in range(table.rowCount()) for at in range(table.columnCount()))
     lines = {line for item in items if item is not None for line in item.text().splitlines()}
     widest = max([*widths, *map(cells.horizontalAdvance, lines)], default=0)
-    least = max(LEAST, widest + MARGINS)
+    least = max(MIN_COLUMN, widest + MARGINS)
     table.horizontalHeader().setMinimumSectionSize(least)
-    left = width - least * table.columnCount() - MARGINS
-    table.verticalHeader().setMaximumWidth(round(min(max(left, _ROWS_LEAST * width), _ROWS_SHARE * width)))
+    left: float = width - least * table.columnCount() - MARGINS
+    left = min(max(left, _MIN_HEADER_SHARE * width), _MAX_HEADER_SHARE * width)
+    table.verticalHeader().setMaximumWidth(round(left))
 
 
-def remark_in_the_middle(text: str) -> QLabel:
-    """A sentence where there are no numbers yet."""
+def centred_remark(text: str) -> QLabel:
+    """A centred placeholder text."""
     label = QLabel(text)
     label.setProperty("role", "remark")
     label.setAlignment(Qt.AlignmentFlag.AlignCenter)

@@ -1,4 +1,4 @@
-"""Texts: headings, remarks, and lines that shorten themselves instead of being cut."""
+"""Labels: headings, remarks, elided and wrapped text, symbols with subscripts."""
 
 import html
 import re
@@ -18,30 +18,30 @@ def rich_symbol(text: str) -> str:
 
 
 def plain_symbol(text: str) -> str:
-    """A symbol such as ``D_min`` where no subscript can be set: ``Dmin``."""
+    """A symbol such as ``D_min`` as plain text: ``Dmin``."""
     return _SUBSCRIPT.sub(r"\1\2", text)
 
 
 def with_subscripts(words: str) -> str:
-    """A sentence in which symbols have real subscripts: rich text if there are any, as it is otherwise."""
+    """Rich text in which symbols have subscripts; a text without symbols is returned unchanged."""
     rich, count = _SYMBOL.subn(r"\1<sub>\2</sub>", html.escape(words, quote=False))
     return rich if count else words
 
 
 def unbroken(rich: str) -> str:
-    """Rich text in which no line breaks between words."""
+    """Rich text with non-breaking spaces between words."""
     return "".join(part if part.startswith("<") else part.replace(" ", "&nbsp;") for part in _TAG.split(rich))
 
 
 def heading(text: str) -> QLabel:
-    """A label that begins a group."""
+    """The heading of a group of controls."""
     label = QLabel(text)
     label.setProperty("role", "heading")
     return label
 
 
 def remark(text: str = "", role: str = "remark") -> QLabel:
-    """A quiet line of several words that may wrap; `role` ``warning`` for what must be noticed."""
+    """A wrapped text in a muted colour, or in that of a warning if `role` is ``warning``."""
     label = QLabel(text)
     label.setProperty("role", role)
     label.setWordWrap(True)
@@ -49,7 +49,7 @@ def remark(text: str = "", role: str = "remark") -> QLabel:
 
 
 class WrappedLabel(QLabel):
-    """Words that wrap, with all their lines however little room there is: what stands below gives way."""
+    """A wrapped text whose minimum height holds all of its lines."""
 
     def __init__(self, text: str = "") -> None:
         super().__init__(text)
@@ -65,7 +65,7 @@ class WrappedLabel(QLabel):
 
 
 class ElidedLabel(QWidget):
-    """One line of plain text that ends in dots where there is no room; the whole text is the tool tip.
+    """One line of plain text, elided at the end if necessary, with the whole text as tool tip.
 
     Parameters
     ----------

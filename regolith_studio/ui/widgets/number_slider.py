@@ -1,4 +1,4 @@
-"""A slider with a number field: the slider for looking around, the field for exact values."""
+"""A slider with a number field, which also takes values beyond the slider's range."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -9,35 +9,35 @@ from PySide6.QtWidgets import QDoubleSpinBox, QGridLayout, QLabel, QSlider, QSpi
 from regolith_studio.ui.translation import tr
 
 THROTTLE = 30
-"""Milliseconds between two announcements while a slider is dragged: the first at once, the last always."""
+"""Minimum milliseconds between two ``valueChanged``; the first is emitted at once, the last always."""
 
 
-LEAST_ROOM = "0000.00"
-"""What a field has room for, whatever its range."""
+MIN_TEXT = "0000.00"
+"""Text that every field has room for."""
 ARROWS = 28
-"""Pixels that arrows and frame take in a field."""
+"""Width of arrows and frame of a field in pixels."""
 
 
 @dataclass(frozen=True)
 class NumberSpec:
-    """What number is asked for; words are translated where they are shown.
+    """Range, step and texts of a number; the texts are translated when displayed.
 
     Parameters
     ----------
     label
         Rich text before the slider; empty for none.
     name
-        Plain words for screen readers.
+        Accessible name.
     minimum, maximum
-        Ends of the slider.
+        Range of the slider.
     step
-        Smallest change; whole numbers if it is whole.
+        Smallest change; the number is an integer if it is one.
     limit
         Largest number that can be typed; `maximum` if not given.
     suffix
-        Unit behind the number, with its leading blank.
+        Unit, with a leading blank.
     tip
-        Shown when the mouse rests.
+        Tool tip.
     """
 
     label: str
@@ -51,19 +51,19 @@ class NumberSpec:
 
     @property
     def whole(self) -> bool:
-        """Whether only whole numbers are meant."""
+        """Whether the number is an integer."""
         return float(self.step).is_integer()
 
     @property
     def decimals(self) -> int:
-        """Digits after the point that the step needs."""
+        """Decimals of the step."""
         return 0 if self.whole else len(f"{self.step:.6f}".rstrip("0").split(".")[1])
 
 
 class NumberSlider(QWidget):
-    """Edits one number. ``valueChanged`` is for changes by the user only, and throttled.
+    """Edits one number. ``valueChanged`` is emitted for changes by the user only, and throttled.
 
-    ``editingFinished`` follows when the slider is let go or a typed number is confirmed.
+    ``editingFinished`` follows when the slider is released or a typed number is confirmed.
     """
 
     valueChanged = Signal(object)  # noqa: N815
@@ -76,7 +76,7 @@ class NumberSlider(QWidget):
         self.slider = QSlider(Qt.Orientation.Horizontal)
         self.field = QSpinBox() if spec.whole else QDoubleSpinBox()
         self._timer = QTimer(self, interval=THROTTLE, singleShot=True)
-        self._announced: float | int | None = None
+        self._emitted: float | int | None = None
         self._configure()
         self._make_room()
         layout = QGridLayout(self)
@@ -87,27 +87,27 @@ class NumberSlider(QWidget):
         layout.addWidget(self.field, 0, 2)
         layout.setColumnStretch(1, 1)
         self.label.setVisible(bool(spec.label))
-        self.slider.valueChanged.connect(self._slid)
+        self.slider.valueChanged.connect(self._on_slider)
         self.slider.sliderReleased.connect(self._finish)
-        self.field.valueChanged.connect(self._typed)
+        self.field.valueChanged.connect(self._on_field)
         self.field.editingFinished.connect(self._finish)
-        self._timer.timeout.connect(self._announce)
+        self._timer.timeout.connect(self._emit_value)
         self.setValue(spec.minimum)
 
     def value(self) -> float | int:
-        """The number in the field."""
+        """The number."""
         return self.field.value()
 
     def setValue(self, value: float) -> None:
-        """Show a number; announces nothing."""
+        """Set the number without emitting a signal."""
         self._timer.stop()
         with QSignalBlocker(self.field), QSignalBlocker(self.slider):
             self.field.setValue(int(value) if self.spec.whole else float(value))  # type: ignore[arg-type]
             self.slider.setValue(self._ticks(self.field.value()))
-        self._announced = self.field.value()
+        self._emitted = self.field.value()
 
     def set_range(self, minimum: float, maximum: float) -> None:
-        """Other ends of the slider and of the field; announces nothing."""
+        """Set the range of slider and field without emitting a signal."""
         with QSignalBlocker(self.field), QSignalBlocker(self.slider):
             self.field.setRange(minimum, maximum)  # type: ignore[arg-type]
             self.slider.setRange(self._ticks(minimum), self._ticks(maximum))
@@ -127,7 +127,7 @@ class NumberSlider(QWidget):
         field.setKeyboardTracking(False)
         field.setAlignment(Qt.AlignmentFlag.AlignRight)
         field.setAccessibleName(tr(spec.name))
-        self._widest = max(LEAST_ROOM, f"-{limit:.{spec.decimals}f}{field.suffix()}", key=len)
+        self._widest = max(MIN_TEXT, f"-{limit:.{spec.decimals}f}{field.suffix()}", key=len)
         self.slider.setRange(self._ticks(spec.minimum), self._ticks(spec.maximum))
         self.slider.setPageStep(max(1, (self.slider.maximum() - self.slider.minimum()) // 10))
         self.slider.setAccessibleName(tr("{name}, slider", name=tr(spec.name)))
@@ -143,44 +143,44 @@ class NumberSlider(QWidget):
             self._make_room()
 
     def _make_room(self) -> None:
-        """For the longest number, in letters of the present size."""
+        """Set the width of the field to that of the longest number in the present font."""
         self.field.setFixedWidth(self.field.fontMetrics().horizontalAdvance(self._widest) + ARROWS)
 
     def _ticks(self, value: float) -> int:
         return round(value / self.spec.step)
 
-    def _slid(self, ticks: int) -> None:
+    def _on_slider(self, ticks: int) -> None:
         with QSignalBlocker(self.field):
             value = ticks * self.spec.step
             self.field.setValue(int(value) if self.spec.whole else value)  # type: ignore[arg-type]
-        self._wait()
+        self._throttle()
 
-    def _typed(self, value: float) -> None:
+    def _on_field(self, value: float) -> None:
         with QSignalBlocker(self.slider):
             self.slider.setValue(self._ticks(value))
-        self._wait()
+        self._throttle()
 
-    def _wait(self) -> None:
+    def _throttle(self) -> None:
         if not self._timer.isActive():
-            self._announce()
+            self._emit_value()
 
-    def _announce(self) -> None:
-        """Tell the value, if it is new, and nothing more for a while."""
+    def _emit_value(self) -> None:
+        """Emit the value if it is new, and start the throttle."""
         value = self.value()
-        if value != self._announced:
-            self._announced = value
+        if value != self._emitted:
+            self._emitted = value
             self._timer.start()
             self.valueChanged.emit(value)
 
     def _finish(self) -> None:
-        self._announce()
+        self._emit_value()
         self._timer.stop()
         self.editingFinished.emit()
 
 
-def align_labels(sliders: Iterable[NumberSlider], least: int = 0) -> None:
-    """Let sliders below each other begin at one place, behind the widest label or so many pixels."""
+def align_labels(sliders: Iterable[NumberSlider], min_width: int = 0) -> None:
+    """Give the labels of several sliders the same width, at least `min_width` pixels."""
     each = list(sliders)
     widest = max((slider.label.sizeHint().width() for slider in each), default=0)
     for slider in each:
-        slider.label.setFixedWidth(max(widest, least))
+        slider.label.setFixedWidth(max(widest, min_width))

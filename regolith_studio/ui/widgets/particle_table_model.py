@@ -46,19 +46,19 @@ class ParticleTableModel(QAbstractTableModel):
     def __init__(self, n_columns: int, parent: QObject) -> None:
         super().__init__(parent)
         self.entries: tuple[ParticleEntry, ...] = ()
-        """All, in the order in which they were given."""
+        """All particles, in the order given."""
         self.rows: tuple[ParticleEntry, ...] = ()
-        """Those that are listed, from top to bottom."""
+        """The particles that are listed, from top to bottom."""
         self._n_columns = n_columns
         self._column, self._order = UNSORTED, Qt.SortOrder.AscendingOrder
         self._keeps: Callable[[ParticleEntry], bool] | None = None
 
     def value(self, entry: ParticleEntry, column: int) -> Any:
-        """What a column is sorted by; all values of a column can be compared."""
+        """Sort key of a column."""
         raise NotImplementedError
 
     def set_entries(self, entries: Sequence[ParticleEntry]) -> None:
-        """List other particles, or the same ones with more known about them."""
+        """List other particles, or the same ones with new data."""
         self.entries = tuple(entries)
         rows = self._arranged()
         if not rows or {entry.id for entry in rows} != {entry.id for entry in self.rows}:
@@ -68,12 +68,12 @@ class ParticleTableModel(QAbstractTableModel):
         self.dataChanged.emit(self.index(0, 0), self.index(len(rows) - 1, self._n_columns - 1))
 
     def set_filter(self, keeps: Callable[[ParticleEntry], bool] | None) -> None:
-        """List only what this keeps."""
+        """List only the particles for which this is true."""
         self._keeps = keeps
         self._reset(self._arranged())
 
     def sort(self, column: int, order: Qt.SortOrder = Qt.SortOrder.AscendingOrder) -> None:
-        """Sort by a column, equal ones as they were given; all as they were given with :data:`UNSORTED`."""
+        """Sort by a column (stable); :data:`UNSORTED` restores the order given."""
         self._column, self._order = column, order
         self._move(self._arranged())
 

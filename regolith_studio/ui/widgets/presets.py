@@ -21,14 +21,14 @@ SHIPPED = "paper"
 
 @dataclass(frozen=True)
 class PresetEntry:
-    """One line of the list.
+    """A preset in the list.
 
     Parameters
     ----------
     key
         Identifies the preset in signals; `label` is displayed, `tip` is its tool tip.
     own
-        Whether the user has saved it, and may delete it.
+        Whether the user has saved it and may delete it.
     """
 
     key: str
@@ -43,9 +43,9 @@ class PresetBar(QWidget):
     Parameters
     ----------
     name
-        Object name of the list; begins those of the buttons.
+        Object name of the list, and prefix of those of the buttons.
     accessible
-        What kind of presets, in plain words.
+        Accessible name of the list.
     """
 
     chosen = Signal(str)
@@ -77,11 +77,11 @@ class PresetBar(QWidget):
         self.reset.clicked.connect(self.resetRequested)
 
     def current(self) -> str:
-        """Key of the line that is chosen; empty where there is none."""
+        """Key of the selected preset; empty for none."""
         return str(self.box.currentData() or "")
 
     def set_entries(self, entries: Sequence[PresetEntry]) -> None:
-        """List these."""
+        """List other presets."""
         if tuple(entries) == self._entries:
             return
         self._entries = tuple(entries)
@@ -93,7 +93,7 @@ class PresetBar(QWidget):
         self._row.refold()
 
     def show_state(self, key: str, modified: bool) -> None:
-        """Mark the preset that the values come from, and whether they have moved since."""
+        """Select the preset of the values, and mark whether they are modified."""
         with QSignalBlocker(self.box):
             self.box.setCurrentIndex(self.box.findData(key))
             for row, entry in enumerate(self._entries):
@@ -111,11 +111,11 @@ class PresetBar(QWidget):
             self._row.refold()
 
     def _make_room(self) -> None:
-        """The button is no wider than its word: the list needs what is left."""
+        """Limit the button to the width of its text."""
         self.reset.setMaximumWidth(self.reset.fontMetrics().horizontalAdvance(self.reset.text()) + 16)
 
     def ask_name(self) -> None:
-        """Ask under which name the present values shall be kept."""
+        """Ask for a name and request to save the values under it."""
         dialog = QInputDialog(self)
         dialog.setObjectName("preset_name")
         dialog.setWindowTitle(tr("Save as own preset"))
@@ -144,7 +144,7 @@ class PresetForm(ParameterForm):
     kind
         The dataclass; its defaults are the shipped preset.
     name
-        Begins the object names of the editors.
+        Prefix of the editors' object names.
     label
         Of the shipped preset.
     """
@@ -168,16 +168,16 @@ class PresetForm(ParameterForm):
         self._list()
 
     def setValue(self, value: Any) -> None:
-        """Show these values; announces nothing."""
+        """Show these values without emitting a signal."""
         super().setValue(value)
         self._show_mark()
 
     def is_modified(self) -> bool:
-        """Whether the values are no longer those of the preset."""
+        """Whether the values differ from those of the preset."""
         return self.changes() != self._known[self._chosen]
 
     def save_as(self, name: str) -> None:
-        """Keep the present values as an own preset.
+        """Save the present values as an own preset.
 
         Raises
         ------
@@ -190,7 +190,7 @@ class PresetForm(ParameterForm):
         self._show_mark()
 
     def delete(self, key: str) -> None:
-        """Forget an own preset; the values stay as they are."""
+        """Delete an own preset; the values stay."""
         self._own.remove(key.removeprefix("own:"))
         self._chosen = SHIPPED
         self._list()
@@ -211,7 +211,7 @@ class PresetForm(ParameterForm):
         self._show_mark()
 
     def _fits(self, values: Mapping[str, Any]) -> bool:
-        """Whether this version knows and allows every value."""
+        """Whether every value is known and valid."""
         try:
             self._kind(**{name: float(value) for name, value in values.items()})
         except (InputError, TypeError, ValueError):

@@ -1,4 +1,4 @@
-"""A plot of a study: a button that starts it, its progress, a button that stops it."""
+"""A frame around the plot of a study, with start and stop buttons and progress."""
 
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QHBoxLayout, QProgressBar, QPushButton, QVBoxLayout, QWidget
@@ -14,9 +14,9 @@ class StudyFrame(QWidget):
     Parameters
     ----------
     name
-        Begins the object names of the buttons.
+        Prefix of the buttons' object names.
     plot
-        What is placed.
+        The plot.
     """
 
     startRequested = Signal()  # noqa: N815
@@ -51,17 +51,17 @@ class StudyFrame(QWidget):
         self.show_task(None)
 
     def set_count(self, count: int) -> None:
-        """Say over how many particles the study goes."""
+        """Set the number of particles of the study."""
         self.start.setText(tr_count("Compute for this particle", "Compute for all {count} particles", count))
         self.start.setEnabled(count > 0)
 
     def show_task(self, task: Task | None) -> None:
-        """Show how far the study is, or that it does not run."""
+        """Show the progress of the study, or that it is not running."""
         running = task is not None
         seen, hidden = (self.stop, self.start) if running else (self.start, self.stop)
         focused = hidden.hasFocus()
         seen.show()
-        if focused:  # else it would go to whatever is next
+        if focused:  # otherwise the focus goes to the next widget
             seen.setFocus()
         hidden.hide()
         self.remark.setVisible(not running)
@@ -72,5 +72,5 @@ class StudyFrame(QWidget):
             self.bar.setValue(task.done)
 
     def set_remark(self, text: str) -> None:
-        """A few words beside the button."""
+        """Set the text beside the button."""
         self.remark.setText(text)

@@ -1,4 +1,4 @@
-"""Tables as the window uses them: rows to choose from, the first column taking what room is left."""
+"""Tables of selectable rows whose first column stretches."""
 
 from collections.abc import Iterator
 
@@ -8,16 +8,16 @@ from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QTableView
 
 _LEAST = 70
 _NAME = 18
-"""Digits that the first column is granted, at most, before others stay; an icon has room in it."""
+"""Width in digits that the first column may require before others are hidden; includes an icon."""
 
 
 class FontRowHeight(QObject):
-    """Keeps the rows of a table as high as its letters, whatever size these take.
+    """Keeps the row height of a table that of its font.
 
     Parameters
     ----------
     spare
-        Pixels between two lines.
+        Additional pixels of a row.
     """
 
     def __init__(self, table: QTableView, spare: int) -> None:
@@ -27,7 +27,7 @@ class FontRowHeight(QObject):
         self._fit()
 
     def set_lines(self, lines: int) -> None:
-        """Another number of lines in each row."""
+        """Set the number of text lines in each row."""
         self._lines = lines
         self._fit()
 
@@ -44,22 +44,22 @@ class FontRowHeight(QObject):
 
 
 MEASURED = 100
-"""Rows, from the first one that is seen, that say how wide columns must be."""
+"""Number of visible rows whose contents determine the width of columns."""
 
 
 class ListTable(QTableView):
-    """One row can be chosen; no grid, no row numbers, compact rows.
+    """A table with single row selection, compact rows, without grid and row numbers.
 
     Parameters
     ----------
     dispensable
-        Columns that are left out, in this order, while there is no room for the names in the first one.
+        Columns that are hidden, in this order, while the names in the first one do not fit.
     """
 
     _unfitted = True
-    """Content or letters have changed while nobody saw the table."""
+    """Contents or font have changed while the table was hidden."""
     _measured = False
-    """Columns are as wide as their present content."""
+    """Columns have the width of their present contents."""
 
     def __init__(self, dispensable: tuple[int, ...] = ()) -> None:
         super().__init__()
@@ -81,13 +81,13 @@ class ListTable(QTableView):
         header.setSectionResizeMode(QHeaderView.ResizeMode.Interactive)
 
     def fit_columns(self) -> None:
-        """All columns as wide as their content, the first one as wide as there is room; once it is seen."""
+        """Fit the columns to their contents and stretch the first one, as soon as the table is visible."""
         self._measured, self._unfitted = False, not self.isVisible()
         if self.isVisible():
             self._fit()
 
     def measure_unseen(self) -> Iterator[None]:
-        """Measure what :meth:`fit_columns` will need once the table is seen, column by column."""
+        """Fit hidden columns to their contents, one at each step, before the table is visible."""
         self._measured = True  # unless the content changes meanwhile
         for column in self._left_out:
             self.setColumnHidden(column, False)
@@ -103,14 +103,14 @@ class ListTable(QTableView):
         self.stretch()
 
     def stretch(self) -> None:
-        """The first column as wide as there is room."""
+        """Stretch the first column."""
         header = self.horizontalHeader()
         taken = self._make_room()
         if header.count():
             header.resizeSection(0, max(_LEAST, self.viewport().width() - taken))
 
     def _make_room(self) -> int:
-        """Leave out what must be, bring back what need not; returns the width of the columns that stay."""
+        """Hide or show dispensable columns; returns the width of all but the first."""
         header = self.horizontalHeader()
         widths = {column: header.sectionSize(column) for column in self._by_content()} | self._left_out
         names = min(self.sizeHintForColumn(0), self.fontMetrics().horizontalAdvance("0" * _NAME))
@@ -143,6 +143,6 @@ class ListTable(QTableView):
             self._fit()
 
     def _by_content(self) -> list[int]:
-        """Columns that are as wide as their content."""
+        """Visible columns but the first."""
         header = self.horizontalHeader()
         return [at for at in range(1, header.count()) if not header.isSectionHidden(at)]

@@ -1,4 +1,4 @@
-"""Small pictures of solids without any graphics hardware: facets that face the eye, from back to front."""
+"""Thumbnails of meshes by the painter's algorithm, without OpenGL."""
 
 from collections.abc import Generator
 
@@ -11,19 +11,19 @@ from regolith_studio.geometry.mesh import Mesh
 
 OVERSAMPLING = 2
 _VIEW = np.array([[0.88, 0.48, 0.0], [-0.24, 0.43, 0.87], [0.42, -0.76, 0.49]])
-"""Rows: right, up and towards the eye; a look from above and in front."""
+"""Rows: right, up and towards the eye; from above and in front."""
 _LIGHT = np.array([-0.35, 0.55, 0.76])
 
 
-AT_ONCE = 300
-"""Triangles that are painted between two steps: 5 ms."""
+TRIANGLES_PER_STEP = 300
+"""Triangles that are drawn in one step, about 5 ms."""
 
 Painting = Generator[None, None, QPixmap]
 
 
-def picture_of(mesh: Mesh, colour: str, size: int = 96) -> QPixmap:
-    """The mesh as a lit solid on a clear ground, `size` pixels wide and high."""
-    painting = painted(mesh, colour, size)
+def thumbnail(mesh: Mesh, colour: str, size: int = 96) -> QPixmap:
+    """Shaded picture of a mesh on a transparent background, `size` pixels wide and high."""
+    painting = paint_thumbnail(mesh, colour, size)
     while True:
         try:
             next(painting)
@@ -32,17 +32,17 @@ def picture_of(mesh: Mesh, colour: str, size: int = 96) -> QPixmap:
             return made
 
 
-def painted(mesh: Mesh, colour: str, size: int = 96) -> Painting:
-    """:func:`picture_of` step by step, so that the window answers in between; returns the picture."""
+def paint_thumbnail(mesh: Mesh, colour: str, size: int = 96) -> Painting:
+    """:func:`thumbnail` step by step, so that events can be processed in between; returns the picture."""
     wide = size * OVERSAMPLING
     image = QImage(wide, wide, QImage.Format.Format_ARGB32_Premultiplied)
     image.fill(Qt.GlobalColor.transparent)
-    corners, shades = _seen(mesh)
+    corners, shades = _project(mesh)
     painter = QPainter()
     tones = [_tone(colour, level) for level in np.linspace(0.35, 1.15, 64)]
     places = np.clip(((shades + 1) / 2 * 63).astype(int), 0, 63)
-    for first in range(0, len(places), AT_ONCE):
-        part = slice(first, first + AT_ONCE)
+    for first in range(0, len(places), TRIANGLES_PER_STEP):
+        part = slice(first, first + TRIANGLES_PER_STEP)
         painter.begin(image)
         painter.setPen(Qt.PenStyle.NoPen)
         for triangle, place in zip(corners[part] * wide, places[part], strict=True):
@@ -54,8 +54,8 @@ def painted(mesh: Mesh, colour: str, size: int = 96) -> Painting:
     return QPixmap.fromImage(image.scaled(size, size, Qt.AspectRatioMode.KeepAspectRatio, smooth))
 
 
-def _seen(mesh: Mesh) -> tuple[FloatArray, FloatArray]:
-    """Corners of the triangles that face the eye, 0 to 1 from the top left, and how much light they get."""
+def _project(mesh: Mesh) -> tuple[FloatArray, FloatArray]:
+    """Corners of the front-facing triangles, from 0 to 1 and back to front, and their brightness."""
     view = np.linalg.qr(_VIEW.T)[0].T
     view *= np.sign((view * _VIEW).sum(axis=1, keepdims=True))
     middle = mesh.bounds.mean(axis=0)

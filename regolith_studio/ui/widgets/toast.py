@@ -1,4 +1,4 @@
-"""A sentence that appears in the corner of the window and goes away by itself."""
+"""Messages in the corner of the window that disappear after some seconds."""
 
 from PySide6.QtCore import QEvent, QObject, Qt, QTimer, Signal
 from PySide6.QtWidgets import (
@@ -16,18 +16,18 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.ui.translation import tr
 
-SECONDS_OF_A_NOTE = 6
-SECONDS_OF_A_PROBLEM = 20
+NOTE_SECONDS = 6
+PROBLEM_SECONDS = 20
 _MARGIN = 14
 
 
 class Toast(QFrame):
-    """Shows one sentence at a time at the lower right of its parent; the details only on demand.
+    """Shows one message at a time at the lower right of its parent, with details on demand.
 
-    ``said`` carries mood, sentence and details of everything that is said.
+    ``shown`` carries kind, sentence and details of every message.
     """
 
-    said = Signal(str, str, str)
+    shown = Signal(str, str, str)
 
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)
@@ -59,12 +59,12 @@ class Toast(QFrame):
         self.hide()
 
     def note(self, sentence: str, details: str = "") -> None:
-        """Say something that went well."""
-        self._say("note", sentence, details, SECONDS_OF_A_NOTE)
+        """Show a note."""
+        self._show_message("note", sentence, details, NOTE_SECONDS)
 
     def problem(self, sentence: str, details: str = "") -> None:
-        """Say something that went wrong."""
-        self._say("problem", sentence, details, SECONDS_OF_A_PROBLEM)
+        """Show an error."""
+        self._show_message("problem", sentence, details, PROBLEM_SECONDS)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         if event.type() == QEvent.Type.Resize and self.isVisible():
@@ -75,7 +75,7 @@ class Toast(QFrame):
         self._timer.stop()
         super().hideEvent(event)  # type: ignore[arg-type]
 
-    def _say(self, mood: str, sentence: str, details: str, seconds: int) -> None:
+    def _show_message(self, mood: str, sentence: str, details: str, seconds: int) -> None:
         self.setProperty("mood", mood)
         self.style().unpolish(self)
         self.style().polish(self)
@@ -87,7 +87,7 @@ class Toast(QFrame):
         self._place()
         self.raise_()
         self._timer.start(1000 * seconds)
-        self.said.emit(mood, sentence, details)
+        self.shown.emit(mood, sentence, details)
 
     def _place(self) -> None:
         parent = self.parentWidget()
@@ -103,7 +103,7 @@ class Toast(QFrame):
 
 
 def show_details(parent: QWidget, sentence: str, details: str) -> None:
-    """A dialog with the whole report, to be read and copied."""
+    """Show a dialog with the whole report, which can be copied."""
     dialog = QDialog(parent)
     dialog.setWindowTitle(tr("What happened"))
     dialog.resize(680, 380)

@@ -1,4 +1,4 @@
-"""A row of controls that folds where it has no room."""
+"""A row of controls that wraps onto a second line."""
 
 from collections.abc import Sequence
 
@@ -8,12 +8,12 @@ from PySide6.QtWidgets import QBoxLayout, QComboBox, QHBoxLayout, QWidget
 
 
 class WrappingRow(QWidget):
-    """Controls in a row, of which the last ones stand below the first ones where there is no room.
+    """Two groups of controls in a row, or below each other where the row is too narrow.
 
     Parameters
     ----------
     first, last
-        Boxes among the first ones take what room there is.
+        Combo boxes among them stretch.
     margins
         Left, top, right, bottom.
     """

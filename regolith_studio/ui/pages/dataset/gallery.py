@@ -10,7 +10,7 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import heading
-from regolith_studio.ui.widgets.thumbnails import Painting, painted
+from regolith_studio.ui.widgets.thumbnails import Painting, paint_thumbnail
 
 SIZE, CELL = 92, QSize(128, 136)
 """Of a picture, and of a picture with its words, in pixels."""
@@ -103,7 +103,7 @@ class RepresentativesGallery(QWidget):
         if self._painting is None:
             each = self._shown[self._next]
             colour = self._theme.polyhedron if each.coarsened else self._theme.particle
-            self._painting = painted(each.mesh, colour, SIZE)
+            self._painting = paint_thumbnail(each.mesh, colour, SIZE)
         try:
             next(self._painting)
         except StopIteration as end:

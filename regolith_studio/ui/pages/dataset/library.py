@@ -26,7 +26,7 @@ from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.labels import ElidedLabel, remark
-from regolith_studio.ui.widgets.thumbnails import picture_of
+from regolith_studio.ui.widgets.thumbnails import thumbnail
 
 PICTURE = 40
 LANE = "library"
@@ -140,7 +140,7 @@ class LibraryPanel(QWidget):
         if entry.mesh is not None:
             key = (entry.sha256, self._theme.polyhedron)
             if key not in self._pictures:
-                self._pictures[key] = QIcon(picture_of(entry.mesh, self._theme.polyhedron, PICTURE))
+                self._pictures[key] = QIcon(thumbnail(entry.mesh, self._theme.polyhedron, PICTURE))
             item.setIcon(0, self._pictures[key])
         return item
 

@@ -20,9 +20,9 @@ from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.session.solids import Solid
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import mark, tr
-from regolith_studio.ui.widgets.heat_table import remark_in_the_middle
+from regolith_studio.ui.widgets.heat_table import centred_remark
 from regolith_studio.ui.widgets.study_frame import StudyFrame
-from regolith_studio.ui.widgets.thumbnails import picture_of
+from regolith_studio.ui.widgets.thumbnails import thumbnail
 
 SIZE = 96
 LETTERS = 22
@@ -56,7 +56,7 @@ class PolyhedronGallery(QWidget):
         )
         self._parts = QWidget()
         self._stack = QStackedLayout(self._parts)
-        self._stack.addWidget(remark_in_the_middle(tr(WAITING)))
+        self._stack.addWidget(centred_remark(tr(WAITING)))
         self._stack.addWidget(self.table)
         self.frame = StudyFrame("solids", self._parts)
         self.frame.set_remark(tr("for the particle on screen and those after it, one row a loss function"))
@@ -101,7 +101,7 @@ class PolyhedronGallery(QWidget):
             item.setText("–")
             item.setToolTip(solid.outcome.problem or "")
             return item
-        item.setIcon(QIcon(picture_of(found.mesh, self._colour, SIZE)))
+        item.setIcon(QIcon(thumbnail(found.mesh, self._colour, SIZE)))
         item.setText(f"J {found.jaccard_distance:.3f}")
         worst = "\n".join(f"{tr(CATALOGUE[key].label)}: {error:.2%}" for key, error in found.errors.items())
         item.setToolTip(

@@ -10,7 +10,7 @@ from regolith_studio.studies.variations import beyond_chance, change_text, chang
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.translation.sentences import retold
-from regolith_studio.ui.widgets.heat_table import keep_legible, numbers_table, remark_in_the_middle
+from regolith_studio.ui.widgets.heat_table import centred_remark, keep_legible, numbers_table
 from regolith_studio.ui.widgets.table import FontRowHeight
 
 
@@ -26,7 +26,7 @@ class SensitivityTable(QWidget):
         self.table.setWordWrap(False)
         FontRowHeight(self.table, 10)
         self._stack = QStackedLayout(self)
-        self._stack.addWidget(remark_in_the_middle(placeholder))
+        self._stack.addWidget(centred_remark(placeholder))
         self._stack.addWidget(self.table)
 
     def show_study(self, study: CoarseningStudy | None) -> None:

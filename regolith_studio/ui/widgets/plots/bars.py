@@ -1,4 +1,4 @@
-"""Grouped bars: some series over the same few categories."""
+"""Grouped bar plots."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,15 +14,15 @@ from regolith_studio.ui.widgets.plots.base import Numbers, Plot
 
 GAP = 3
 """Pixels between the names of two categories."""
-LEAST_POINTS = 6.0
-"""Size of the smallest letters."""
-LEAST_SHARE = 0.75
-"""Size of the smallest letters of names that stand on one line, in units of the usual size."""
+MIN_POINTS = 6.0
+"""Smallest font size."""
+MIN_SCALE = 0.75
+"""Smallest font size of names on a single line, as a share of the usual size."""
 
 
 @dataclass(frozen=True)
 class BarSeries:
-    """One colour of bars.
+    """The bars of one colour.
 
     Parameters
     ----------
@@ -33,9 +33,9 @@ class BarSeries:
     values
         One for each category; NaN for none.
     faint
-        Drawn half transparent: of a result that is about to be replaced.
+        Drawn half transparent, for a result that is being replaced.
     bounds
-        A line across each bar: what cannot be undercut. Empty for none.
+        Lower bound of each value, drawn as a line across its bar; empty for none.
     """
 
     label: str
@@ -46,7 +46,7 @@ class BarSeries:
 
 
 class BarPlot(Plot):
-    """Bars from zero, side by side within each category, with their values when pointed at."""
+    """Bars from zero, side by side within each category; the tool tip shows values."""
 
     def __init__(self, x: str, y: str, placeholder: str, unit: str = "%") -> None:
         self._categories: tuple[str, ...] = ()
@@ -58,13 +58,13 @@ class BarPlot(Plot):
 
     @property
     def series(self) -> tuple[BarSeries, ...]:
-        """What is drawn."""
+        """The bars that are drawn."""
         return self._series
 
     def set_bars(
         self, categories: Sequence[str], series: Sequence[BarSeries], short: Sequence[str] = ()
     ) -> None:
-        """Draw these instead; `short` names the categories where there is no room for the long names."""
+        """Draw other bars; `short` has the category names for narrow plots."""
         self._categories, self._series = tuple(categories), tuple(series)
         self._short = tuple(short) or self._categories
         self.set_empty(not any(np.isfinite(each.values).any() for each in series))
@@ -119,14 +119,14 @@ class BarPlot(Plot):
         self._name_categories()
 
     def _name_categories(self) -> None:
-        """Below the bars, by the names that fit, in smaller letters where none do."""
+        """Set the category names: long or short ones, in a smaller font or on two lines if necessary."""
         font = self.small_font()
         room = (self.width() - self.axes["left"].width()) / max(1, len(self._categories)) - GAP
         names = self._categories if _widest(self._categories, font) < room else self._short
-        least = max(LEAST_POINTS, LEAST_SHARE * font.pointSizeF())
+        least = max(MIN_POINTS, MIN_SCALE * font.pointSizeF())
         if _widest(names, _shrunk(names, font, room, least)) > room:  # every other name on a second line
             names = tuple(f"\n{name}" if at % 2 else name for at, name in enumerate(names))
-            room, least = 2 * room, LEAST_POINTS
+            room, least = 2 * room, MIN_POINTS
         self.axes["bottom"].setTickFont(_shrunk(names, font, room, least))
         self.axes["bottom"].setTicks([list(enumerate(names))])
 
@@ -154,7 +154,7 @@ class BarPlot(Plot):
 
 
 def _shrunk(names: Sequence[str], font: QFont, room: float, least: float) -> QFont:
-    """Letters in which each name has room, but none below `least` points."""
+    """The largest font in which each name fits, at least `least` points."""
     found = QFont(font)
     while _widest(names, found) > room and found.pointSizeF() > least:
         found.setPointSizeF(max(least, found.pointSizeF() - 0.5))

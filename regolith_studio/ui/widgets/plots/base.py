@@ -1,4 +1,4 @@
-"""A plot with a legend above it, labelled axes, and a sentence where there is nothing to show yet."""
+"""Base class of plots: labelled axes, legend, placeholder, and a menu that saves figure and numbers."""
 
 from collections.abc import Callable, Iterable
 from pathlib import Path
@@ -23,16 +23,16 @@ from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import unbroken
 from regolith_studio.ui.widgets.plots.canvas import CountAxis, FittedAxis, PlotCanvas
-from regolith_studio.ui.widgets.plots.export import DRAWN, plain_text, save_figure, save_numbers
+from regolith_studio.ui.widgets.plots.export import FIGURE_WRITERS, plain_text, save_figure, save_numbers
 
 Numbers = tuple[tuple[str, ...], list[tuple[str | float, ...]]]
-"""Names of columns, and rows."""
+"""Column names, and rows."""
 
 
 class Plot(QWidget):
     """Axes, grid, legend and placeholder; subclasses draw into ``self.canvas``.
 
-    A click with the right button offers to save the figure, and its numbers where :meth:`numbers` has any.
+    The context menu saves the figure, and its numbers if :meth:`numbers` has any.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ class Plot(QWidget):
         self.theme: Theme = current_theme()
         self._painted: Theme | None = None
         self._labels = (x, y)
-        self._letters = 0.0
+        self._point_size = 0.0
         self._legend_entries: list[tuple[str, str]] = []
         self.count_axis = CountAxis("bottom")
         self.axes = {"bottom": self.count_axis, "left": FittedAxis("left")}
@@ -62,7 +62,7 @@ class Plot(QWidget):
         self._placeholder.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self._placeholder.setWordWrap(True)
         self._placeholder.setMargin(12)
-        self.canvas.scene().sigMouseMoved.connect(self._point)
+        self.canvas.scene().sigMouseMoved.connect(self._show_tip)
         self._arrange()
         self.set_theme(self.theme)
         self.set_empty(True)
@@ -84,19 +84,19 @@ class Plot(QWidget):
         self._stack.addWidget(self._placeholder)
         self._stack.addWidget(page)
 
-    def set_empty(self, empty: bool, sentence: str = "") -> None:
-        """Show the placeholder, with another sentence if one is given, or the plot."""
-        if sentence:
-            self._placeholder.setText(sentence)
+    def set_empty(self, empty: bool, placeholder: str = "") -> None:
+        """Show the placeholder, with another text if one is given, or the plot."""
+        if placeholder:
+            self._placeholder.setText(placeholder)
         self._stack.setCurrentIndex(0 if empty else 1)
 
     def set_remark(self, text: str) -> None:
-        """A few words at the right of the legend; left out where there is no room for them."""
+        """Set the text at the right of the legend, which is hidden where it does not fit."""
         self.remark.setText(text)
         self._make_room()
 
     def hasHeightForWidth(self) -> bool:
-        """No: its legend wraps, but what stands beside it must not be squeezed for that."""
+        """False: layouts would shrink the widgets beside a plot when its legend wraps."""
         return False
 
     def resizeEvent(self, event: QResizeEvent) -> None:
@@ -108,7 +108,7 @@ class Plot(QWidget):
         self.remark.setVisible(needed <= self.width())
 
     def _legend_width(self) -> int:
-        """Of the legend on one line; it wraps between entries where there is less."""
+        """Width of the legend on a single line; it wraps between entries."""
         metrics = self.legend.fontMetrics()
         words = [plain_text(text) for _, text in self._legend_entries]
         return sum(metrics.horizontalAdvance(f"MM {text}") for text in words)
@@ -118,7 +118,7 @@ class Plot(QWidget):
         return self._stack.currentIndex() == 0
 
     def set_legend(self, entries: list[tuple[str, str]]) -> None:
-        """Pairs of colour and rich text."""
+        """Set the entries of the legend, pairs of colour and rich text."""
         self._legend_entries = entries
         self.legend.setText(
             "&nbsp;&nbsp; ".join(
@@ -129,7 +129,7 @@ class Plot(QWidget):
         self._make_room()
 
     def set_labels(self, x: str, y: str) -> None:
-        """Name the axes anew."""
+        """Set the labels of the axes."""
         self._labels = (x, y)
         font = QFont(self.font())
         font.setPointSizeF(font.pointSizeF() - 0.5)
@@ -137,7 +137,7 @@ class Plot(QWidget):
             self.axes[side].set_label_text(text, self.theme.muted, font)
 
     def small_font(self) -> QFont:
-        """Of the numbers at the axes."""
+        """Font of the tick labels."""
         small = QFont(self.font())
         small.setPointSizeF(max(6.0, self.font().pointSizeF() - 1.0))
         return small
@@ -152,18 +152,18 @@ class Plot(QWidget):
             axis.setPen(pg.mkPen(theme.border))
             axis.setTextPen(pg.mkPen(theme.muted))
         self.axes["left"].setGrid(70 if theme.dark else 55)
-        self._take_letters()
+        self._set_fonts()
         self.redraw()
 
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
-        if event.type() == QEvent.Type.FontChange and self.font().pointSizeF() != self._letters:
-            self._take_letters()
+        if event.type() == QEvent.Type.FontChange and self.font().pointSizeF() != self._point_size:
+            self._set_fonts()
             self.redraw()
 
-    def _take_letters(self) -> None:
-        """At the axes, in the size that the plot has."""
-        self._letters = self.font().pointSizeF()
+    def _set_fonts(self) -> None:
+        """Set the fonts of the axes from the font of the plot."""
+        self._point_size = self.font().pointSizeF()
         small = self.small_font()
         for axis in self.axes.values():
             axis.set_tick_font(small)
@@ -172,34 +172,34 @@ class Plot(QWidget):
         self.set_labels(*self._labels)
 
     def value_at(self, place: QPointF) -> str:  # noqa: ARG002
-        """What is drawn at a place of the scene, in words; empty where there is nothing."""
+        """Tool tip at a position of the scene; empty for none."""
         return ""
 
-    def _point(self, place: QPointF) -> None:
+    def _show_tip(self, place: QPointF) -> None:
         words = self.value_at(place)
         if self.canvas.toolTip() != words:
             QToolTip.hideText()
             self.canvas.setToolTip(words)
 
     def redraw(self) -> None:
-        """Draw everything again, because the colours have changed."""
+        """Draw everything again, after the theme has changed."""
 
     def numbers(self) -> Numbers:
-        """What is drawn, as a table; no columns where a plot cannot say it in numbers."""
+        """The data as a table; no columns if a plot has none."""
         return (), []
 
     def contextMenuEvent(self, event: QContextMenuEvent) -> None:
-        """Offer the figure and its numbers as files."""
+        """Show :meth:`menu`, unless the plot is empty."""
         if not self.is_empty():
             self.menu().popup(event.globalPos())
 
     def menu(self) -> QMenu:
-        """What can be done with the plot."""
+        """The context menu."""
         menu = QMenu(self)
         menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        menu.addAction(tr("Save &figure …"), self._ask_for_figure)
+        menu.addAction(tr("Save &figure …"), self._choose_figure_file)
         if self.numbers()[0]:
-            menu.addAction(tr("Save &numbers …"), self._ask_for_numbers)
+            menu.addAction(tr("Save &numbers …"), self._choose_numbers_file)
         return menu
 
     def save_figure(self, path: Path) -> None:
@@ -208,14 +208,14 @@ class Plot(QWidget):
         Raises
         ------
         InputError
-            If the ending is another.
+            If the suffix is another.
         FileError
             If the file cannot be written.
         """
         save_figure(self._page, path)
 
     def save_numbers(self, path: Path) -> None:
-        """Write what is drawn as a CSV file.
+        """Write the data as a CSV file.
 
         Raises
         ------
@@ -224,10 +224,10 @@ class Plot(QWidget):
         """
         save_numbers(self.accessibleName() or self.objectName(), *self.numbers(), path)
 
-    def _ask_for_figure(self) -> None:
-        self._save(tr("Save figure"), DRAWN, self.save_figure)
+    def _choose_figure_file(self) -> None:
+        self._save(tr("Save figure"), FIGURE_WRITERS, self.save_figure)
 
-    def _ask_for_numbers(self) -> None:
+    def _choose_numbers_file(self) -> None:
         self._save(tr("Save numbers"), (".csv",), self.save_numbers)
 
     def _save(self, title: str, endings: Iterable[str], write: Callable[[Path], None]) -> None:
@@ -245,6 +245,6 @@ class Plot(QWidget):
             QMessageBox.warning(self, title, str(error))
 
     def pen(self, colour: str, width: float = 1.0, dash: bool = False) -> object:
-        """A line of this colour."""
+        """A solid or dashed pen."""
         style = Qt.PenStyle.DashLine if dash else Qt.PenStyle.SolidLine
         return pg.mkPen(QColor(colour), width=width, style=style)

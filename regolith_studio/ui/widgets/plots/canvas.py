@@ -69,7 +69,7 @@ class PlotCanvas(pg.GraphicsView):  # type: ignore[misc]
         self._whole.setLayout(grid)
 
     def getViewBox(self) -> pg.ViewBox:
-        """Where items are drawn; knows how their coordinates lie in the scene."""
+        """The view box, which maps between coordinates of items and of the scene."""
         return self._box
 
     def getAxis(self, side: str) -> pg.AxisItem:
@@ -77,14 +77,14 @@ class PlotCanvas(pg.GraphicsView):  # type: ignore[misc]
         return self._axes[side]
 
     def addItem(self, item: Any, ignoreBounds: bool = False) -> None:
-        """Draw an item; one with `ignoreBounds` does not move the axes."""
+        """Add an item; with `ignoreBounds` it does not change the range of the axes."""
         self._items.append(item)
         self._box.addItem(item, ignoreBounds=ignoreBounds)
         if hasattr(item, "setLogMode"):
             item.setLogMode(*self._log)
 
     def removeItem(self, item: Any) -> None:
-        """Draw an item no longer; nothing where it was not drawn."""
+        """Remove an item, if it is there."""
         if item in self._items:
             self._items.remove(item)
             self._box.removeItem(item)
@@ -113,32 +113,32 @@ class PlotCanvas(pg.GraphicsView):  # type: ignore[misc]
         self._box.enableAutoRange()
 
     def setRange(self, *ranges: Any, **options: Any) -> None:
-        """What is seen, as :meth:`pyqtgraph.ViewBox.setRange` takes it."""
+        """Set the visible range, see :meth:`pyqtgraph.ViewBox.setRange`."""
         self._box.setRange(*ranges, **options)
 
     def setXRange(self, low: float, high: float, padding: float | None = None) -> None:
-        """What is seen along x."""
+        """Set the visible range of x."""
         self._box.setXRange(low, high, padding=padding)
 
     def setYRange(self, low: float, high: float, padding: float | None = None) -> None:
-        """What is seen along y."""
+        """Set the visible range of y."""
         self._box.setYRange(low, high, padding=padding)
 
     def viewRange(self) -> list[list[float]]:
-        """Ends of x and ends of y."""
+        """The visible ranges of x and y."""
         seen: list[list[float]] = self._box.viewRange()
         return seen
 
     def enableAutoRange(self) -> None:
-        """Let both axes follow the items."""
+        """Let both axes follow the data."""
         self._box.enableAutoRange()
 
     def setLimits(self, **limits: float | None) -> None:
-        """How far the axes may go, as :meth:`pyqtgraph.ViewBox.setLimits` takes it."""
+        """Set the limits of the axes, see :meth:`pyqtgraph.ViewBox.setLimits`."""
         self._box.setLimits(**limits)
 
     def setAspectLocked(self, locked: bool) -> None:
-        """Whether lengths along x and y are drawn alike."""
+        """Set whether x and y have the same scale."""
         self._box.setAspectLocked(locked)
 
 
@@ -184,12 +184,12 @@ class FittedAxis(pg.AxisItem):  # type: ignore[misc]
 
 
 class CountAxis(FittedAxis):
-    """An axis whose ticks lie at whole numbers while :attr:`whole` is set, and anywhere otherwise."""
+    """An axis with ticks at integers only while :attr:`whole` is set."""
 
     whole = False
 
     def tickSpacing(self, low: float, high: float, length: float) -> list[tuple[float, float]]:
-        """Spacings and offsets of major and minor ticks, none below one where only whole numbers exist."""
+        """Spacings and offsets of major and minor ticks, none below one while :attr:`whole` is set."""
         levels: list[tuple[float, float]] = super().tickSpacing(low, high, length)
         if not (self.whole and levels):
             return levels

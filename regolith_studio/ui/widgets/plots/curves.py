@@ -29,7 +29,7 @@ class CurveItems:
     Parameters
     ----------
     log_y
-        Whether heights are drawn as their logarithms.
+        Whether the y axis is logarithmic.
     """
 
     def __init__(self, canvas: PlotCanvas, log_y: bool) -> None:
@@ -39,22 +39,22 @@ class CurveItems:
         canvas.addItem(self.line)
 
     def draw(self, x: Sequence[float], y: Sequence[float], pen: object, symbols: str = "") -> None:
-        """Draw these points instead.
+        """Draw other points.
 
         Parameters
         ----------
         x, y
-            A line is broken where one of them is not finite, or has no place on the axes.
+            The line is interrupted where one is not finite or, on a logarithmic axis, not positive.
         pen
-            Of the line; ``None`` for no line.
+            Of the line; ``None`` for none.
         symbols
-            Their colour; none where it is empty.
+            Colour of the symbols; empty for none.
         """
-        across, up = self._places(x, y)
+        across, up = self._coordinates(x, y)
         self.line.setData(across, up, pen=pen)
         self.line.setVisible(pen is not None)
         if not symbols:
-            self._forget_points()
+            self._remove_points()
             return
         if self.points is None:
             self.points = pg.ScatterPlotItem(size=SYMBOL, pen=None, antialias=True)
@@ -63,17 +63,17 @@ class CurveItems:
         self.points.setData(across[seen], up[seen], brush=QColor(symbols))
 
     def remove(self) -> None:
-        """Draw the curve no longer."""
+        """Remove the curve from the canvas."""
         self._canvas.removeItem(self.line)
-        self._forget_points()
+        self._remove_points()
 
-    def _forget_points(self) -> None:
+    def _remove_points(self) -> None:
         if self.points is not None:
             self._canvas.removeItem(self.points)
             self.points = None
 
-    def _places(self, x: Sequence[float], y: Sequence[float]) -> tuple[FloatArray, FloatArray]:
-        """On the axes; none at all where no point has one: an axis would follow nothing."""
+    def _coordinates(self, x: Sequence[float], y: Sequence[float]) -> tuple[FloatArray, FloatArray]:
+        """Coordinates on the axes; empty if no point is finite, as the automatic range needs one."""
         across, up = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
         if self._log_y:
             up = np.log10(np.where(up > 0.0, up, np.nan))
@@ -83,7 +83,7 @@ class CurveItems:
 
 @dataclass(frozen=True)
 class PlotCurve:
-    """One line through points.
+    """A line through points.
 
     Parameters
     ----------
@@ -111,12 +111,12 @@ class PlotCurve:
 
 
 def _plain_decades(values: Sequence[float], _scale: float, _spacing: float) -> list[str]:
-    """Numbers at a logarithmic axis, as people write them."""
+    """Tick labels of a logarithmic axis as plain numbers."""
     return [f"{10.0**value:.3g}" for value in values]
 
 
 class CurvePlot(Plot):
-    """Curves that grow: the axes follow what is drawn; a point tells its values when pointed at.
+    """Curves with automatic axes; the tool tip shows the values of a point.
 
     Parameters
     ----------
@@ -138,11 +138,11 @@ class CurvePlot(Plot):
 
     @property
     def curves(self) -> tuple[PlotCurve, ...]:
-        """What is drawn."""
+        """The curves that are drawn."""
         return self._curves
 
     def set_curves(self, curves: Sequence[PlotCurve]) -> None:
-        """Draw these instead."""
+        """Draw other curves."""
         self._curves = tuple(curves)
         self.set_empty(not any(curve.x for curve in curves))
         self.redraw()
@@ -156,7 +156,7 @@ class CurvePlot(Plot):
         return (tr("curve"), *self._labels), rows
 
     def set_marker(self, x: float | None) -> None:
-        """A vertical line at `x`, or none."""
+        """Draw a vertical line at `x`, or remove it."""
         self._marker = x
         self._draw_marker()
 
@@ -178,7 +178,7 @@ class CurvePlot(Plot):
         self._draw_marker()
 
     def value_at(self, place: QPointF) -> str:
-        """The nearest point of a curve, in words; empty if it is far."""
+        """Label and values of the nearest point of a curve; empty if it is far."""
         view = self.canvas.getViewBox()
         best, words = HOVER_DISTANCE, ""
         for curve in self._curves:

@@ -1,4 +1,4 @@
-"""A plot as a file: the figure as PNG, SVG or PDF, and its numbers as CSV."""
+"""Saving plots: the figure as PNG, SVG or PDF, its data as CSV."""
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -22,23 +22,23 @@ from regolith_studio.io.atomic import write_bytes
 from regolith_studio.io.tables import Column, Table, csv_text
 
 PIXELS = 3
-"""Pixels of a PNG for one on the screen."""
+"""Pixels of a PNG for each on the screen."""
 POINTS_AN_INCH = 72
 
 
 def save_figure(widget: QWidget, path: Path) -> None:
-    """Write what the widget shows, in the form that the file's ending asks for.
+    """Write the widget as an image in the format of the file's suffix.
 
     Raises
     ------
     InputError
-        If the ending is none of ``.png``, ``.svg`` and ``.pdf``.
+        If the suffix is none of ``.png``, ``.svg`` and ``.pdf``.
     FileError
         If the file cannot be written.
     """
-    if path.suffix.lower() not in DRAWN:
-        raise InputError(f"Figures are saved as {', '.join(DRAWN)}, not as {path.suffix or 'that'}.")
-    write_bytes(path, DRAWN[path.suffix.lower()](widget))
+    if path.suffix.lower() not in FIGURE_WRITERS:
+        raise InputError(f"Figures are saved as {', '.join(FIGURE_WRITERS)}, not as {path.suffix or 'that'}.")
+    write_bytes(path, FIGURE_WRITERS[path.suffix.lower()](widget))
 
 
 def save_numbers(
@@ -56,7 +56,7 @@ def save_numbers(
 
 
 def plain_text(rich: str) -> str:
-    """The letters of rich text, without sub- and superscripts' tags."""
+    """Rich text without tags."""
     return QTextDocumentFragment.fromHtml(rich).toPlainText()
 
 
@@ -90,7 +90,7 @@ def _pdf(widget: QWidget) -> bytes:
 
 
 def _paint(widget: QWidget, device: QPaintDevice) -> None:
-    """Draw the widget on plain ground, points as shapes and not as pixels of the screen."""
+    """Draw the widget on its base colour, with symbols as vector shapes."""
     painter = QPainter(device)
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
     painter.fillRect(widget.rect(), widget.palette().base())
@@ -111,7 +111,7 @@ def _paint(widget: QWidget, device: QPaintDevice) -> None:
 
 
 class _Bytes(QBuffer):
-    """A buffer that is open inside a ``with``."""
+    """A buffer that a ``with`` statement opens and closes."""
 
     def __enter__(self) -> "_Bytes":
         self.open(QIODevice.OpenModeFlag.WriteOnly)
@@ -121,5 +121,5 @@ class _Bytes(QBuffer):
         self.close()
 
 
-DRAWN: dict[str, Callable[[QWidget], bytes]] = {".png": _png, ".svg": _svg, ".pdf": _pdf}
-"""Who draws which kind of file."""
+FIGURE_WRITERS: dict[str, Callable[[QWidget], bytes]] = {".png": _png, ".svg": _svg, ".pdf": _pdf}
+"""Function that encodes a widget, by file suffix."""

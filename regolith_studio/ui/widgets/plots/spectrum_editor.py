@@ -1,4 +1,4 @@
-"""A spectrum whose bars can be dragged: amplitudes of the degrees on a logarithmic scale."""
+"""A power spectrum whose bars can be dragged, on a logarithmic scale."""
 
 import math
 
@@ -12,16 +12,16 @@ from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.plots.base import Numbers, Plot
 
 THROTTLE = 30
-"""Milliseconds between two announcements while a bar is dragged; the last is always made."""
-LOWEST, HIGHEST = -3.0, 1.8
-"""Decimal logarithms of the amplitudes in per cent that can be reached."""
+"""Minimum milliseconds between two ``valueChanged`` while a bar is dragged; the last is always emitted."""
+LOG_MIN, LOG_MAX = -3.0, 1.8
+"""Range of the decimal logarithm of amplitudes in per cent."""
 KEY_FACTOR = 1.1
 
 
 class SpectrumEditor(Plot):
-    """Bars of sqrt(A_l) / mu in per cent, l = 1, 2, ...; drag them, or use the arrow keys.
+    """Bars of sqrt(A_l) / mu in per cent, l = 1, 2, ...; edited by dragging or by the arrow keys.
 
-    ``valueChanged`` is for changes by the user only. Before a first :meth:`setValue` it is empty.
+    ``valueChanged`` is emitted for changes by the user only.
     """
 
     valueChanged = Signal(object)  # noqa: N815
@@ -35,7 +35,7 @@ class SpectrumEditor(Plot):
         self._items: list[pg.BarGraphItem] = []
         super().__init__(tr("Degree l"), tr("Amplitude √A<sub>l</sub> / μ [%]"), placeholder)
         self._timer = QTimer(self, interval=THROTTLE, singleShot=True)
-        self._timer.timeout.connect(self._announce)
+        self._timer.timeout.connect(self._emit_value)
         self._due = False
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setAccessibleName(
@@ -44,11 +44,11 @@ class SpectrumEditor(Plot):
         self.canvas.viewport().installEventFilter(self)
 
     def value(self) -> NDArray[np.float64]:
-        """Amplitudes as shares of the mean radius, shape (l_max,)."""
+        """Amplitudes relative to the mean radius, shape (l_max,)."""
         return self._values.copy()
 
     def setValue(self, values: NDArray[np.float64], editable: bool = True) -> None:
-        """Show amplitudes, also as those to return to; announces nothing."""
+        """Show amplitudes, to which :meth:`reset` returns; emits no signal."""
         self._values, self._fitted = np.array(values, dtype=np.float64), np.array(values, dtype=np.float64)
         self._editable = editable
         self._chosen = min(self._chosen, max(0, len(values) - 1))
@@ -62,11 +62,11 @@ class SpectrumEditor(Plot):
         self.redraw()
 
     def is_changed(self) -> bool:
-        """Whether a bar stands elsewhere than it was set."""
+        """Whether the user has changed a bar."""
         return bool((self._values != self._fitted).any())
 
     def reset(self) -> None:
-        """Back to what was set."""
+        """Return to the amplitudes of :meth:`setValue`."""
         if self.is_changed():
             self._values = self._fitted.copy()
             self._changed()
@@ -83,28 +83,28 @@ class SpectrumEditor(Plot):
             (self._fitted, 0.86, self.theme.border),
             (self._values, 0.62, self.theme.fit),
         ):
-            heights = np.log10(np.maximum(100 * values, 1e-12)) - LOWEST
+            heights = np.log10(np.maximum(100 * values, 1e-12)) - LOG_MIN
             bars = pg.BarGraphItem(
                 x=degrees,
-                y0=LOWEST,
-                height=np.clip(heights, 0.0, HIGHEST - LOWEST),
+                y0=LOG_MIN,
+                height=np.clip(heights, 0.0, LOG_MAX - LOG_MIN),
                 width=width,
                 brush=QColor(colour),
                 pen=pg.mkPen(None),
             )
             self.canvas.addItem(bars)
             self._items.append(bars)
-        self._dress(len(degrees))
+        self._draw_axes(len(degrees))
 
-    def _dress(self, count: int) -> None:
-        decades = range(math.ceil(LOWEST), math.floor(HIGHEST) + 1)
+    def _draw_axes(self, count: int) -> None:
+        decades = range(math.ceil(LOG_MIN), math.floor(LOG_MAX) + 1)
         self.canvas.getAxis("left").setTicks([[(decade, f"{10.0**decade:g}") for decade in decades]])
         step = 1 if count <= 15 else 5
         self.canvas.getAxis("bottom").setTicks(
             [[(d, str(d)) for d in range(1, count + 1) if d % step == 0 or d == 1]]
         )
         self.canvas.setRange(
-            xRange=(0.3, count + 0.7), yRange=(LOWEST, HIGHEST), padding=0.0, disableAutoRange=True
+            xRange=(0.3, count + 0.7), yRange=(LOG_MIN, LOG_MAX), padding=0.0, disableAutoRange=True
         )
         entries = [(self.theme.fit, tr("drag the bars") if self._editable else tr("as fitted"))]
         self.set_legend([*entries, (self.theme.border, tr("as fitted"))] if self.is_changed() else entries)
@@ -159,14 +159,14 @@ class SpectrumEditor(Plot):
         return int(np.clip(round(self._seen(place).x()) - 1, 0, len(self._values) - 1))
 
     def _drag_to(self, place: QPointF) -> None:
-        self._put(10.0 ** float(np.clip(self._seen(place).y(), LOWEST, HIGHEST)) / 100)
+        self._put(10.0 ** float(np.clip(self._seen(place).y(), LOG_MIN, LOG_MAX)) / 100)
 
     def _seen(self, place: QPointF) -> QPointF:
         seen: QPointF = self.canvas.getViewBox().mapSceneToView(self.canvas.mapToScene(place.toPoint()))
         return seen
 
     def _put(self, value: float) -> None:
-        self._values[self._chosen] = np.clip(value, 10.0 ** (LOWEST - 2), 10.0 ** (HIGHEST - 2))
+        self._values[self._chosen] = np.clip(value, 10.0 ** (LOG_MIN - 2), 10.0 ** (LOG_MAX - 2))
         self.set_remark(self._words())
         self._changed()
 
@@ -177,9 +177,9 @@ class SpectrumEditor(Plot):
         self.redraw()
         self._due = True
         if not self._timer.isActive():
-            self._announce()
+            self._emit_value()
 
-    def _announce(self) -> None:
+    def _emit_value(self) -> None:
         if self._due:
             self._due = False
             self._timer.start()
@@ -187,6 +187,6 @@ class SpectrumEditor(Plot):
 
     def _finish(self) -> None:
         self._timer.stop()
-        self._announce()
+        self._emit_value()
         self._timer.stop()
         self.editingFinished.emit()
