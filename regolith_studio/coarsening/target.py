@@ -88,13 +88,8 @@ class Target:
         """
         unit, centre, scale = _normalised(mesh)
         axes = principal_axes(unit)
-<<<<<<< HEAD
         aligned = Mesh(np.round(unit.vertices @ axes.T / COORDINATE_STEP) * COORDINATE_STEP, unit.faces)
         facts = ShapeCache(aligned)
-=======
-        aligned = Mesh(np.round(unit.vertices @ axes.T / GRAIN) * GRAIN, unit.faces)
-        facts = ShapeCache(aligned)
->>>>>>> 237acc3 (Merge harmonics into modules of one idea each and delete what nothing uses)
         descriptors = Descriptors({key: CATALOGUE[key].compute(facts) for key in DEFAULT_KEYS})
         target = cls(aligned, centre, axes, scale, descriptors, facts.box)
         _check_simple(target.rays)

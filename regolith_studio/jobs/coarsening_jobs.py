@@ -104,7 +104,7 @@ class CoarsenedParticle:
 
 
 def coarsen_one(mesh: Mesh, request: CoarseningRequest, particle_index: int = 0) -> Steps:
-    """Coarsen `mesh` as ordered; partial results are ``CoarseningProgress``, the result ``CoarseningResult``."""
+    """Coarsen `mesh` as requested; yields ``CoarseningProgress``, returns a ``CoarseningResult``."""
     yield Started("Coarsening")
     return (yield from _run_coarsening(mesh, request, particle_index))
 
