@@ -7,8 +7,14 @@ from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
 from regolith_studio.readers.formats import MeshFormat, ParsedMesh
-from regolith_studio.readers.ply_header import Header, read_header
-from regolith_studio.readers.ply_rows import Columns, ascii_columns, binary_columns, trimmed_rows
+from regolith_studio.readers.ply_elements import (
+    Columns,
+    Header,
+    ascii_columns,
+    binary_columns,
+    read_header,
+    trimmed_rows,
+)
 from regolith_studio.readers.polygons import triangulated
 
 _CORNERS = ("vertex_indices", "vertex_index", "vertex_indexes")

@@ -13,6 +13,7 @@ from regolith_studio.readers.number_rows import float_or_nan
 from regolith_studio.readers.units import unit_named
 from regolith_studio.readers.volume_formats import VolumeFormat
 from regolith_studio.readers.voxels.header import (
+    MIRRORED,
     OpenVolume,
     Sizes,
     VoxelHeader,
@@ -38,7 +39,6 @@ _TYPES = {
     "MET_DOUBLE": "f8",
 }
 _TRUE = ("true", "t", "1", "yes")
-_MIRRORED = "The axes of the volume are left-handed: particles come in as their mirror images."
 
 
 def open_metaimage(path: Path, _options: Mapping[str, Any]) -> OpenVolume:
@@ -54,7 +54,7 @@ def open_metaimage(path: Path, _options: Mapping[str, Any]) -> OpenVolume:
     stored = _stored_type(fields)
     sizes = _sizes(fields)
     size, unit = _voxel_size(fields, sizes)
-    notes = (_MIRRORED,) if _is_mirrored(fields) else ()
+    notes = (MIRRORED,) if _is_mirrored(fields) else ()
     header = VoxelHeader(three_dimensions(tuple(sizes[::-1])), voxel_type(stored), size, unit, None, notes)
     source, start = _data_file(path, fields, body)
     if fields.get("compresseddata", "").lower() in _TRUE:

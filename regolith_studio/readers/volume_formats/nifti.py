@@ -1,10 +1,9 @@
 """NIfTI-1 and NIfTI-2 in one file, plain (.nii) or gzipped (.nii.gz)."""
 
-import struct
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +11,7 @@ from numpy.typing import NDArray
 from regolith_studio.errors import FileError
 from regolith_studio.readers.volume_formats import VolumeFormat
 from regolith_studio.readers.voxels.header import (
+    MIRRORED,
     Kind,
     OpenVolume,
     VoxelHeader,
@@ -22,7 +22,6 @@ from regolith_studio.readers.voxels.header import (
 from regolith_studio.readers.voxels.stored import DeflatedVoxels, InflatedStream, PlainVoxels
 
 _GZIP = b"\x1f\x8b"
-_LENGTHS = {348: 1, 540: 2}
 _TYPES = {
     2: "u1", 4: "i2", 8: "i4", 16: "f4", 64: "f8", 256: "i1", 512: "u2", 768: "u4", 1024: "i8", 1280: "u8",
 }  # fmt: skip
@@ -36,26 +35,25 @@ _REFUSED = {
     2304: "colours",
 }
 _UNITS = {1: "m", 2: "mm", 3: "um"}
-_MIRRORED = "The axes of the volume are left-handed: particles come in as their mirror images."
 _LABELS = 1002
 """Intent code of a volume of labels."""
 
 
-@dataclass(frozen=True)
-class NiftiHeader:
-    """The fields of a header that are used, of either version."""
+_NIFTI1 = {
+    "dim": (40, "8i2"), "intent": (68, "i2"), "datatype": (70, "i2"), "pixdim": (76, "8f4"),
+    "offset": (108, "f4"), "slope": (112, "f4"), "intercept": (116, "f4"), "units": (123, "u1"),
+    "forms": (252, "2i2"), "rows": (280, "12f4"),
+}  # fmt: skip
+_NIFTI2 = {
+    "datatype": (12, "i2"), "dim": (16, "8i8"), "pixdim": (104, "8f8"), "offset": (168, "i8"),
+    "slope": (176, "f8"), "intercept": (184, "f8"), "forms": (344, "2i4"), "rows": (400, "12f8"),
+    "units": (500, "i4"), "intent": (504, "i4"),
+}  # fmt: skip
+"""Place and type of the fields that are used, by the definitions nifti1.h and nifti2.h."""
 
-    order: str
-    dim: tuple[int, ...]
-    datatype: int
-    pixdim: tuple[float, ...]
-    vox_offset: int
-    slope: float
-    intercept: float
-    units: int
-    intent: int
-    form: tuple[int, ...]
-    rows: tuple[float, ...]
+Fields = dict[str, Any]
+Order = Literal["<", ">"]
+_ORDERS: tuple[Order, Order] = ("<", ">")
 
 
 class ScaledVoxels:
@@ -88,22 +86,19 @@ def open_nifti(path: Path, _options: Mapping[str, Any]) -> OpenVolume:
     """
     with path.open("rb") as file:
         packed = file.read(2) == _GZIP
-    found = _parsed(_head(path, packed))
-    stored = _stored_type(found)
-    header = _voxel_header(found, stored)
+    order, fields = _fields(_head(path, packed))
+    stored = _stored_type(fields, order)
+    header = _voxel_header(fields, stored)
+    start, slope, intercept = int(fields["offset"]), float(fields["slope"]), float(fields["intercept"])
     voxels: OpenVolume
     if packed:
-        voxels = DeflatedVoxels(path, 0, found.vox_offset, header, stored)
+        voxels = DeflatedVoxels(path, 0, start, header, stored)
     else:
-        voxels = PlainVoxels(path, found.vox_offset, header, stored)
-    if found.slope in (0.0, 1.0) and (found.slope == 0.0 or found.intercept == 0.0):
-        return voxels
-    if not (np.isfinite(found.slope) and np.isfinite(found.intercept)):
+        voxels = PlainVoxels(path, start, header, stored)
+    if slope == 0.0 or (slope, intercept) == (1.0, 0.0) or not np.isfinite([slope, intercept]).all():
         return voxels
     scaled = np.dtype(np.float64 if stored.itemsize > 2 else np.float32)
-    kind: Kind | None = None
-    header = VoxelHeader(header.shape, scaled, header.voxel_size, header.unit, kind, header.notes)
-    return ScaledVoxels(voxels, header, found.slope, found.intercept)
+    return ScaledVoxels(voxels, replace(header, dtype=scaled, kind=None), slope, intercept)
 
 
 def _head(path: Path, packed: bool) -> bytes:
@@ -119,44 +114,29 @@ def _head(path: Path, packed: bool) -> bytes:
     return bytes(head)
 
 
-def _parsed(head: bytes) -> NiftiHeader:
-    """The header, whose first number tells version and byte order."""
-    for order in "<>":
-        length = struct.unpack_from(order + "i", head)[0] if len(head) >= 4 else 0
-        version = _LENGTHS.get(length)
-        if version and len(head) >= length:
-            return _first(head, order) if version == 1 else _second(head, order)
+def _fields(head: bytes) -> tuple[Order, Fields]:
+    """Byte order and fields; the header's first number is its own length."""
+    for order in _ORDERS:
+        length = int.from_bytes(head[:4], "little" if order == "<" else "big")
+        if length in (348, 540) and len(head) >= length:
+            _check_signature(head, length)
+            places = _NIFTI1 if length == 348 else _NIFTI2
+            fields = {
+                name: np.frombuffer(head, np.dtype(kind).newbyteorder(order), 1, place)[0]
+                for name, (place, kind) in places.items()
+            }
+            return order, {**fields, "offset": _offset(float(fields["offset"]), length)}
     raise FileError("is no NIfTI file, or is cut short: its header is neither of 348 nor of 540 bytes.")
 
 
-def _first(head: bytes, order: str) -> NiftiHeader:
-    def at(place: int, kinds: str) -> tuple[Any, ...]:
-        return struct.unpack_from(order + kinds, head, place)
-
-    if head[344:348] == b"ni1\0":
+def _check_signature(head: bytes, length: int) -> None:
+    magic = head[344:348] if length == 348 else head[4:12]
+    if magic in (b"ni1\0", b"ni2\0\r\n\x1a\n"):
         raise FileError("keeps its voxels in a second file (.img); save it as one file (.nii).")
-    if head[344:348] != b"n+1\0":
+    if length == 348 and magic != b"n+1\0":
         raise FileError("is no NIfTI-1 file: its signature is missing (it may be an Analyze header).")
-    offset, slope, intercept = at(108, "3f")
-    return NiftiHeader(
-        order, at(40, "8h"), at(70, "h")[0], at(76, "8f"), _offset(offset, 348), slope, intercept,
-        at(123, "B")[0], at(68, "h")[0], at(252, "2h"), at(280, "12f"),
-    )  # fmt: skip
-
-
-def _second(head: bytes, order: str) -> NiftiHeader:
-    def at(place: int, kinds: str) -> tuple[Any, ...]:
-        return struct.unpack_from(order + kinds, head, place)
-
-    if head[4:12] == b"ni2\0\r\n\x1a\n":
-        raise FileError("keeps its voxels in a second file (.img); save it as one file (.nii).")
-    if head[4:12] != b"n+2\0\r\n\x1a\n":
+    if length == 540 and magic != b"n+2\0\r\n\x1a\n":
         raise FileError("is no NIfTI-2 file: its signature is missing or damaged.")
-    slope, intercept = at(176, "2d")
-    return NiftiHeader(
-        order, at(16, "8q"), at(12, "h")[0], at(104, "8d"), _offset(at(168, "q")[0], 540), slope, intercept,
-        at(500, "i")[0], at(504, "i")[0], at(344, "2i"), at(400, "12d"),
-    )  # fmt: skip
 
 
 def _offset(value: float, length: int) -> int:
@@ -165,39 +145,38 @@ def _offset(value: float, length: int) -> int:
     return int(value) or length + 4
 
 
-def _stored_type(header: NiftiHeader) -> np.dtype[Any]:
-    if header.datatype in _REFUSED:
-        raise FileError(f"holds {_REFUSED[header.datatype]}; voxels are whole numbers or floats.")
-    if header.datatype not in _TYPES:
-        raise FileError(f"is a broken NIfTI file: there is no type of number {header.datatype}.")
-    return np.dtype(_TYPES[header.datatype]).newbyteorder("<" if header.order == "<" else ">")
+def _stored_type(fields: Fields, order: Order) -> np.dtype[Any]:
+    code = int(fields["datatype"])
+    if code in _REFUSED:
+        raise FileError(f"holds {_REFUSED[code]}; voxels are whole numbers or floats.")
+    if code not in _TYPES:
+        raise FileError(f"is a broken NIfTI file: there is no type of number {code}.")
+    return np.dtype(_TYPES[code]).newbyteorder(order)
 
 
-def _voxel_header(header: NiftiHeader, stored: np.dtype[Any]) -> VoxelHeader:
-    dimensions = header.dim[0]
+def _voxel_header(fields: Fields, stored: np.dtype[Any]) -> VoxelHeader:
+    dimensions = int(fields["dim"][0])
     if not 1 <= dimensions <= 7:
         raise FileError(f"is a broken NIfTI file: it cannot have {dimensions} dimensions.")
-    edges = tuple(int(edge) for edge in header.dim[1 : dimensions + 1])
+    edges = tuple(int(edge) for edge in fields["dim"][1 : dimensions + 1])
     shape = three_dimensions(edges[::-1])
     kept = [axis for axis, edge in enumerate(edges) if edge > 1 or dimensions == 3]
-    size = (
-        sizes_or_none([header.pixdim[axis + 1] for axis in kept])
-        if len(kept) == 3 and max(kept) < 3
-        else None
-    )
-    unit = _UNITS.get(header.units & 7) if size else None
-    kind: Kind | None = "labels" if header.intent == _LABELS and stored.kind in "ui" else None
-    notes = (_MIRRORED,) if _is_mirrored(header) else ()
+    size = None
+    if len(kept) == 3 and max(kept) < 3:
+        size = sizes_or_none([float(fields["pixdim"][axis + 1]) for axis in kept])
+    unit = _UNITS.get(int(fields["units"]) & 7) if size else None
+    kind: Kind | None = "labels" if fields["intent"] == _LABELS and stored.kind in "ui" else None
+    notes = (MIRRORED,) if _is_mirrored(fields) else ()
     return VoxelHeader(shape, voxel_type(stored), size, unit, kind, notes)
 
 
-def _is_mirrored(header: NiftiHeader) -> bool:
+def _is_mirrored(fields: Fields) -> bool:
     """Whether the matrix of the header, or else its quaternion, turns right hands into left ones."""
-    qform, sform = header.form
+    qform, sform = fields["forms"]
     if sform > 0:
-        matrix = np.array(header.rows).reshape(3, 4)[:, :3]
+        matrix = np.array(fields["rows"], dtype=np.float64).reshape(3, 4)[:, :3]
         return bool(np.isfinite(matrix).all() and np.linalg.det(matrix) < 0)
-    return qform > 0 and header.pixdim[0] < 0
+    return bool(qform > 0 and fields["pixdim"][0] < 0)
 
 
 def _recognises(head: bytes) -> bool:

@@ -14,6 +14,7 @@ from regolith_studio.readers.number_rows import float_or_nan
 from regolith_studio.readers.units import unit_named
 from regolith_studio.readers.volume_formats import VolumeFormat
 from regolith_studio.readers.voxels.header import (
+    MIRRORED,
     OpenVolume,
     Sizes,
     VoxelHeader,
@@ -47,7 +48,6 @@ _TYPES = {
 _TYPE = {name: kind for kind, names in _TYPES.items() for name in names}
 _VECTOR = re.compile(r"\(([^()]*)\)|none", re.IGNORECASE)
 _SKEWED = "The axes of the volume are not at right angles to each other; they were taken as if they were."
-_MIRRORED = "The axes of the volume are left-handed: particles come in as their mirror images."
 
 
 def open_nrrd(path: Path, _options: Mapping[str, Any]) -> OpenVolume:
@@ -166,7 +166,7 @@ def _about(vectors: np.ndarray) -> tuple[str, ...]:
         return ()
     unit = vectors / lengths[:, None]
     skewed = np.abs(unit @ unit.T - np.eye(3)).max() > 1e-3
-    return (*((_SKEWED,) if skewed else ()), *((_MIRRORED,) if np.linalg.det(unit) < 0 else ()))
+    return (*((_SKEWED,) if skewed else ()), *((MIRRORED,) if np.linalg.det(unit) < 0 else ()))
 
 
 def _unit(fields: dict[str, str], kept: list[int]) -> str | None:

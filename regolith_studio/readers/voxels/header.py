@@ -21,6 +21,7 @@ VOXEL_TYPES = frozenset(("b1", "u1", "u2", "u4", "u8", "i1", "i2", "i4", "i8", "
 LONGEST_EDGE = 1 << 20
 LARGEST_SLICE = 1 << 30
 """Bytes of the largest slice that is read; a detector of 16,384 pixels' width gives half of that."""
+MIRRORED = "The axes of the volume are left-handed: particles come in as their mirror images."
 KEPT_BYTES = 1 << 29
 """Bytes of a layer of HDF5 chunks that stay unpacked while its slices are asked for."""
 
