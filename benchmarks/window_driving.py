@@ -23,16 +23,15 @@ def opened(views: str, size: tuple[int, int] = (1920, 1080)) -> Iterator[Any]:
         os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
     with tempfile.TemporaryDirectory() as folder:
         os.environ["REGOLITH_STUDIO_CONFIG"] = folder
-        from regolith_studio.ui.application import make_application
+        from regolith_studio.ui.startup import make_application
 
         make_application(["benchmark"])
         from regolith_studio.session.preferences import Preferences
-        from regolith_studio.ui.app import open_window, set_aside_what_stays
+        from regolith_studio.ui.app import open_window
 
         window = open_window(views=views, preferences=Preferences())
         window.resize(*size)
         window.show()
-        set_aside_what_stays(window)
         until(lambda: window.session.results.coarsened is not None)
         settle(window)
         try:
@@ -73,8 +72,7 @@ def settle(window: Any) -> None:
     from regolith_studio.ui.wiring import Wiring
 
     def rests() -> bool:
-        built = not window.pages.awaited
-        return built and not window.session.tasks and all(each.idle for each in window.findChildren(Wiring))
+        return not window.session.tasks and all(each.idle for each in window.findChildren(Wiring))
 
     until(rests)
     spin()

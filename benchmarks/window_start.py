@@ -46,9 +46,9 @@ def main() -> None:
     def now(name: str) -> None:
         seen.setdefault(name, round(time.perf_counter() - begun, 3))
 
-    from regolith_studio.ui import start
+    from regolith_studio.ui import startup
 
-    made = start.make_splash
+    made = startup.make_splash
 
     def splash() -> Any:
         from PySide6.QtCore import QTimer
@@ -56,9 +56,9 @@ def main() -> None:
         QTimer.singleShot(0, lambda: now("splash"))  # heard once the splash is drawn
         return made()
 
-    start.make_splash = splash
+    startup.make_splash = splash
     _watch(now, seen)
-    start.run()
+    startup.run()
 
 
 def _watch(now: Any, seen: dict[str, float]) -> None:
@@ -71,7 +71,7 @@ def _watch(now: Any, seen: dict[str, float]) -> None:
         speak(*given)
         from regolith_studio.ui import app
 
-        opened, app.welcome = app.open_window, lambda _window: None
+        opened, app.show_recovery_and_tour = app.open_window, lambda _window: None
 
         def watched(*paths: Any, **options: Any) -> Any:
             window = opened(*paths, **options)

@@ -16,6 +16,6 @@ def open_files(
 
 def open_window(paths: list[Path], unit: str | None) -> None:
     """Run the window until it is closed, and end with its exit code."""
-    from regolith_studio.ui.start import run
+    from regolith_studio.ui.startup import run
 
     raise typer.Exit(run(paths, unit) or 0)

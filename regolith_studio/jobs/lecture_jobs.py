@@ -283,9 +283,3 @@ def draw_field_later(material: str, amplitudes: FloatArray, seed: int) -> Steps:
     """:func:`draw_field` as a job; returns :class:`DrawnField`."""
     yield Started("Drawing a field", 1)
     return draw_field(material, amplitudes, seed)
-
-
-def first_field(degree: int = 10) -> DrawnField:
-    """The field of the first material: afterwards tables and kernels are there for all others."""
-    key, card = next(iter(materials().items()))
-    return draw_field(key, np.array(card.relative_amplitudes[:degree]), 0)

@@ -5,7 +5,7 @@ from functools import partial
 from pathlib import Path
 from typing import cast
 
-from PySide6.QtCore import QTimer
+from PySide6.QtCore import QTimer, Signal
 from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QGuiApplication
 from PySide6.QtWidgets import QApplication, QMainWindow
 
@@ -48,6 +48,8 @@ class MainWindow(QMainWindow):
     views
         ``live`` or ``image``.
     """
+
+    closing = Signal()
 
     def __init__(self, session: Session, preferences: Preferences, views: str) -> None:
         super().__init__()
@@ -114,7 +116,7 @@ class MainWindow(QMainWindow):
             "standard_layout": self._standard_layout,
             "tour": self.show_round,
             "quit": self.close,
-            "go": self.pages.visit,
+            "go": self.pages.go,
             "next_page": partial(self.pages.neighbour, 1),
             "previous_page": partial(self.pages.neighbour, -1),
             "shortcuts": lambda: ShortcutsDialog(self.shortcuts, self.menus.places(), self).open(),
@@ -153,8 +155,7 @@ class MainWindow(QMainWindow):
         self.toast.note(tr("The next window stands as a new one."))
 
     def _choose_repair(self, repair: bool) -> None:
-        if repair != self.session.choices.repair:
-            self.session.choose(repair=repair)
+        self.session.choose(repair=repair)
 
     def _show_choices(self) -> None:
         self.menus.by_name["undo"].setEnabled(self.session.can_undo)
@@ -169,9 +170,8 @@ class MainWindow(QMainWindow):
     def _apply_theme(self) -> None:
         theme = current_theme()
         apply_theme(cast(QApplication, QApplication.instance()), theme, self, self.pages.rooms)
-        self.menus.set_theme(theme)
-        self.pages.set_theme(theme)
-        self.tasks.set_theme(theme)
+        for part in (self.menus, self.pages, self.tasks):
+            part.set_theme(theme)
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
         if any(url.isLocalFile() for url in event.mimeData().urls()):
@@ -192,9 +192,9 @@ class MainWindow(QMainWindow):
         self.preferences.save()
         QGuiApplication.styleHints().colorSchemeChanged.disconnect(self._apply_theme)
         self.hide()
-        self.pages.finish()
+        self.closing.emit()
         self.wiring.cut()
         self.projects.close()
         self.session.close()
-        self.pages.release()
+        self.pages.close_pages()
         event.accept()

@@ -1,9 +1,7 @@
 """What a page of the window is, and what it is given; see :mod:`regolith_studio.ui.pages`."""
 
-from collections.abc import Callable, Generator, Iterator, Mapping
-from contextlib import suppress
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -23,34 +21,21 @@ from regolith_studio.ui.wiring import Wiring
 class PageWidget(QWidget):
     """What a page shows; every method may be left as it is."""
 
-    def assemble(self) -> Iterator[None]:
-        """Make the parts of the page, right after construction; the window answers at each ``yield``.
-
-        What is between two of them should take 20 ms at most. Nothing else is called before the end.
-        """
-        return iter(())
-
-    def theme_steps(self, theme: Theme) -> Iterator[None]:  # noqa: ARG002
-        """Take the colours of a theme, once after building and at every change.
-
-        The window answers at each ``yield``, as in :meth:`assemble`; nothing is seen before the end.
-        """
-        return iter(())
+    def build(self) -> None:
+        """Make the parts of the page; called once, right after construction."""
 
     def set_theme(self, theme: Theme) -> None:
-        """Take the colours of a theme at once."""
-        for _ in self.theme_steps(theme):
-            pass
+        """Take the colours of a theme, once after building and at every change."""
 
     def commands(self) -> Mapping[str, Callable[..., object]]:
         """A function for each name in :attr:`Page.actions`; switches are called with their state."""
         return {}
 
-    def entered(self) -> None:
-        """The page is seen from now on."""
+    def on_show(self) -> None:
+        """Called when the page becomes the current one."""
 
-    def left(self) -> None:
-        """Another page is seen from now on."""
+    def on_hide(self) -> None:
+        """Called when another page becomes the current one."""
 
     def open_path(self, path: Path) -> None:
         """Open a file whose kind is one of :attr:`Page.opens`: dropped, chosen, or named at start."""
@@ -66,8 +51,8 @@ class PageWidget(QWidget):
     def restore(self, state: Mapping[str, Any]) -> None:
         """Show what :meth:`state` returned once, maybe by another version: ignore what is not known."""
 
-    def release(self) -> None:
-        """The window closes: give graphics memory back, stop timers."""
+    def on_close(self) -> None:
+        """Called when the window closes: release graphics memory, stop timers."""
 
 
 @dataclass(frozen=True)
@@ -166,8 +151,6 @@ class Page:
         Kinds of files that :meth:`PageWidget.open_path` of this page opens.
     actions
         Commands of the page, in menus and tool bar while it is seen, in the command palette always.
-    prepare
-        What else takes long at the first visit and touches no widget; called in another thread.
     """
 
     key: str
@@ -178,32 +161,9 @@ class Page:
     make: Callable[[PageContext], PageWidget]
     actions: tuple[ActionSpec, ...] = ()
     opens: tuple[FileKind, ...] = ()
-    prepare: Callable[[], object] | None = None
-
-    def steps(
-        self, context: PageContext, place: Callable[[PageWidget], object] | None = None
-    ) -> Generator[None, None, PageWidget]:
-        """Build the page, step by step; returns it. `place` is told it while it is still empty."""
-        widget = self.make(context)
-        if place is not None:
-            place(widget)
-        yield
-        yield from widget.assemble()
-        return widget
 
     def build(self, context: PageContext) -> PageWidget:
-        """Build the page at once."""
-        steps = self.steps(context)
-        while True:
-            try:
-                next(steps)
-            except StopIteration as end:
-                widget: PageWidget = end.value
-                return widget
-
-    def load(self) -> None:
-        """Import the module that the page is in, if it is the usual one, and :attr:`prepare`."""
-        with suppress(ModuleNotFoundError):
-            import_module(f"{self.make.__module__}.page")
-        if self.prepare is not None:
-            self.prepare()
+        """Make the widget of the page with all its parts."""
+        widget = self.make(context)
+        widget.build()
+        return widget

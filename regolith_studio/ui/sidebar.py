@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from functools import partial
 
 from PySide6.QtCore import QEvent, QSize, Qt, Signal
-from PySide6.QtGui import QEnterEvent, QFocusEvent, QKeySequence, QResizeEvent
+from PySide6.QtGui import QKeySequence, QResizeEvent
 from PySide6.QtWidgets import QButtonGroup, QFrame, QSizePolicy, QToolButton, QVBoxLayout
 
 from regolith_studio.ui.icons import icon
@@ -31,8 +31,6 @@ class Sidebar(QFrame):
     """
 
     chosen = Signal(str)
-    approached = Signal(str)
-    """The mouse, or the keyboard, has come to the button of a page."""
 
     def __init__(self, pages: Mapping[str, Page]) -> None:
         super().__init__()
@@ -108,8 +106,7 @@ class Sidebar(QFrame):
             button.setIconSize(QSize(size, size))
 
     def _button(self, page: Page, number: int) -> QToolButton:
-        button = _PageButton()
-        button.approached.connect(partial(self.approached.emit, page.key))
+        button = QToolButton()
         button.clicked.connect(partial(self._clicked, page.key))
         button.setObjectName(f"page_{page.key}")
         button.setText(tr(page.title))
@@ -122,17 +119,3 @@ class Sidebar(QFrame):
 
     def _clicked(self, key: str) -> None:
         self.chosen.emit(key)
-
-
-class _PageButton(QToolButton):
-    """Says when the mouse or the keyboard comes to it: a moment before it is pressed."""
-
-    approached = Signal()
-
-    def enterEvent(self, event: QEnterEvent) -> None:
-        super().enterEvent(event)
-        self.approached.emit()
-
-    def focusInEvent(self, event: QFocusEvent) -> None:
-        super().focusInEvent(event)
-        self.approached.emit()

@@ -1,12 +1,11 @@
 """How the window looks: light or dark as the system says, one palette and one style sheet for all of it."""
 
-from collections.abc import Container, Iterator
+from collections.abc import Container
 from dataclasses import dataclass
 
 from PySide6.QtCore import QObject, Qt
 from PySide6.QtGui import QColor, QGuiApplication, QPalette
 from PySide6.QtWidgets import QApplication, QWidget
-from shiboken6 import isValid
 
 from regolith_studio.resources import resource
 from regolith_studio.scene import palette
@@ -145,19 +144,16 @@ def restyle(widget: QWidget, later: Container[QObject] = ()) -> None:
 
     Qt takes them from the palette only when it polishes a widget.
     """
-    for _ in restyle_steps(widget, later):
-        pass
-
-
-def restyle_steps(widget: QWidget, later: Container[QObject] = ()) -> Iterator[None]:
-    """:func:`restyle` widget by widget; those that go meanwhile are left out."""
-    if not isValid(widget):
-        return
     widget.style().polish(widget)
-    yield
     for part in widget.children():
         if isinstance(part, QWidget) and part not in later:
-            yield from restyle_steps(part, later)
+            restyle(part, later)
+
+
+def ensure_polished(widget: QWidget) -> None:
+    """Give a widget that has not been shown, and all in it, their style and font."""
+    for part in (widget, *widget.findChildren(QWidget)):
+        part.ensurePolished()
 
 
 def letters_share() -> float:

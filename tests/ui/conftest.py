@@ -22,7 +22,7 @@ from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
 
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.ui import main_window
-from regolith_studio.ui.application import make_application
+from regolith_studio.ui.startup import make_application
 from regolith_studio.ui.translation.language import Translator, fall_silent, speak
 from regolith_studio.ui.widgets.formula import THREAD_NAME, all_outlines_made
 from regolith_studio.ui.wiring import Wiring

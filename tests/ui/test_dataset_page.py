@@ -56,7 +56,7 @@ def page(shown, preferences):
     made.session, made.toast = session, toast
     yield made
     wiring.cut()
-    made.release()
+    made.on_close()
     session.close()
 
 
@@ -163,15 +163,15 @@ def test_that_settings_of_contact_and_test_are_restored(page) -> None:
 
 def test_that_a_dataset_is_replaced_only_when_asked(chosen, tmp_path, wait, monkeypatch) -> None:
     monkeypatch.setattr(FolderDialog, "ask", lambda *_: str(tmp_path))
-    chosen.build()
+    chosen.build_dataset()
     wait(lambda: (tmp_path / "regolith" / "dataset.json").exists())
     before = (tmp_path / "regolith" / "dataset.json").read_bytes()
     slide(chosen.representatives.count, 5)
     monkeypatch.setattr(QMessageBox, "question", lambda *_: QMessageBox.StandardButton.No)
-    chosen.build()
+    chosen.build_dataset()
     assert (tmp_path / "regolith" / "dataset.json").read_bytes() == before
     monkeypatch.setattr(QMessageBox, "question", lambda *_: QMessageBox.StandardButton.Yes)
-    chosen.build()
+    chosen.build_dataset()
     wait(lambda: len(read_dataset(tmp_path / "regolith")) == 5)
 
 
@@ -205,7 +205,7 @@ def test_that_a_page_without_particles_says_what_to_do(page) -> None:
     assert "No particles are open" in page.representatives.population.text()
     assert not page.representatives.start.isEnabled()
     page.find_representatives()
-    page.build()
+    page.build_dataset()
     page.export()
     page.validate()
     assert not page.targets.export.isEnabled()
@@ -277,7 +277,7 @@ def test_that_the_first_dataset_opens_the_library_with_its_simulations(chosen, t
         run = {"format": "regolith-studio-repose", "state": "finished", "engine": {"label": "MuJoCo"}}
         run |= {"dataset": {"name": "set", "sha256": sha}, "measurement": {"angle_deg": 27.0}}
         (runs / name / "repose.json").write_text(json.dumps(run))
-    chosen.entered()
+    chosen.on_show()
     wait(lambda: library.tree.topLevelItemCount() == 1 and library.tree.topLevelItem(0).childCount() == 1)
     assert library.tree.topLevelItem(0).child(0).text(0) == "27.0° angle of repose of set"
 

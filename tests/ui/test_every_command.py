@@ -92,7 +92,6 @@ class Witness:
                 len(self.asked),
                 len(self.started),
                 window.pages.current,
-                window.pages.awaited,
                 session.choices,
             ),
             *(window.size(), window.isFullScreen(), window.activity.isVisible(), window.windowTitle()),

@@ -43,7 +43,7 @@ def page(shown, preferences):
     made.resize(1200, 760)
     yield made
     wiring.cut()
-    made.release()
+    made.on_close()
     session.close()
 
 
@@ -101,7 +101,7 @@ def test_that_it_plays_by_itself_pauses_and_steps_back(page, wait):
     commands["play"]()  # at the end: from the beginning
     assert playback.playing
     assert playback.step < 25
-    page.left()
+    page.on_hide()
     assert not playback.playing
 
 
@@ -269,8 +269,8 @@ def test_that_the_height_of_a_fraction_is_that_of_its_outline(app):  # noqa: ARG
 def test_that_a_stopped_lesson_says_so_and_begins_again_at_the_next_visit(page):
     page._stopped()
     assert "Stopped" in page.annealing.sentence.text()
-    page.left()
-    page.entered()
+    page.on_hide()
+    page.on_show()
     assert "start" in page.annealing.sentence.text()
 
 

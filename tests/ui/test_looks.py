@@ -3,7 +3,6 @@
 import time
 
 import pytest
-import shiboken6
 from PySide6.QtCore import QEvent, QObject, QPoint
 from PySide6.QtGui import QColor, QFontMetrics
 from PySide6.QtWidgets import (
@@ -32,7 +31,6 @@ from regolith_studio.ui.theme import (
     choose_letters,
     choose_theme,
     current_theme,
-    restyle_steps,
 )
 
 
@@ -139,17 +137,6 @@ def test_that_what_is_written_into_can_be_seen_on_the_ground_of_plots(app, shown
         assert max(fill - ground, ground - edge) >= least, theme.dark
 
 
-def test_that_parts_that_go_while_others_take_their_colours_are_left_out(app, shown):
-    window = shown(QWidget())
-    apply_theme(app, LIGHT, window)
-    parts = [QLabel(str(number), window) for number in range(3)]
-    steps = restyle_steps(window)
-    next(steps)
-    next(steps)
-    shiboken6.delete(parts[1])
-    assert sum(1 for _ in steps) >= 1
-
-
 def test_that_parts_take_their_style_once_when_they_come_into_the_window(app, shown):
     window = shown(QWidget())
     apply_theme(app, LIGHT, window)
@@ -168,7 +155,6 @@ def pictures_of_pages(window, keys, wait, settled):
     for key in keys:
         window.go(key)
         settled(window)
-        wait(lambda: not window.pages._theming.isActive())
         seen = [None, window.grab().toImage()]
         while seen[-1] != seen[-2]:  # what a visit has set off goes on for some turns
             end = time.monotonic() + 0.2
@@ -201,7 +187,7 @@ def test_that_a_theme_chosen_later_looks_as_one_from_the_start(shown, preference
 
 
 @pytest.mark.usefixtures("usual_looks")
-def test_that_another_theme_gives_no_widget_another_style(shown, preferences, wait):
+def test_that_another_theme_gives_no_widget_another_style(shown, preferences):
     """Qt polishes every widget of the window again when its sheet is another: a quarter of a second."""
     window = shown(MainWindow(Session(InlineRunner()), preferences, "image"))
     window.looks.choose(theme="light")
@@ -217,7 +203,6 @@ def test_that_another_theme_gives_no_widget_another_style(shown, preferences, wa
     for widget in (window, *window.findChildren(QWidget)):
         widget.installEventFilter(ear)
     window.looks.choose(theme="dark")
-    wait(lambda: not window.pages._theming.isActive())
     assert told == []
     assert window.palette().window().color() == QColor(DARK.window)
 

@@ -20,13 +20,6 @@ def window(shown, preferences, wait):
     return made
 
 
-def test_that_a_window_that_is_closed_while_a_page_is_built_leaves_nothing(window):
-    window.menus.by_name["go.model"].trigger()
-    assert (window.pages.current, window.pages.awaited) == ("explore", "model")
-    window.close()
-    assert (window.pages.current, window.pages.awaited) == ("explore", "")
-
-
 @pytest.mark.slow
 def test_that_drawn_particles_are_gone_when_others_are_opened(window, wait, settled):
     page, session = window.go("model"), window.session

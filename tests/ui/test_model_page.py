@@ -62,7 +62,7 @@ def _opened(shown, preferences):
 
     def end():
         wiring.cut()
-        made.release()
+        made.on_close()
         session.close()
 
     return made, end

@@ -28,7 +28,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from regolith_studio.ui.app import open_window, set_aside_what_stays
+from regolith_studio.ui.app import open_window
 
 FORBIDDEN = {
     "quit",
@@ -290,7 +290,6 @@ def test_that_a_long_visit_of_the_monkey_leaves_the_window_well(window, monkeypa
             sys.stdout.write(f"\n{number:,} events: {held}, longest {seconds:.2f} s ({what})")
             sys.stdout.flush()
 
-    set_aside_what_stays(window)
     play(window, monkeypatch, app, count, seed=2, pages=pages, tell=tell)
     gc.unfreeze()
     wait(lambda: not window.session.tasks, 60.0)

@@ -27,7 +27,7 @@ from PySide6.QtWidgets import (
 from regolith_studio.coarsening.weights import presets
 from regolith_studio.dataset.folder_io import read_dataset
 from regolith_studio.dataset.validation import validate_dataset
-from regolith_studio.ui.app import open_window, welcome
+from regolith_studio.ui.app import open_window, show_recovery_and_tour
 
 MOST = 12
 """Interactions that a task may take."""
@@ -52,7 +52,6 @@ class Newcomer:
         """An interaction is over: draw, and keep a picture of it."""
         self.count += 1
         QTest.qWait(30)
-        self.wait(lambda: not self.window.pages.awaited)
         if folder := os.environ.get("REGOLITH_STUDIO_SHOTS"):
             QTest.qWait(400)
             Path(folder).mkdir(parents=True, exist_ok=True)
@@ -156,7 +155,7 @@ def newcomer(shown, preferences, wait, settled, request):
     window = open_window(views="image", preferences=preferences)
     window.resize(1480, 900)
     shown(window)
-    welcome(window)
+    show_recovery_and_tour(window)
     wait(lambda: window.session.results.coarsened is not None, SECONDS)
     settled(window)
     made = Newcomer(window, wait, settled, request.node.name.removeprefix("test_that_")[:24])

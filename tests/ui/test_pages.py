@@ -1,12 +1,10 @@
 """The sidebar and its pages: found by themselves, built when visited, quiet while hidden."""
 
-import time
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from PySide6.QtCore import Qt, QTimer
-from PySide6.QtGui import QColor
+from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QLabel, QVBoxLayout, QWidget
 
@@ -15,14 +13,12 @@ from regolith_studio.jobs.particle_jobs import load_sample
 from regolith_studio.jobs.runners.inline import InlineRunner
 from regolith_studio.resources import resource
 from regolith_studio.session.session import Session
-from regolith_studio.ui import page_building
 from regolith_studio.ui.action_spec import PAGE_MENU, ActionSpec
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.page import Page, PageContext, PageWidget
-from regolith_studio.ui.page_building import SLICE
 from regolith_studio.ui.page_stack import PageStack
 from regolith_studio.ui.pages import PAGES
-from regolith_studio.ui.theme import DARK, LIGHT, apply_theme
+from regolith_studio.ui.theme import DARK
 from regolith_studio.ui.widgets.toast import Toast
 from regolith_studio.ui.wiring import Wiring
 
@@ -46,12 +42,11 @@ class _Counter(PageWidget):
         job = Job(_numbers, (3,))
         self.context.start("Counting", job, self.heard.append, partial=self.heard.append)
 
-    def entered(self):
+    def on_show(self):
         self.entries += 1
 
-    def theme_steps(self, theme):
+    def set_theme(self, theme):
         self.theme = theme
-        yield
 
     def busy(self):
         return "Something is written." if self.heard else ""
@@ -85,7 +80,7 @@ def stack(shown, preferences):
     made.setParent(window)
     made.session = session
     yield made
-    made.release()
+    made.close_pages()
     session.close()
 
 
@@ -100,12 +95,12 @@ def test_that_every_page_has_an_icon_a_tip_and_a_key_of_its_own():
         assert len(set(names)) == len(names)
 
 
-def test_that_a_page_is_built_at_its_first_visit_and_kept(stack, wait):
+def test_that_a_page_is_built_at_its_first_visit_and_kept(stack):
     assert not stack.widgets
     first = stack.go("one")
     assert list(stack.widgets) == ["one"]
     QTest.mouseClick(stack.buttons["two"], Qt.MouseButton.LeftButton)
-    wait(lambda: stack.current == "two")
+    assert stack.current == "two"
     assert stack.go("one") is first
     assert first.entries == 2
 
@@ -162,152 +157,44 @@ def test_that_a_command_of_a_hidden_page_shows_it_first(stack):
     assert stack.busy() == ["Something is written."]
 
 
-def test_that_the_neighbours_of_a_page_go_round(stack, wait):
+def test_that_the_neighbours_of_a_page_go_round(stack):
     stack.go("one")
     stack.neighbour(1)
-    wait(lambda: stack.current == "two")
+    assert stack.current == "two"
     stack.neighbour(1)
     assert stack.current == "one"
 
 
-class _InPieces(_Counter):
-    """A page of five pieces."""
-
-    def assemble(self):
-        self.pieces = []
-        for number in range(5):
-            self.pieces.append(QLabel(str(number), self))
-            yield
-
-
-@pytest.fixture
-def pieces(stack):
-    stack.pages["two"] = replace(stack.pages["two"], make=_InPieces)
-    stack.go("one")
-    return stack
-
-
-def test_that_the_window_answers_between_the_pieces_of_a_page(pieces, wait, monkeypatch):
-    monkeypatch.setattr(page_building, "SLICE", 0.0)
-    pieces.visit("two")
-    assert pieces.current == "one"
-    heard, timer = [], QTimer(interval=0)
-    timer.timeout.connect(lambda: heard.append(pieces.current))
-    timer.start()
-    wait(lambda: pieces.current == "two")
-    timer.stop()
-    assert heard.count("one") >= 4
-    assert len(pieces.widgets["two"].pieces) == 5
-    assert pieces.widgets["two"].entries == 1
-
-
-def test_that_another_page_is_shown_while_one_is_built(pieces, wait):
-    pieces.visit("two")
-    pieces.go("one")
-    wait(lambda: "two" in pieces.widgets)
-    assert pieces.current == "one"
-    assert pieces.widgets["two"].entries == 0
-
-
-def test_that_a_program_gets_a_whole_page_at_once(pieces):
-    pieces.visit("two")
-    assert len(pieces.go("two").pieces) == 5
-    assert pieces.current == "two"
-
-
-def test_that_a_page_that_is_prepared_is_refreshed_when_it_is_seen(pieces, wait):
-    pieces.prepare("two")
-    wait(lambda: "two" in pieces.widgets)
-    two = pieces.widgets["two"]
-    pieces.session.dataset_folder = Path("any")
-    assert (pieces.current, two.entries, two.refreshed) == ("one", 0, 1)
-    pieces.visit("two")
-    assert (pieces.current, two.entries) == ("two", 1)
-    wait(lambda: two.refreshed == 2)
-
-
-def test_that_hidden_pages_take_a_theme_later_or_when_they_are_seen(stack, wait, monkeypatch):
+def test_that_hidden_pages_take_a_theme_when_they_are_seen(stack, monkeypatch):
     one, two = stack.go("one"), stack.go("two")
-    for theme in (DARK, LIGHT):
-        monkeypatch.setattr("regolith_studio.ui.page_stack.current_theme", lambda theme=theme: theme)
-        stack.set_theme(theme)
-        wait(lambda theme=theme: two.theme is theme)
-        assert one.theme is not theme
-        if theme is DARK:
-            stack.go("one")
-            assert one.theme is theme
-            stack.go("two")
-    wait(lambda: one.theme is LIGHT)
-
-
-def test_that_the_window_answers_while_a_page_takes_a_theme(stack, app, monkeypatch):
-    two, seen = stack.go("two"), []
-
-    def slowly(theme):
-        for part in range(4):
-            time.sleep(2 * SLICE)
-            seen.append((part, theme))
-            yield
-
-    monkeypatch.setattr(two, "theme_steps", slowly)
+    monkeypatch.setattr("regolith_studio.ui.page_stack.current_theme", lambda: DARK)
+    before = one.theme
     stack.set_theme(DARK)
-    assert seen == []
-    turns = 0
-    while len(seen) < 4:
-        before = len(seen)
-        app.processEvents()
-        turns += 1
-        assert len(seen) - before <= 1
-        assert turns < 100
-    stack.set_theme(LIGHT)  # begins anew, and a visit takes what is left at once
-    while len(seen) == 4:
-        app.processEvents()
+    assert two.theme is DARK
+    assert one.theme is before
     stack.go("one")
-    stack.go("two")
-    assert [part for part, _ in seen] == 2 * [0, 1, 2, 3]
-    assert stack._rooms["two"].updatesEnabled()
+    assert one.theme is DARK
 
 
-def test_that_a_page_that_was_being_built_has_the_colours_of_now(pieces, wait, app, monkeypatch):
-    begun = [LIGHT]
-    monkeypatch.setattr("regolith_studio.ui.page_stack.current_theme", lambda: begun[0])
-    apply_theme(app, LIGHT, pieces.window())
-    remarks = []
+class _Broken(PageWidget):
+    """A page that cannot be built at first."""
 
-    def polished(widget):
-        remarks.append(QLabel("quiet", widget))
-        remarks[0].setProperty("role", "remark")
-        remarks[0].ensurePolished()
-        begun[0] = DARK
-        apply_theme(app, DARK, pieces.window(), pieces.rooms)
-        yield
+    def __init__(self, context):  # noqa: ARG002
+        super().__init__()
 
-    monkeypatch.setattr("regolith_studio.ui.page_stack.polish", polished)
-    pieces.visit("two")
-    wait(lambda: pieces.current == "two")
-    assert remarks[0].palette().windowText().color() == QColor(DARK.muted)
+    def build(self):
+        raise OSError("nothing there")
 
 
-def test_that_a_page_that_takes_a_theme_when_another_is_chosen_has_that_one(pieces, wait, monkeypatch):
-    now, seen = [LIGHT], []
-    monkeypatch.setattr("regolith_studio.ui.page_stack.current_theme", lambda: now[0])
-
-    def steps(_page, theme):
-        seen.append(theme)
-        now[0] = DARK
-        yield
-
-    monkeypatch.setattr(_InPieces, "theme_steps", steps, raising=False)
-    pieces.visit("two")
-    wait(lambda: pieces.current == "two")
-    assert seen == [LIGHT, DARK]
-
-
-def test_that_no_page_is_left_half_built(pieces):
-    pieces.visit("two")
-    pieces.finish()
-    assert len(pieces.widgets["two"].pieces) == 5
-    assert pieces.current == "one"
+def test_that_a_page_that_cannot_be_built_is_built_at_the_next_visit(stack):
+    page = stack.pages["two"]
+    stack.pages["two"] = replace(page, make=_Broken)
+    stack.go("one")
+    with pytest.raises(OSError, match="nothing there"):
+        stack.go("two")
+    assert stack.current == "one"
+    stack.pages["two"] = page
+    assert stack.go("two").entries == 1
 
 
 def test_that_what_a_page_remembers_is_kept_apart_from_the_others(stack, preferences):

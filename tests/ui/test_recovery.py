@@ -20,7 +20,7 @@ from regolith_studio.ui.projects import autosave_path, stale_autosaves
 
 WORK = """
 from regolith_studio.ui import projects
-from regolith_studio.ui.application import make_application
+from regolith_studio.ui.startup import make_application
 app = make_application(["killed"])
 from regolith_studio.ui.app import open_window
 projects.AUTOSAVE_SECONDS = 0

@@ -46,7 +46,7 @@ def page(shown, preferences, tmp_path):
     made.set_runs_folder(tmp_path / "runs")
     yield made
     wiring.cut()
-    made.release()
+    made.on_close()
     session.close()
 
 

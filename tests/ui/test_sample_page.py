@@ -15,7 +15,6 @@ from regolith_studio.session.results import ParticleEntry
 from regolith_studio.ui.app import open_window
 from regolith_studio.ui.pages.sample.scatter import ScatterPanel
 from regolith_studio.ui.pages.sample.statistics import StatisticsPanel
-from regolith_studio.ui.pages.sample.table import SampleTable
 
 SECONDS = 120.0
 
@@ -53,32 +52,6 @@ def test_that_a_click_in_the_table_puts_the_particle_on_screen_everywhere(window
     wait(lambda: "flat-1" in page.frame.view.widget.accessibleName())
     window.go("explore")
     wait(lambda: window.page.particles.value() == {"selected": "flat-1"})
-
-
-def test_that_columns_measured_before_they_are_seen_are_as_wide_and_not_measured_again(app, monkeypatch):
-    mesh = icosphere(1)
-    entries = tuple(
-        ParticleEntry(name, Particle(name, mesh), None, describe(mesh))
-        for name in ("a", "one of a longer name")
-    )
-    before, late = SampleTable(), SampleTable()
-    for table in (before, late):
-        table.resize(900, 300)
-        table.set_entries(entries)
-    for _ in before.measure_unseen():
-        pass
-    asked = []
-    monkeypatch.setattr(before, "resizeColumnToContents", asked.append)
-    for table in (before, late):
-        table.show()
-    app.processEvents()
-    count = before.model_.columnCount()
-    assert [before.columnWidth(at) for at in range(count)] == [late.columnWidth(at) for at in range(count)]
-    assert asked == []
-    before.set_entries(entries[:1])
-    assert len(asked) == count
-    for table in (before, late):
-        table.deleteLater()
 
 
 def test_that_the_filter_narrows_table_plot_and_statistics(page):

@@ -51,7 +51,7 @@ def page(shown, preferences, wait, monkeypatch):
     made.set_theme(current_theme())
     yield made
     wait(lambda: not session.tasks, SECONDS)
-    made.release()
+    made.on_close()
     wiring.cut()
     session.close()
     poster.deleteLater()

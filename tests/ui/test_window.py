@@ -13,10 +13,10 @@ from PySide6.QtWidgets import QApplication, QLineEdit, QSlider, QWidget
 from regolith_studio.errors import EnvironmentProblem, InputError
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.resources import resource
-from regolith_studio.ui.app import open_window, telling_hook
+from regolith_studio.ui.app import make_excepthook, open_window
 from regolith_studio.ui.dialogs.export import ExportDialog
 from regolith_studio.ui.dialogs.unit import UnitDialog
-from regolith_studio.ui.environment import check_display
+from regolith_studio.ui.startup import check_display
 from regolith_studio.ui.theme import DARK, LIGHT, current_theme
 
 SECONDS = 120.0
@@ -215,7 +215,7 @@ def test_that_one_bad_file_among_good_ones_is_its_sentence(window, wait, tmp_pat
 
 
 def test_that_an_error_of_the_program_is_told_and_survived(window, capsys):
-    hook = telling_hook(window.toast.problem)
+    hook = make_excepthook(window.toast.problem)
     for error in (ValueError("shape"), InputError("The seed must not be negative.")):
         hook(type(error), error, None)
         assert window.toast.isVisible()

@@ -36,9 +36,8 @@ and ``page.py``::
         def commands(self):
             return {"count": self.count}
 
-        def theme_steps(self, theme):
+        def set_theme(self, theme):
             self.plot.set_theme(theme)
-            yield
 
         def count(self):
             particles = [entry.particle for entry in self._context.session.particles]
@@ -46,10 +45,8 @@ and ``page.py``::
 
 What a page can rely on
 -----------------------
-* It is built at its first visit, in the thread of the window, and kept until the window closes: what takes
-  longer than 20 ms in pieces, by a generator ``assemble()`` that yields between them. Its module
-  ``page`` has been imported in the background by then, as a rule; ``Page(prepare=...)`` names what else takes
-  long and touches no widget.
+* It is built at its first visit, in the thread of the window, and kept until the window closes. Its parts are
+  made in the constructor or in :meth:`PageWidget.build`; numerical libraries are imported inside jobs.
 * **State**: ``context.session`` is the one truth: ``particles``, ``choices``, ``results``,
   ``choose(...)``, ``adopt(particles)`` for particles made by a page (they replace or join the open
   ones and are measured and shown everywhere), ``dataset_folder`` and ``runs_folder`` (written last).
@@ -65,7 +62,7 @@ What a page can rely on
   :class:`~regolith_studio.ui.widgets.study_frame.StudyFrame` shows a task beside a plot. Never compute
   in a slot for more than 50 ms.
 * **Three-dimensional views**: ``make_view(context.views, theme.surroundings)`` from ``ui.views.factory``,
-  filled by functions of ``scene``; call ``view.release()`` in :meth:`PageWidget.release`.
+  filled by functions of ``scene``; call ``view.release()`` in :meth:`PageWidget.on_close`.
 * **Words**: ``context.toast.note("Saved.")``, ``context.toast.problem("One sentence.", details)``.
 * **Memory**: ``context.remember(name, value)``, ``context.recall(name, default)`` between sittings;
   :meth:`PageWidget.state` and ``restore`` for project files. A splitter made by ``ui.layout`` that has
@@ -73,7 +70,7 @@ What a page can rely on
 * **Files**: a page that names kinds in ``opens=(FileKind.VOLUME,)`` gets dropped and opened files of that
   kind by ``open_path(path)``.
 * **Closing**: the window asks when tasks run or when :meth:`PageWidget.busy` says a sentence;
-  :meth:`PageWidget.release` comes last.
+  :meth:`PageWidget.on_close` comes last.
 * Widgets, plots and themes: ``ui.widgets`` (``Plot``, ``CurvePlot``, ``BarPlot``, ``HeatTable``,
   ``NumberSlider``, ``SettingsForm``, ``StudyFrame``, ``labels``), ``ui.theme``, ``ui.layout``. No style
   sheets on single widgets; every control has an accessible name and an object name.

@@ -1,7 +1,5 @@
 """Tables of selectable rows whose first column stretches."""
 
-from collections.abc import Iterator
-
 from PySide6.QtCore import QEvent, QObject, Qt
 from PySide6.QtGui import QResizeEvent, QShowEvent
 from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QTableView
@@ -58,8 +56,6 @@ class ListTable(QTableView):
 
     _unfitted = True
     """Contents or font have changed while the table was hidden."""
-    _measured = False
-    """Columns have the width of their present contents."""
 
     def __init__(self, dispensable: tuple[int, ...] = ()) -> None:
         super().__init__()
@@ -82,24 +78,16 @@ class ListTable(QTableView):
 
     def fit_columns(self) -> None:
         """Fit the columns to their contents and stretch the first one, as soon as the table is visible."""
-        self._measured, self._unfitted = False, not self.isVisible()
+        self._unfitted = not self.isVisible()
         if self.isVisible():
             self._fit()
 
-    def measure_unseen(self) -> Iterator[None]:
-        """Fit hidden columns to their contents, one at each step, before the table is visible."""
-        self._measured = True  # unless the content changes meanwhile
+    def _fit(self) -> None:
         for column in self._left_out:
             self.setColumnHidden(column, False)
         self._left_out.clear()
         for column in self._by_content():
             self.resizeColumnToContents(column)
-            yield
-
-    def _fit(self) -> None:
-        if not self._measured:
-            for _ in self.measure_unseen():
-                pass
         self.stretch()
 
     def stretch(self) -> None:

@@ -12,13 +12,6 @@ def build(context: PageContext) -> PageWidget:
     return DatasetPage(context)
 
 
-def prepare() -> None:
-    """Load the exporters."""
-    from regolith_studio.dataset.exporters import EXPORTERS
-
-    len(EXPORTERS)
-
-
 PAGE = Page(
     key="dataset",
     title="Dataset",
@@ -26,7 +19,6 @@ PAGE = Page(
     order=60,
     tip="Choose representative particles, build a dataset, export it to DEM programs",
     make=build,
-    prepare=prepare,
     opens=(FileKind.DATASET,),
     actions=(
         ActionSpec(PAGE_MENU, "find", "&Find representatives"),

@@ -1,6 +1,6 @@
 """Controls on the left in the order of the work; curves above, representatives and exports below."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -74,37 +74,30 @@ class DatasetPage(PageWidget):
         self._exports: list[ExportResult] = []
         self._opened: Standing | None = None
 
-    def assemble(self) -> Iterator[None]:
+    def build(self) -> None:
         self.representatives, self.sizes = RepresentativesPanel(), SizesPanel()
-        yield
         self.folder, self.targets = FolderPanel(), ExportPanel()
         self._controls = DatasetControls(self.representatives, self.sizes, self.folder, self.targets)
-        yield
         self.quality, self.distribution = QualityPlot(), SizesPlot()
-        yield
         self.library = LibraryPanel(self._context)
         self.gallery, self.losses, self.exports = RepresentativesGallery(), LossesLabel(), ExportsList()
-        yield
-        yield from self._place()
-        yield
+        self._place()
         self._connect()
         self._context.wiring.refresh("particles", self._show_particles, holds=True)
-        yield
         self._context.wiring.refresh("choices", self._show_choices, SHAPE_FIELDS, slow=True)
         self._context.wiring.refresh("opened_request", self._take_opened)
         self._show_losses()
 
     # --- the page of the window ----------------------------------------------------------------
 
-    def theme_steps(self, theme: Theme) -> Iterator[None]:
+    def set_theme(self, theme: Theme) -> None:
         for part in (self.quality, self.distribution, self.gallery, self.library):
             part.set_theme(theme)
-            yield
 
     def commands(self) -> Mapping[str, Callable[..., object]]:
         return {
             "find": self.find_representatives,
-            "build": self.build,
+            "build": self.build_dataset,
             "open_dataset": self.open_dataset,
             "validate": self.validate,
             "export": self.export,
@@ -126,10 +119,10 @@ class DatasetPage(PageWidget):
         self.sizes.set_text(str(state.get("sizes", "measured")))
         self.folder.name.setText(str(state.get("name", "regolith")))
 
-    def entered(self) -> None:
+    def on_show(self) -> None:
         self.library.refresh()
 
-    def release(self) -> None:
+    def on_close(self) -> None:
         self.gallery.release()
 
     # --- commands ------------------------------------------------------------------------------
@@ -146,7 +139,7 @@ class DatasetPage(PageWidget):
             tr("Finding representatives"), job, self._show_survey, partial=self._show_point, lane=FIND
         )
 
-    def build(self) -> None:
+    def build_dataset(self) -> None:
         """Ask for a place and build the dataset in a new folder there."""
         if self._chosen is None:
             self._context.toast.problem(tr("There are no representatives yet: press Find first."))
@@ -398,18 +391,15 @@ class DatasetPage(PageWidget):
             told.connect(self._leave_wish)
         self.folder.name.textChanged.connect(lambda _: self._leave_wish())
 
-    def _place(self) -> Iterator[None]:
+    def _place(self) -> None:
         left = scrolled_column((self.representatives, self.sizes, self.folder, self.targets))
         upper = equal_parts(Qt.Orientation.Horizontal, (self.quality, self.distribution))
         upper.setObjectName("dataset_upper")
-        yield
         told = [(self.losses, tr("What formats lose")), (self.exports, tr("Exported"))]
         seen = [(self.gallery, tr("Representatives")), (self.library, tr("Library"))]
         self._lower, self._shapes = tabs("dataset_lower", told), tabs("dataset_shapes", seen)
-        yield
         middle = stacked((upper, self._shapes, self._lower), (330, 330, 150), stretch=1)
         middle.setObjectName("dataset_middle")
-        yield
         whole = side_by_side((left, padded(middle, 0, 4, 4, 4)), (320, 1200), stretch=1)
         whole.setObjectName("dataset_whole")
         layout = QHBoxLayout(self)

@@ -1,6 +1,6 @@
 """Particles on the left, three views and plots in the middle, controls on the right."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from functools import partial
 
 from PySide6.QtGui import QResizeEvent
@@ -49,11 +49,10 @@ class ExplorePage(PageWidget):
         self._place()
         self._wire(context)
 
-    def theme_steps(self, theme: Theme) -> Iterator[None]:
+    def set_theme(self, theme: Theme) -> None:
         for part in (self.particles, self.coarsening, self.triptych):
             part.set_theme(theme)
-            yield
-        yield from self.plots.theme_steps(theme)
+        self.plots.set_theme(theme)
 
     def commands(self) -> Mapping[str, Callable[..., object]]:
         views = self.triptych
@@ -73,7 +72,7 @@ class ExplorePage(PageWidget):
             "save_animation": self.pictures.save_animation,
         }
 
-    def release(self) -> None:
+    def on_close(self) -> None:
         self.triptych.release()
 
     def resizeEvent(self, event: QResizeEvent) -> None:

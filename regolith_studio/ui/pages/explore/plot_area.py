@@ -1,7 +1,5 @@
 """The plots below the views: errors and descriptors on the left, loss and spectrum on the right."""
 
-from collections.abc import Iterator
-
 from PySide6.QtCore import QEvent, Qt
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QSplitter
@@ -67,11 +65,10 @@ class PlotArea(QSplitter):
             if now.indexOf(panel) >= 0:
                 now.setCurrentWidget(panel)
 
-    def theme_steps(self, theme: Theme) -> Iterator[None]:
-        """Take the colours of a theme, plot by plot."""
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
         for panel in (self.error_bars, self.loss_curve, self.spectrum, self.section):
             panel.set_theme(theme)
-            yield
 
     def show_section(self, shown: bool) -> None:
         """Bring the drawing of the section to the front, or what was there before."""

@@ -11,15 +11,6 @@ def build(context: PageContext) -> PageWidget:
     return LecturePage(context)
 
 
-def prepare() -> None:
-    """Load what sets formulas, and what draws fields."""
-    from regolith_studio.jobs.lecture_jobs import first_field
-    from regolith_studio.ui.widgets.formula import outline
-
-    outline(r"$\sqrt{A_\ell}\,/\,\bar r = \sum_{m} c_{\ell m}^{2}$")
-    first_field()
-
-
 PAGE = Page(
     key="lecture",
     title="Lecture",
@@ -27,7 +18,6 @@ PAGE = Page(
     order=90,
     tip="Annealing step by step, l_max growing, a random field on the sphere; large letters",
     make=build,
-    prepare=prepare,
     actions=(
         ActionSpec(PAGE_MENU, "play", "&Play or pause", "play", "Ctrl+Space", "Step by step", bar="words"),
         ActionSpec(PAGE_MENU, "back", "Step &back", "", "PgUp"),

@@ -1,6 +1,5 @@
 """Lesson one: the paper's annealing, one proposal after the other, and the exact method beside it."""
 
-from collections.abc import Iterator
 from functools import partial
 from typing import Any
 
@@ -52,12 +51,11 @@ class AnnealingView(QWidget):
         self._kind = kind
         self._plots: tuple[Plot, ...] = ()
 
-    def assemble(self) -> Iterator[None]:
-        """Make the parts, right after construction; the window answers at each ``yield``."""
+    def build(self) -> None:
+        """Make the parts, right after construction."""
         self.frames: dict[str, ViewFrame] = {}
         for name in ("annealing", "exact"):
             self.frames[name] = ViewFrame(make_view(self._kind, self._theme.surroundings), f"lecture_{name}")
-            yield
         self.link = CameraLink([frame.view for frame in self.frames.values()])
         self.sentence = WrappedLabel(tr(WAIT))
         self.sentence.setObjectName("annealing_sentence")
@@ -65,9 +63,7 @@ class AnnealingView(QWidget):
         self.rule = FormulaLabel(tr("The proposal, T(k) and the decision with their numbers"))
         self.exact_formula = FormulaLabel(tr("Eq. 9 of the exact method"))
         self.loss = CurvePlot(tr("Step k"), tr("Loss L (Eq. 9)"), tr(WAIT))
-        yield
         self.chance = CurvePlot(tr("Step k"), tr("Probability"), tr(WAIT))
-        yield
         self.terms = BarPlot(tr("Term of Eq. 9"), "α ε", tr(WAIT), unit="")
         self._plots = (self.loss, self.chance, self.terms)
         for plot, name in zip(self._plots, ("loss", "chance", "terms"), strict=True):
@@ -76,7 +72,6 @@ class AnnealingView(QWidget):
         self.frames["exact"].set_texts(tr("Exact method"))
         self.playback = PlaybackBar("annealing", mark("step"))
         self.playback.stepChanged.connect(self._show_step)
-        yield
         self._arrange()
 
     def show_lesson(self, lesson: AnnealingLesson) -> None:
@@ -99,20 +94,17 @@ class AnnealingView(QWidget):
         """The step that is seen."""
         return self._lesson.steps[self.playback.step] if self._lesson is not None else None
 
-    def theme_steps(self, theme: Theme) -> Iterator[None]:
-        """Take the colours of a theme, step by step."""
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
         self._theme = theme
         for frame in self.frames.values():
             frame.view.set_surroundings(theme.surroundings)
             frame.set_colour(theme.polyhedron)
         for plot in (self.loss, self.chance, self.terms):
             plot.set_theme(theme)
-            yield
         if self._lesson is not None:
             self._show_exact()
-            yield
             self._show_step(self.playback.step)
-        yield
 
     def release(self) -> None:
         """Stop, and give the graphics memory back."""

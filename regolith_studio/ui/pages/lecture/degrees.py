@@ -1,7 +1,5 @@
 """Lesson two: the fit from a sphere to the particle, degree by degree (Eq. 4)."""
 
-from collections.abc import Iterator
-
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
@@ -41,12 +39,11 @@ class DegreesView(QWidget):
         self._steps: tuple[DegreeStep, ...] = ()
         self._kind = kind
 
-    def assemble(self) -> Iterator[None]:
-        """Make the parts, right after construction; the window answers at each ``yield``."""
+    def build(self) -> None:
+        """Make the parts, right after construction."""
         self.frames: dict[str, ViewFrame] = {}
         for name in ("particle", "fit"):
             self.frames[name] = ViewFrame(make_view(self._kind, self._theme.surroundings), f"degrees_{name}")
-            yield
         self.link = CameraLink([frame.view for frame in self.frames.values()])
         self.sentence = remark(tr(WAIT), role="")
         self.sentence.setObjectName("degrees_sentence")
@@ -55,7 +52,6 @@ class DegreesView(QWidget):
         self.errors.setObjectName("degrees_errors")
         self.playback = PlaybackBar("degrees", mark("degree"))
         self.playback.stepChanged.connect(self._show_step)
-        yield
         self._arrange()
 
     def show_particle(self, mesh: Mesh, name: str) -> None:
@@ -80,14 +76,13 @@ class DegreesView(QWidget):
         else:
             self._plot()
 
-    def theme_steps(self, theme: Theme) -> Iterator[None]:
-        """Take the colours of a theme, step by step."""
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
         self._theme = theme
         for name, frame in self.frames.items():
             frame.view.set_surroundings(theme.surroundings)
             frame.set_colour(getattr(theme, name))
         self.errors.set_theme(theme)
-        yield
 
     def release(self) -> None:
         """Stop, and give the graphics memory back."""

@@ -1,7 +1,5 @@
 """Lesson three: a random field on the sphere, its spectrum to drag, and the particle that it makes."""
 
-from collections.abc import Iterator
-
 import numpy as np
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QPushButton, QVBoxLayout, QWidget
@@ -49,12 +47,11 @@ class FieldView(QWidget):
         self._kind, self._following = kind, following
         self._unframed = True
 
-    def assemble(self) -> Iterator[None]:
-        """Make the parts, right after construction; the window answers at each ``yield``."""
+    def build(self) -> None:
+        """Make the parts, right after construction."""
         self.frames: dict[str, ViewFrame] = {}
         for name in ("sphere", "grain"):
             self.frames[name] = ViewFrame(make_view(self._kind, self._theme.surroundings), f"field_{name}")
-            yield
         self.link = CameraLink([frame.view for frame in self.frames.values()])
         self.sentence = remark("", role="")
         self.sentence.setObjectName("field_sentence")
@@ -67,7 +64,6 @@ class FieldView(QWidget):
         self.reset, self.another = QPushButton(tr("Reset the spectrum")), QPushButton(tr("Draw anew"))
         self.reset.setObjectName("field_reset")
         self.another.setObjectName("field_another")
-        yield
         self._arrange()
         self.material.currentIndexChanged.connect(lambda _: self.take_material())
         self.spectrum.valueChanged.connect(lambda _: self.redraw())
@@ -101,17 +97,15 @@ class FieldView(QWidget):
             self.sentence.setText,
         )
 
-    def theme_steps(self, theme: Theme) -> Iterator[None]:
-        """Take the colours of a theme, step by step."""
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
         self._theme = theme
         for frame in self.frames.values():
             frame.view.set_surroundings(theme.surroundings)
             frame.set_colour(theme.fit)
         self.spectrum.set_theme(theme)
-        yield
         if self.drawn is not None:
             self._show(self.drawn, False)
-            yield
 
     def release(self) -> None:
         """Give the graphics memory back."""

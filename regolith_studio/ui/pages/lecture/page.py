@@ -1,6 +1,6 @@
 """Three lessons as tabs, in large letters; jobs compute them, the page plays them."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
 
@@ -12,12 +12,11 @@ from regolith_studio.jobs.lecture_jobs import trace_annealing, trace_degrees
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.ui.following import Following
 from regolith_studio.ui.page import PageContext, PageWidget
-from regolith_studio.ui.page_building import polish
 from regolith_studio.ui.pages.lecture.annealing import AnnealingView
 from regolith_studio.ui.pages.lecture.degrees import DegreesView
 from regolith_studio.ui.pages.lecture.field import FieldView
 from regolith_studio.ui.pages.lecture.playback_bar import PlaybackBar
-from regolith_studio.ui.theme import Theme, current_theme, letters_share
+from regolith_studio.ui.theme import Theme, current_theme, ensure_polished, letters_share
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
 
@@ -39,15 +38,14 @@ class LecturePage(PageWidget):
         self._made_for: dict[str, tuple[Any, ...]] = {}
         self._seed = 0
 
-    def assemble(self) -> Iterator[None]:
+    def build(self) -> None:
         context = self._context
         views = context.views
         following = Following(context, tr("Drawing particles"), "field")
         self.annealing, self.degrees = AnnealingView(views), DegreesView(views)
         self.field = FieldView(views, following)
         for lesson in (self.annealing, self.degrees, self.field):
-            yield from lesson.assemble()
-            yield
+            lesson.build()
         self.particle = ChoiceBox("lecture_particle", tr("Particle"), {})
         self.another = QPushButton(tr("Another seed"))
         self.another.setObjectName("lecture_another")
@@ -57,22 +55,20 @@ class LecturePage(PageWidget):
         self.tabs = QTabWidget()
         self.tabs.setObjectName("lecture_lessons")
         self._place()
-        yield
-        yield from self._show_letters()
+        self._show_letters()
         self.tabs.currentChanged.connect(self._turn)
         self.another.clicked.connect(self.draw_another)
         self.particle.currentIndexChanged.connect(self._select)
-        yield
         context.wiring.refresh("particles choices", self._show_particles, ("selected",))
         context.wiring.refresh("particles choices fit surface", self._fill, slow=True)
 
     # --- the page of the window ----------------------------------------------------------------
 
-    def theme_steps(self, theme: Theme) -> Iterator[None]:
+    def set_theme(self, theme: Theme) -> None:
         for lesson in (self.annealing, self.degrees, self.field):
-            yield from lesson.theme_steps(theme)
+            lesson.set_theme(theme)
         if self._shown_size not in (0.0, self._size()):  # letters of the whole window have changed
-            yield from self._show_letters()
+            self._show_letters()
 
     def commands(self) -> Mapping[str, Callable[..., object]]:
         return {
@@ -85,10 +81,10 @@ class LecturePage(PageWidget):
             "full_screen": self.toggle_full_screen,
         }
 
-    def entered(self) -> None:
+    def on_show(self) -> None:
         self._fill()
 
-    def left(self) -> None:
+    def on_hide(self) -> None:
         for lesson in (self.annealing, self.degrees):
             lesson.playback.pause()
 
@@ -102,7 +98,7 @@ class LecturePage(PageWidget):
             self._seed = state["seed"]
             self._fill()
 
-    def release(self) -> None:
+    def on_close(self) -> None:
         for lesson in (self.annealing, self.degrees, self.field):
             lesson.release()
 
@@ -130,8 +126,7 @@ class LecturePage(PageWidget):
         """Larger or smaller letters; remembered."""
         self._letters = min(max(self._letters * factor, SMALLEST), LARGEST)
         self._context.remember("letters", self._letters)
-        for _ in self._show_letters():
-            pass
+        self._show_letters()
 
     def toggle_full_screen(self) -> None:
         """The window on the whole screen, or as it was."""
@@ -230,7 +225,7 @@ class LecturePage(PageWidget):
             self._session.select(self.particle.value())
 
     def _turn(self) -> None:
-        self.left()
+        self.on_hide()
         self._fill()
 
     def _control_playback(self, action: Callable[[PlaybackBar], object]) -> None:
@@ -249,15 +244,14 @@ class LecturePage(PageWidget):
         words = tr("The lesson is still being computed.") if opened else tr("Open a particle first.")
         self._context.toast.note(words)
 
-    def _show_letters(self) -> Iterator[None]:
+    def _show_letters(self) -> None:
         """By style sheets: fonts of widgets are overruled by that of the program."""
         size = self._size()
         for part in (self.annealing, self.degrees, self.field, self.tabs.tabBar(), *self._head):
             part.setStyleSheet(f"* {{ font-size: {size:.1f}pt; }}")
-            yield
         self._shown_size = size
-        yield from polish(self)
-        yield from self.theme_steps(current_theme())
+        ensure_polished(self)
+        self.set_theme(current_theme())
 
     def _size(self) -> float:
         """Of letters in points. What is large in the whole window is not enlarged twice: plots need room."""

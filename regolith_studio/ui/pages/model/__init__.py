@@ -12,13 +12,6 @@ def build(context: PageContext) -> PageWidget:
     return ModelPage(context)
 
 
-def prepare() -> None:
-    """Load the models."""
-    from regolith_studio.shape_models.models import MODELS
-
-    list(MODELS)
-
-
 PAGE = Page(
     key="model",
     title="Shape model",
@@ -26,7 +19,6 @@ PAGE = Page(
     order=40,
     tip="Draw virtual particles with the shapes and sizes of a sample",
     make=build,
-    prepare=prepare,
     opens=(FileKind.SHAPES,),
     actions=(
         ActionSpec(PAGE_MENU, "open_source", "Open a &fit, model or card …", tip="Open what to draw from"),

@@ -1,6 +1,6 @@
 """Controls on the left; spectrum and drawn particle above, gallery and evaluation below."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -63,36 +63,26 @@ class ModelPage(PageWidget):
         self._live_seed = 0
         self._following = Following(context, tr("Drawing particles"), "live")
 
-    def assemble(self) -> Iterator[None]:
+    def build(self) -> None:
         views, wiring, surroundings = self._context.views, self._context.wiring, current_theme().surroundings
         self.source = SourceControls()
-        yield
         self.drawing = DrawControls()
-        yield
         view = make_view(views, surroundings)
-        yield
         self.live = LiveShape(view)
-        yield
         view = make_view(views, surroundings)
-        yield
         self.gallery = ShapeGallery(view)
-        yield
         self.distributions = DistributionsPanel()
-        yield
         self.evaluation = EvaluationPanel()
-        yield
-        yield from self._place()
+        self._place()
         self._connect()
-        yield
         wiring.refresh("particles", self._show_sources)
         wiring.refresh("tasks", self._show_tasks, slow=True)
 
     # --- the page of the window ----------------------------------------------------------------
 
-    def theme_steps(self, theme: Theme) -> Iterator[None]:
+    def set_theme(self, theme: Theme) -> None:
         for part in (self.live, self.gallery, self.distributions):
             part.set_theme(theme)
-            yield
 
     def commands(self) -> Mapping[str, Callable[..., object]]:
         return {
@@ -122,7 +112,7 @@ class ModelPage(PageWidget):
             if isinstance(state.get(name), Mapping):
                 panel.setValue(state[name])
 
-    def release(self) -> None:
+    def on_close(self) -> None:
         self.live.frame.view.release()
         self.gallery.frame.view.release()
 
@@ -346,17 +336,14 @@ class ModelPage(PageWidget):
         except RegolithError as error:
             self._context.toast.problem(str(error))
 
-    def _place(self) -> Iterator[None]:
+    def _place(self) -> None:
         shown = [(self.gallery, tr("ShapeGallery")), (self.distributions, tr("Distributions"))]
         below = tabs("model_tabs", [*shown, (self.evaluation, tr("Judgement"))])
-        yield
         middle = stacked([self.live, below], [380, 420], stretch=1)
         middle.setObjectName("model_rows")
-        yield
         parts = [scrolled_column([self.source, self.drawing]), padded(middle, 2, 10, 10, 8)]
         columns = side_by_side(parts, [310, 900], stretch=1)
         columns.setObjectName("model_columns")
-        yield
         layout = QHBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(columns)

@@ -11,13 +11,6 @@ def build(context: PageContext) -> PageWidget:
     return ReposePage(context)
 
 
-def prepare() -> None:
-    """Look for the engines."""
-    from regolith_studio.dem.engine_table import engine_rows
-
-    engine_rows()
-
-
 PAGE = Page(
     key="repose",
     title="Angle of repose",
@@ -25,7 +18,6 @@ PAGE = Page(
     order=70,
     tip="Fill a cylinder with the particles of a dataset, lift it, measure the pile",
     make=build,
-    prepare=prepare,
     actions=(
         ActionSpec(PAGE_MENU, "open_dataset", "Open a &dataset …", tip="Choose the dataset to simulate"),
         ActionSpec(PAGE_MENU, BREAK, ""),

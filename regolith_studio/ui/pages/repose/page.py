@@ -1,6 +1,6 @@
 """Set-up on the left; particles above; sections, runs and engines below."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -55,39 +55,29 @@ class ReposePage(PageWidget):
         self._measured: ReposeMeasurement | None = None
         self._running = False
 
-    def assemble(self) -> Iterator[None]:
+    def build(self) -> None:
         self.setup = SetupPanel()
-        yield
         self.player = RunPlayer(self._context.views)
-        yield
         self.x_z, self.y_z = SectionPlot("x"), SectionPlot("y")
         self.verdict = remark(tr("No pile yet."))
         self.verdict.setObjectName("repose_verdict")
-        yield
         self.runs = RunsPanel()
-        yield
         self.study = StudyPanel()
-        yield
         self.engines = EnginePanel()
-        yield
         self.studies = ReposeStudyController(self._context, self.study, self.setup, self._show_study_run)
         self._later = QTimer(self, singleShot=True, interval=PREVIEW_DELAY)
         self._later.timeout.connect(self._preview)
-        yield
-        yield from self._place()
-        yield
+        self._place()
         self._connect()
-        yield
         self._context.wiring.refresh("dataset_folder", self._take_dataset)
         self.setup.tell([tr("Open a dataset, or make one from the open particles.")])
         self._list_runs()
 
     # --- the page of the window ----------------------------------------------------------------
 
-    def theme_steps(self, theme: Theme) -> Iterator[None]:
+    def set_theme(self, theme: Theme) -> None:
         for part in (self.player, self.x_z, self.y_z, self.runs, self.study):
             part.set_theme(theme)
-            yield
 
     def commands(self) -> Mapping[str, Callable[..., object]]:
         return {
@@ -114,10 +104,10 @@ class ReposePage(PageWidget):
         if isinstance(state.get("study"), Mapping):
             self.study.restore(state["study"])
 
-    def left(self) -> None:
+    def on_hide(self) -> None:
         self.player.stop()
 
-    def release(self) -> None:
+    def on_close(self) -> None:
         self._later.stop()
         self.player.release()
 
@@ -353,14 +343,13 @@ class ReposePage(PageWidget):
 
     # --- layout --------------------------------------------------------------------------------
 
-    def _place(self) -> Iterator[None]:
+    def _place(self) -> None:
         sections = QWidget()
         row = QHBoxLayout(sections)
         row.setContentsMargins(0, 0, 0, 0)
         row.addWidget(self.x_z)
         row.addWidget(self.y_z)
         measured = stacked([sections, padded(self.verdict, 10, 0, 10, 4)], [300, 40], stretch=0)
-        yield
         pages = [
             (measured, tr("Sections")),
             (self.runs, tr("Runs")),
@@ -368,15 +357,12 @@ class ReposePage(PageWidget):
             (self.engines, tr("Engines")),
         ]
         below = tabs("repose_tabs", pages)
-        yield
         pictures = stacked([self.player, below], [480, 340], stretch=0)
         pictures.setObjectName("repose_pictures")
-        yield
         controls = scrolled_column([self.setup])
         parts = [padded(controls, 6, 0, 0, 0), padded(pictures, 0, 10, 0, 0)]
         columns = side_by_side(parts, [350, 1180], stretch=1)
         columns.setObjectName("repose_columns")
-        yield
         layout = QHBoxLayout(self)
         layout.setContentsMargins(0, 0, 8, 8)
         layout.addWidget(columns)

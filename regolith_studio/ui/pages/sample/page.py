@@ -1,6 +1,6 @@
 """The table on the left with its filter and statistics; the particle and the scatter plot on the right."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -45,7 +45,7 @@ class SamplePage(PageWidget):
         self._reported: ParticleEntry | None = None
         self._faults: dict[str, FloatArray] = {}
 
-    def assemble(self) -> Iterator[None]:
+    def build(self) -> None:
         wiring = self._context.wiring
         self.filter.setObjectName("sample_filter")
         self.filter.setAccessibleName(tr("Filter of the table"))
@@ -54,27 +54,19 @@ class SamplePage(PageWidget):
         self.verdict = remark(role="warning")
         self.verdict.hide()
         self.table = SampleTable()
-        yield
         self.statistics = StatisticsPanel()
-        yield
         self.scatter = ScatterPanel()
-        yield
         self.health = HealthPanel()
-        yield
         self.frame = ViewFrame(make_view(self._context.views, current_theme().surroundings), "sample_view")
         self._camera = CameraLink([self.frame.view])
-        yield
         self._place()
-        yield
         self._connect()
         wiring.refresh("particles", self._show_particles, slow=True, holds=True)
-        yield
         wiring.refresh("choices", self._show_current, ("selected",))
 
-    def theme_steps(self, theme: Theme) -> Iterator[None]:
+    def set_theme(self, theme: Theme) -> None:
         self.table.model_.set_theme(theme)
         self.scatter.set_theme(theme)
-        yield
         self.frame.view.set_surroundings(theme.surroundings)
         self.frame.set_colour(theme.particle)
 
@@ -96,7 +88,7 @@ class SamplePage(PageWidget):
         if isinstance(axes, list) and len(axes) == 2:
             self.scatter.set_axes(str(axes[0]), str(axes[1]))
 
-    def release(self) -> None:
+    def on_close(self) -> None:
         self.frame.view.release()
 
     def export_table(self) -> None:

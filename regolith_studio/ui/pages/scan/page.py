@@ -1,7 +1,7 @@
 """Three slices with the grains over them, the histogram, and what leads from one to the other."""
 
 import contextlib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -64,16 +64,12 @@ class ScanPage(PageWidget):
         self.preview: Segmentation | None = None
         self._found_with: SegmentationSettings | None = None
 
-    def assemble(self) -> Iterator[None]:
+    def build(self) -> None:
         self.overview = SlicesView()
-        yield
         self.controls = SegmentationControls()
-        yield
         self.steps = WorkflowPanel()
-        yield
         self._timer = QTimer(self, interval=PREVIEW_DELAY, singleShot=True)
-        yield from self._arrange()
-        yield
+        self._arrange()
         self._connect()
         self._show_state()
 
@@ -82,9 +78,8 @@ class ScanPage(PageWidget):
         """The grains of the whole volume, once they have been found."""
         return self._whole.segmentation if self._whole else None
 
-    def theme_steps(self, theme: Theme) -> Iterator[None]:
+    def set_theme(self, theme: Theme) -> None:
         self.overview.set_theme(theme)
-        yield
 
     def commands(self) -> Mapping[str, Callable[..., object]]:
         return {
@@ -104,7 +99,7 @@ class ScanPage(PageWidget):
         with contextlib.suppress(RegolithError):
             self._use(GrainSettings.from_document(state))
 
-    def release(self) -> None:
+    def on_close(self) -> None:
         self._timer.stop()
         self._forget_grains()
         if self.scan is not None:
@@ -362,12 +357,11 @@ class ScanPage(PageWidget):
         self.steps.particlesRequested.connect(self.make_particles)
         self.steps.showRequested.connect(lambda: self._context.go("sample"))
 
-    def _arrange(self) -> Iterator[None]:
+    def _arrange(self) -> None:
         controls = scrolled_column([self.steps, self.controls])
         parts = [padded(self.overview, 10, 10, 2, 8), controls]
         columns = side_by_side(parts, [1100, CONTROLS_WIDTH + 20], stretch=0)
         columns.setObjectName("scan_columns")
-        yield
         layout = QHBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(columns)

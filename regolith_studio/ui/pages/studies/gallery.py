@@ -1,6 +1,6 @@
 """Fig. 7: a row a loss function, a column a particle, the polyhedron in each cell."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 from PySide6.QtCore import QModelIndex, QPersistentModelIndex, QSize, Qt
 from PySide6.QtGui import QIcon
@@ -40,7 +40,7 @@ class PolyhedronGallery(QWidget):
         super().__init__()
         self.setObjectName("solid_gallery")
         self._solids: tuple[Solid, ...] = ()
-        self._colour = self._shown_colour = current_theme().polyhedron
+        self._colour = current_theme().polyhedron
         self.table = QTableWidget()
         self.table.setAccessibleName(tr("Polyhedra by loss function and particle"))
         self.table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
@@ -84,14 +84,12 @@ class PolyhedronGallery(QWidget):
         """What is shown."""
         return self._solids
 
-    def theme_steps(self, theme: Theme) -> Iterator[None]:
-        """Take the colours of a theme, cell by cell."""
-        self._colour = theme.polyhedron
-        for at, solid in enumerate(self._solids if self._shown_colour != self._colour else ()):
-            if at < len(self._solids) and self._solids[at] is solid:  # others may have begun meanwhile
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        if theme.polyhedron != self._colour:
+            self._colour = theme.polyhedron
+            for solid in self._solids:
                 self.table.setItem(solid.row, solid.column, self._cell(solid))
-            yield
-        self._shown_colour = self._colour
 
     def _cell(self, solid: Solid) -> QTableWidgetItem:
         found = solid.outcome.coarsened

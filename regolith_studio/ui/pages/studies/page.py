@@ -1,6 +1,6 @@
 """Fig. 3 and Fig. 8 with its relatives above, Fig. 7 below, each with its own start, progress and stop."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -45,40 +45,31 @@ class StudiesPage(PageWidget):
         self._context, self._session = context, context.session
         self._drawn: tuple[list[str], list[str]] = [], []
 
-    def assemble(self) -> Iterator[None]:
+    def build(self) -> None:
         wiring = self._context.wiring
         self.lmax_study = LmaxStudyPanel()
-        yield
         self.coarsening_study = CoarseningStudyPanel()
-        yield
         self.gallery, self.bar = PolyhedronGallery(), LossSelector()
         self.variations: dict[str, SweepPanel] = {}
         for key in VARIATIONS:
-            yield
             self.variations[key] = SweepPanel(key)
-        yield
         self.tabs = self._tabs()
-        yield
-        yield from self._place()
-        yield
+        self._place()
         self.desk = SweepController(self._context, self.variations, self.bar)
         self._wire(Kind.LMAX_STUDY, self.lmax_study)
         self._wire(Kind.COARSENING_STUDY, self.coarsening_study)
         self.gallery.frame.startRequested.connect(self.draw_gallery)
         self.gallery.frame.cancelRequested.connect(self._session.cancel)
-        yield
         wiring.refresh("tasks", self._show_gallery_task, slow=True)
         wiring.refresh("particles", self._name_gallery_button)
         wiring.refresh("choices", self._show_l_max, ("l_max",), slow=True)
 
-    def theme_steps(self, theme: Theme) -> Iterator[None]:
+    def set_theme(self, theme: Theme) -> None:
         for part in (self.lmax_study, self.coarsening_study):
             part.set_theme(theme)
-            yield
         for panel in self.variations.values():
             panel.set_theme(theme)
-            yield
-        yield from self.gallery.theme_steps(theme)
+        self.gallery.set_theme(theme)
 
     def commands(self) -> Mapping[str, Callable[..., object]]:
         return {"run_all": self.run_all, "save": self.save}
@@ -199,7 +190,7 @@ class StudiesPage(PageWidget):
         pages = [(self.variations[key], tr(title)) for key, title in TABS.items()]
         return tabs("studies_coarsening", [(self.coarsening_study, tr("Losses (Fig. 8)")), *pages])
 
-    def _place(self) -> Iterator[None]:
+    def _place(self) -> None:
         above = side_by_side(
             [_titled(tr(LMAX_TITLE), _framed(self.lmax_study)), _titled(tr(COARSENING_TITLE), self.tabs)],
             [480, 900],
@@ -209,7 +200,6 @@ class StudiesPage(PageWidget):
         below = _titled(tr("What the polyhedra look like (Fig. 7)"), _framed(self.gallery))
         rows = stacked([above, below], [370, 500], stretch=1)
         rows.setObjectName("studies_rows")
-        yield
         layout = QVBoxLayout(self)
         layout.setContentsMargins(10, 10, 10, 8)
         layout.setSpacing(0)
