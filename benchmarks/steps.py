@@ -36,12 +36,12 @@ from regolith_studio.harmonics.fit import fit_harmonics
 from regolith_studio.harmonics.surface import reconstruct
 from regolith_studio.harmonics.synthesis import radii_on_icosphere
 from regolith_studio.imaging.extraction import extract_particles
-from regolith_studio.imaging.synthetic_ct import ScanRecipe, synthetic_scan
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.readers.particles import read_mesh
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.shape_models.models import MODELS
 from regolith_studio.shape_models.sample import Sample
+from tools.make_samples.synthetic_ct import ScanRecipe, synthetic_scan
 
 L_MAX, DEGREE = 10, 60
 

@@ -1,1 +1,1 @@
-"""From image data to particles: volumes, extraction of particles, and synthetic samples (section 2.1)."""
+"""Volumes of voxels and the extraction of particle meshes from them (section 2.1)."""

@@ -1,9 +1,8 @@
-"""The shipped synthetic scan as TIFF: written by the sample generator, read back without questions.
+"""The synthetic scan that ships with the program.
 
-Only the program's own files come through here; volumes of users go through ``readers``, which guards.
+Only the program's own files are read here; volumes of users go through ``readers``.
 """
 
-import io
 from pathlib import Path
 from typing import Any, Literal
 
@@ -15,36 +14,9 @@ from regolith_studio.resources import resource
 
 SampleVolume = Literal["labels", "grey"]
 
-_imwrite: Any = tifffile.imwrite
-
-
-def tiff_bytes(volume: Volume) -> bytes:
-    """The volume as a zlib-compressed TIFF stack (slices first) with ImageJ's voxel size in micrometres.
-
-    Raises
-    ------
-    ValueError
-        If voxels are not as wide as high, for which ImageJ's two resolution tags would be needed.
-    """
-    width, height, depth = volume.voxel_size
-    if width != height:
-        raise ValueError(f"voxels must be as wide as high, got {volume.voxel_size}")
-    buffer = io.BytesIO()
-    _imwrite(
-        buffer,
-        np.ascontiguousarray(volume.array.T),
-        imagej=True,
-        compression="zlib",
-        compressionargs={"level": 9},
-        resolution=(1 / width, 1 / height),
-        metadata={"axes": "ZYX", "spacing": float(depth), "unit": "um"},
-        software="regolith-studio",
-    )
-    return buffer.getvalue()
-
 
 def sample_file(kind: SampleVolume) -> Path:
-    """Where the shipped scan is.
+    """Path of the shipped scan.
 
     Raises
     ------

@@ -19,7 +19,7 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.imaging.samples import GRAINS
+from tools.make_samples.samples import GRAINS
 
 from .example import entry, polyhedron
 

@@ -18,10 +18,10 @@ from regolith_studio.imaging.extraction import (
     extraction_steps,
     voxel_diameter,
 )
-from regolith_studio.imaging.grains import even_sphere, random_rotation
 from regolith_studio.imaging.label_table import label_table
 from regolith_studio.imaging.sample_volumes import sample_volume
 from regolith_studio.imaging.volume import Volume
+from tools.make_samples.grains import even_sphere, random_rotation
 
 ALL = ExtractionSettings(exclude_border=False, min_voxels=0)
 

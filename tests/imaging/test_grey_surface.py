@@ -10,11 +10,11 @@ from scipy.spatial import ConvexHull, HalfspaceIntersection
 from regolith_studio.errors import InputError
 from regolith_studio.imaging import slabs
 from regolith_studio.imaging.extraction import Extracted, ExtractionSettings, extract_particles
-from regolith_studio.imaging.grains import even_sphere, random_rotation
 from regolith_studio.imaging.label_table import grain_crops
 from regolith_studio.imaging.sample_volumes import sample_volume
 from regolith_studio.imaging.segmentation.segment import segment
 from regolith_studio.imaging.volume import Volume
+from tools.make_samples.grains import even_sphere, random_rotation
 
 GREY = ExtractionSettings(exclude_border=False, min_voxels=0, surface="grey")
 RESIN, GRAIN, BLUR = 62.0, 138.0, 0.8

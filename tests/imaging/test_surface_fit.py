@@ -13,7 +13,7 @@ from regolith_studio.imaging.label_table import GrainCrop
 from regolith_studio.imaging.mask_surface import mask_mesh
 from regolith_studio.imaging.smoothing import windowed_sinc
 from regolith_studio.imaging.surface_fit import FitSettings, fitted, fitted_to_mask
-from regolith_studio.imaging.waves import SphereField, power_law
+from tools.make_samples.random_fields import SphereField, power_law
 
 EDGE, BLUR = 45, 0.8
 CENTRE = np.array([22.3, 21.8, 22.4])

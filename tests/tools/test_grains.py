@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from regolith_studio.imaging.grains import (
+from tools.make_samples.grains import (
     AgglutinateRecipe,
     StarRecipe,
     even_sphere,
     random_rotation,
     star_radius,
 )
-from regolith_studio.imaging.samples import GRAINS, SampleGrain
+from tools.make_samples.samples import GRAINS, SampleGrain
 
 
 def directed_edges(mesh) -> tuple[np.ndarray, np.ndarray]:

@@ -1,29 +1,31 @@
-"""The samples that ship with the program, made anew: ``python -m regolith_studio.imaging.samples FOLDER``."""
+"""Recipes of the shipped particles and scans, and the files that are made of them."""
 
 import hashlib
+import io
 import json
-import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import tifffile
 
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.imaging.grains import AgglutinateRecipe, Recipe, StarRecipe
-from regolith_studio.imaging.sample_volumes import tiff_bytes
-from regolith_studio.imaging.synthetic_ct import ScanRecipe, synthetic_scan
 from regolith_studio.imaging.volume import Volume
 from regolith_studio.io.stl import stl_bytes
+from tools.make_samples.grains import AgglutinateRecipe, Recipe, StarRecipe
+from tools.make_samples.synthetic_ct import ScanRecipe, synthetic_scan
 
 SEED = 2026
 """Root of all shipped samples; each takes ``SeedSequence(SEED, spawn_key=(its variant,))``."""
 
 ORIGIN = (
-    "Synthesised by the generator of Regolith Studio (regolith_studio.imaging); no measured data in it. "
+    "Synthesised by the generator of Regolith Studio (tools.make_samples); no measured data in it. "
     "Licence: MIT, as the program."
 )
+
+_imwrite: Any = tifffile.imwrite
 
 
 @dataclass(frozen=True)
@@ -212,14 +214,26 @@ def _write_grain(folder: Path, grain: SampleGrain) -> dict[str, Any]:
     }
 
 
-def main(arguments: Sequence[str]) -> int:
-    """Write the samples into the folder named on the command line."""
-    if len(arguments) != 1:
-        sys.stderr.write("usage: python -m regolith_studio.imaging.samples FOLDER\n")
-        return 2
-    write_samples(Path(arguments[0]))
-    return 0
+def tiff_bytes(volume: Volume) -> bytes:
+    """The volume as a zlib-compressed TIFF stack (slices first) with ImageJ's voxel size in micrometres.
 
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    Raises
+    ------
+    ValueError
+        If voxels are not as wide as high, for which ImageJ's two resolution tags would be needed.
+    """
+    width, height, depth = volume.voxel_size
+    if width != height:
+        raise ValueError(f"voxels must be as wide as high, got {volume.voxel_size}")
+    buffer = io.BytesIO()
+    _imwrite(
+        buffer,
+        np.ascontiguousarray(volume.array.T),
+        imagej=True,
+        compression="zlib",
+        compressionargs={"level": 9},
+        resolution=(1 / width, 1 / height),
+        metadata={"axes": "ZYX", "spacing": float(depth), "unit": "um"},
+        software="regolith-studio",
+    )
+    return buffer.getvalue()

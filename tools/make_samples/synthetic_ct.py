@@ -12,8 +12,8 @@ from scipy import ndimage
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.imaging.grains import Radius, StarRecipe, star_radius
 from regolith_studio.imaging.volume import Volume
+from tools.make_samples.grains import Radius, StarRecipe, star_radius
 
 Slices = tuple[slice, slice, slice]
 

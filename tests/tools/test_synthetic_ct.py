@@ -5,7 +5,7 @@ import pytest
 from scipy import ndimage
 
 from regolith_studio.errors import InputError
-from regolith_studio.imaging.synthetic_ct import ScanRecipe, SyntheticScan, grain_coverage, synthetic_scan
+from tools.make_samples.synthetic_ct import ScanRecipe, SyntheticScan, grain_coverage, synthetic_scan
 
 SMALL = ScanRecipe(shape=(56, 64, 60), n_grains=6, diameter=(15.0, 12.0, 19.0), minerals=(150.0,))
 

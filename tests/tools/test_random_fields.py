@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.special import eval_legendre
 
-from regolith_studio.imaging.grains import even_sphere
-from regolith_studio.imaging.waves import SphereField, power_law
+from tools.make_samples.grains import even_sphere
+from tools.make_samples.random_fields import SphereField, power_law
 
 
 def test_that_a_power_law_falls_as_it_says() -> None:

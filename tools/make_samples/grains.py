@@ -15,7 +15,7 @@ from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.decimation import decimated
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.imaging.contour import contour
-from regolith_studio.imaging.waves import SphereField, power_law
+from tools.make_samples.random_fields import SphereField, power_law
 
 Radius = Callable[[FloatArray], FloatArray]
 """Distance from the centre to the surface along unit directions, shape (n, 3) to (n,)."""

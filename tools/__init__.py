@@ -1,0 +1,1 @@
+"""Tools for developers of Regolith Studio; not part of the package."""

@@ -1,0 +1,1 @@
+"""The synthetic samples that ship with the program: ``python -m tools.make_samples FOLDER``."""
