@@ -76,8 +76,8 @@ def one(particles: int, jobs: int) -> Run:
     """In the process: perform the recipe in a temporary folder."""
     from regolith_studio.jobs.events import Started
     from regolith_studio.jobs.executor import Executor
-    from regolith_studio.session.performing import perform
     from regolith_studio.session.recipe import recipe_of
+    from regolith_studio.session.run_recipe import run_recipe
 
     wish = recipe_of(
         inputs=[],
@@ -91,7 +91,7 @@ def one(particles: int, jobs: int) -> Run:
     with tempfile.TemporaryDirectory() as place, _watched() as memory:
         folder = Path(place) / "out"
         executor, begun, mark = Executor(jobs), time.perf_counter(), 0.0
-        for step in perform(wish, Path(place), folder, executor):
+        for step in run_recipe(wish, Path(place), folder, executor):
             if isinstance(step, Started) and step.title.startswith("Writing"):
                 mark = time.process_time()
         assembling = time.process_time() - mark

@@ -115,11 +115,11 @@ def _anneal(window: Any, _folder: Path) -> None:
 def _batch(window: Any, folder: Path, workers: int) -> None:
     from regolith_studio.jobs.events import Job
     from regolith_studio.jobs.executor import ExecutorSettings
-    from regolith_studio.session.hired import perform_hired
-    from regolith_studio.session.portrait import Portrait
+    from regolith_studio.session.batch_job import run_recipe_job
+    from regolith_studio.session.session_recipe import SessionRecipe
 
-    recipe = Portrait.of(window.session.particles, window.session.choices).recipe
-    job = Job(perform_hired, (recipe, folder.parent, folder, ExecutorSettings(workers=workers), False))
+    recipe = SessionRecipe.of(window.session.particles, window.session.choices).recipe
+    job = Job(run_recipe_job, (recipe, folder.parent, folder, ExecutorSettings(workers=workers), False))
     window.session.run("batch", "Batch", job, lambda _done: None)
 
 

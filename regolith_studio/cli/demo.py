@@ -8,7 +8,7 @@ import typer
 from regolith_studio.cli.options import Folder, Jobs, Json, Seed
 
 if TYPE_CHECKING:
-    from regolith_studio.session.performing import Performed
+    from regolith_studio.session.run_recipe import RecipeRun
 
 PICTURE = "three-views.png"
 
@@ -22,11 +22,11 @@ def demo(
     """Run the whole chain on the shipped particles: dataset, picture, Fig. 3, Fig. 8, summary page."""
     from regolith_studio.cli.terminal import complain, follow, print_json
     from regolith_studio.session.outputs.summary import write_summary
-    from regolith_studio.session.performing import perform
     from regolith_studio.session.recipe import Outputs, recipe_of
+    from regolith_studio.session.run_recipe import run_recipe
 
     everything = Outputs(fits=True, lmax_study=True, coarsening_study=True, summary=False)
-    done = follow(perform(recipe_of(seed=seed, outputs=everything), Path(), output, jobs))
+    done = follow(run_recipe(recipe_of(seed=seed, outputs=everything), Path(), output, jobs))
     done.summary.pictures = _pictures(done)
     write_summary(output, done.recipe, done.summary, done.studies, done.problems)
     complain(done.problems)
@@ -37,7 +37,7 @@ def demo(
     raise typer.Exit(1 if done.problems else 0)
 
 
-def _pictures(done: "Performed") -> tuple[tuple[str, str], ...]:
+def _pictures(done: "RecipeRun") -> tuple[tuple[str, str], ...]:
     """The three views of the first particle; where nothing can be drawn, a sentence in their place."""
     from regolith_studio.cli.picture import draw_three_views
     from regolith_studio.cli.terminal import follow

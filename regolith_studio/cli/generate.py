@@ -88,7 +88,7 @@ def generate(
     from regolith_studio.io.atomic import staged_folder
     from regolith_studio.jobs.model_jobs import GenerationRequest, draw, fit_model, groups_of
     from regolith_studio.session.choices import Choices
-    from regolith_studio.session.outputs.virtual import Generated, write_document
+    from regolith_studio.session.outputs.virtual_particles import Generated, write_document
 
     with as_bad_use():
         Choices(level=level)
@@ -153,14 +153,14 @@ def _named(fitted: Any, names: str) -> Any:
 def _write(stage: Path, made: Any, format_: str, level: int, jobs: int) -> dict[str, Any]:
     from regolith_studio.cli.terminal import follow
     from regolith_studio.jobs.model_jobs import write_meshes
-    from regolith_studio.session.outputs import virtual
+    from regolith_studio.session.outputs import virtual_particles
 
     if format_ == "npz":
-        virtual.write_coefficients(stage, made)
-        return {"files": [virtual.ARRAYS, virtual.TABLE]}
+        virtual_particles.write_coefficients(stage, made)
+        return {"files": [virtual_particles.ARRAYS, virtual_particles.TABLE]}
     facts = follow(write_meshes(made.draws, made.groups, level, stage, jobs))
-    virtual.write_table_of_meshes(stage, made, facts)
-    return {"level": level, "files": ["*.stl", virtual.TABLE]}
+    virtual_particles.write_table_of_meshes(stage, made, facts)
+    return {"level": level, "files": ["*.stl", virtual_particles.TABLE]}
 
 
 def _save(stem: Path, made: Any) -> None:

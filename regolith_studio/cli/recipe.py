@@ -61,8 +61,8 @@ def run(
     """Do all that a recipe asks for: descriptors, fits, meshes, dataset, studies, summary."""
     from regolith_studio.cli.terminal import complain, follow, print_json
     from regolith_studio.jobs.executor import ExecutorSettings
-    from regolith_studio.session.performing import perform
     from regolith_studio.session.recipe import read_recipe
+    from regolith_studio.session.run_recipe import run_recipe
 
     wish = read_recipe(recipe)
     if seed is not None:
@@ -70,7 +70,7 @@ def run(
     with as_bad_use():
         settings = ExecutorSettings(runner, jobs, address, tls)
     with contextlib.closing(_open_executor(settings)) as executor:
-        done = follow(perform(wish, recipe.parent, output, executor, resume, chunk), logged=True)
+        done = follow(run_recipe(wish, recipe.parent, output, executor, resume, chunk), logged=True)
     complain(done.problems)
     if json:
         print_json({"folder": str(output), "files": done.files, "problems": list(done.problems)})

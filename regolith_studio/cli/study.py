@@ -159,12 +159,12 @@ def solids(
 ) -> None:
     """The polyhedra that each set of loss weights makes of each particle (Fig. 7)."""
     from regolith_studio.cli.inputs import exit_code
-    from regolith_studio.session.solids import study_solids
+    from regolith_studio.session.study_requests import study_gallery
 
     wish = how.choices(n_facets=facets, seed=seed)
     rows = _rows(loss, wish, bool(how.weight))
     loaded = reading.read(meshes)
-    study = partial(study_solids, loaded.particles, wish.order, rows, jobs)
+    study = partial(study_gallery, loaded.particles, wish.order, rows, jobs)
     conclude("solids_study", study, output, json, resume)
     raise typer.Exit(exit_code(meshes, loaded))
 
@@ -226,7 +226,7 @@ def population(
 
 def _rows(names: Sequence[str] | None, wish: "Choices", weighted: bool) -> "tuple[StudyRow, ...]":
     """The rows of a study by name; without names Fig. 8's, and those that the options weight."""
-    from regolith_studio.session.variations import CHOSEN, chosen_rows
+    from regolith_studio.session.study_requests import CHOSEN, chosen_rows
     from regolith_studio.studies.loss_rows import PAPER_ROWS
 
     with as_bad_use():

@@ -66,7 +66,7 @@ class VariedOptions:
         """Do the study of this key and leave the program with its exit code."""
         from regolith_studio.cli.inputs import exit_code
         from regolith_studio.jobs.study_jobs import study_coarsening
-        from regolith_studio.session.variations import varied_rows
+        from regolith_studio.session.study_requests import varied_rows
 
         check_box(self.box)
         wish = self.how.choices(self.preset, n_facets=n_facets, seed=self.seed)

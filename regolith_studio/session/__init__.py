@@ -27,7 +27,7 @@ The events are those of :class:`~regolith_studio.session.events.SessionEvents`, 
 owns the session; ``choices`` carries the names of the fields that have changed.
 
 Which work a change of choices makes necessary is decided by the pure function
-:func:`~regolith_studio.session.plan.plan`; requests are numbered and answers to old ones dropped.
+:func:`~regolith_studio.session.dependencies.plan`; requests are numbered and answers to old ones dropped.
 
 The runner of a window::
 

@@ -10,9 +10,9 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from regolith_studio.errors import FileError, of_the_entry
 from regolith_studio.io.atomic import write_bytes
 from regolith_studio.readers.file_bytes import read_bytes
-from regolith_studio.session.portrait import Portrait
 from regolith_studio.session.recipe import LARGEST, SAMPLE, Recipe
 from regolith_studio.session.session import Session
+from regolith_studio.session.session_recipe import SessionRecipe
 from regolith_studio.shape_models.protocol import FittedModel
 
 FORMAT: Literal["regolith-studio project"] = "regolith-studio project"
@@ -47,7 +47,7 @@ class Project(BaseModel):
     @classmethod
     def of(cls, session: Session, page: str = "", pages: dict[str, dict[str, Any]] | None = None) -> Self:
         """The present state of a session."""
-        recipe = Portrait.of(session.particles, session.choices).recipe
+        recipe = SessionRecipe.of(session.particles, session.choices).recipe
         return cls(recipe=recipe, selected=session.choices.selected, page=page, pages=pages or {})
 
     def save(self, path: Path, model: FittedModel | None = None) -> None:
@@ -63,7 +63,7 @@ class Project(BaseModel):
         FileError
             If the file cannot be written.
         """
-        recipe = Portrait(self.recipe, model).beside(path)
+        recipe = SessionRecipe(self.recipe, model).beside(path)
         whole = self.model_copy(update={"recipe": recipe})
         write_bytes(path, whole.model_dump_json(indent=2).encode("utf-8") + b"\n")
 
@@ -111,4 +111,4 @@ def input_shown(session: Session) -> str:
 
 def without_file(session: Session) -> Sequence[str]:
     """Ids of open particles that neither a recipe nor a project can bring back."""
-    return list(Portrait.of(session.particles, session.choices).lost)
+    return list(SessionRecipe.of(session.particles, session.choices).lost)

@@ -1,23 +1,21 @@
 """A recipe: everything that turns files into results, as JSON; the window saves it, ``run`` takes it."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from regolith_studio.coarsening.coarsen import DEFAULT_METHOD, DEFAULT_PRESET
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.errors import FileError, InputError, of_the_entry
 from regolith_studio.harmonics.fit import DEFAULT_FIT_OPTIONS
 from regolith_studio.readers.file_bytes import read_bytes
-from regolith_studio.session.choices import Choices, Scalar
-from regolith_studio.session.recipe_dataset import Exports, Representatives
-from regolith_studio.session.recipe_inputs import Chosen, FilesEntry, Population, Strict, VolumeEntry
+from regolith_studio.session.choices import L_MAX_LIMIT, LEVEL_LIMITS, Choices, Scalar
 
 FORMAT: Literal["regolith-studio recipe"] = "regolith-studio recipe"
 VERSION: Literal[2] = 2
-"""Version 1 knew material cards as the only population and no volumes; it is still read."""
 LARGEST = 16_000_000
 """Bytes of a recipe or project that are read: 100,000 inputs by name, and four seconds at the worst."""
 SAMPLE = "sample:all"
@@ -30,6 +28,178 @@ _CHOICES = (
 )
 Stop = Literal["facets", "triangles", "error"]
 """Which of the three numbers says how fine polyhedra are."""
+
+
+Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
+Edges = Annotated[list[float], Field(min_length=3, max_length=3)]
+
+
+class Strict(BaseModel):
+    """Refuses what it does not know, and values of another type."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+
+class Population(Strict):
+    """Virtual particles among the inputs.
+
+    Parameters
+    ----------
+    sources
+        What they are drawn like: the name of a shipped material card; the file of a card, a fit or a fitted
+        model; or meshes and tables of coefficients, files and folders, that are measured for it. Relative
+        files are looked up beside the recipe.
+    model, settings
+        Key of the model of shapes that is fitted to a fit or to meshes, and its settings; the default
+        model where left out.
+    n
+        Particles to draw, with the seed of the recipe.
+    l_max
+        Degree of their surfaces; that of the source and at most 10 where left out.
+    size_range
+        Smallest and largest equivalent radius in micrometres.
+    seed
+        Of the draws; that of the recipe where left out.
+    level
+        Subdivisions of the icosahedron that their surfaces are drawn on; that of the recipe where left out.
+    name
+        What they are called, and their group where the model has no parts; by default after the first source.
+    """
+
+    sources: list[str] = Field(min_length=1)
+    model: str = ""
+    settings: dict[str, Scalar] = Field(default_factory=dict)
+    n: int = Field(ge=1, le=1_000_000)
+    l_max: int | None = Field(default=None, ge=1, le=L_MAX_LIMIT)
+    size_range: Pair | None = None
+    seed: int | None = Field(default=None, ge=0, lt=2**63)
+    level: int | None = Field(default=None, ge=LEVEL_LIMITS[0], le=LEVEL_LIMITS[1])
+    name: str = ""
+
+    @property
+    def bounds(self) -> tuple[float, float] | None:
+        """The size range as a pair."""
+        return None if self.size_range is None else (self.size_range[0], self.size_range[1])
+
+
+class FilesEntry(Strict):
+    """Files and folders that are read together, in a unit of their own; relative to the recipe."""
+
+    files: list[str] = Field(min_length=1)
+    unit: str
+    repair: bool = True
+
+
+class NamedParticle(Strict):
+    """One particle of the inputs, under another name than theirs would be."""
+
+    name: str
+    called: str
+
+
+class RawVolume(Strict):
+    """What a raw file does not say about itself: voxels along x, y, z, their type, where they begin."""
+
+    shape: Annotated[list[int], Field(min_length=3, max_length=3)]
+    dtype: str = "uint8"
+    byte_order: str = "little"
+    offset: int = 0
+
+
+class VolumeEntry(Strict):
+    """A CT volume whose grains are among the inputs.
+
+    Parameters
+    ----------
+    file
+        File, or folder of slices, relative to the recipe; ``sample:grey`` or ``sample:labels`` for the
+        scan that ships with the program.
+    voxel_size, unit, kind, dataset, axes, raw
+        As ``regolith-studio extract`` takes them; by default what the file says.
+    recipe
+        An ``extraction.json`` with all settings, as ``extract`` and the window write it.
+    segmentation, extraction
+        The settings themselves, in place of such a file.
+    """
+
+    file: str
+    voxel_size: float | Edges | None = None
+    unit: str | None = None
+    kind: Literal["labels", "grey"] | None = None
+    dataset: str | None = None
+    axes: str | None = None
+    raw: RawVolume | None = None
+    recipe: str | None = None
+    segmentation: dict[str, Any] = Field(default_factory=dict)
+    extraction: dict[str, Any] = Field(default_factory=dict)
+
+    @model_validator(mode="after")
+    def _one_way(self) -> Self:
+        if self.recipe is not None and (self.segmentation or self.extraction):
+            raise ValueError("give settings or the recipe that holds them, not both")
+        return self
+
+
+class Representatives(Strict):
+    """As ``regolith-studio dataset build`` takes them.
+
+    Parameters
+    ----------
+    count
+        Particles that stand for all; with 0 each stands for itself.
+    weighting
+        What they count: ``number`` or ``volume``.
+    size_importance
+        How much a standard deviation of ln d counts in their choice against one of a shape feature.
+    seed
+        Of the choice among very many particles; that of the recipe where left out.
+    sizes
+        Size distributions of the classes, such as ``measured`` or ``classes:25,37,56``.
+    name
+        Of the dataset; that of the folder of the results where left out.
+    """
+
+    count: int = Field(default=10, ge=0)
+    weighting: Literal["number", "volume"] = "number"
+    size_importance: float = Field(default=0.0, ge=0.0)
+    seed: int | None = Field(default=None, ge=0, lt=2**63)
+    sizes: str = "measured"
+    name: str = ""
+
+
+class Exports(Strict):
+    """As ``regolith-studio dataset export`` takes them.
+
+    Parameters
+    ----------
+    targets
+        Keys of the formats, or ``all``.
+    coarse_graining
+        By which all diameters are enlarged.
+    particles
+        Bodies in formats that list single ones.
+    seed
+        Of their draw; that of the recipe where left out.
+    settings
+        Of contact, cylinder, times or formats, by their names, in SI units.
+    lossy
+        Whether formats that change the shapes are allowed.
+    """
+
+    targets: list[str] = Field(min_length=1)
+    coarse_graining: float = 10.0
+    particles: int = 200
+    seed: int | None = Field(default=None, ge=0, lt=2**63)
+    settings: dict[str, int | float] = Field(default_factory=dict)
+    lossy: bool = False
+
+
+@dataclass(frozen=True)
+class DatasetRequest:
+    """What the page of the dataset has chosen."""
+
+    representatives: Representatives | None = None
+    exports: Exports | None = None
 
 
 class Outputs(Strict):
@@ -74,7 +244,7 @@ class Recipe(Strict):
     inputs: list[str | FilesEntry] = Field(default_factory=lambda: list[str | FilesEntry]([SAMPLE]))
     volumes: list[VolumeEntry] = Field(default_factory=list)
     population: Population | None = None
-    particles: list[str | Chosen] | None = Field(default=None, min_length=1)
+    particles: list[str | NamedParticle] | None = Field(default=None, min_length=1)
     unit: str = "um"
     repair: bool = True
     star_point: str = DEFAULT_FIT_OPTIONS.star_point
@@ -99,12 +269,10 @@ class Recipe(Strict):
 
     @model_validator(mode="before")
     @classmethod
-    def _upgraded(cls, document: Any) -> Any:
-        """Version 1 as version 2; without inputs, what else there is is all."""
+    def _without_sample(cls, document: Any) -> Any:
+        """Take no sample by default where there are volumes or a population."""
         if not isinstance(document, dict):
             return document
-        if document.get("version") == 1:
-            return {**document, "version": VERSION}
         others = document.get("volumes") or document.get("population")
         return {"inputs": [], **document} if others else document
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from regolith_studio.geometry.mesh_health import MeshHealth
     from regolith_studio.harmonics.fit import HarmonicFit
     from regolith_studio.harmonics.visibility import StarPointVisibility
-    from regolith_studio.session.origins import Place
+    from regolith_studio.session.provenance import ParticleRef
     from regolith_studio.studies.coarsening import CoarseningStudy
     from regolith_studio.studies.lmax import LmaxStudy
 
@@ -36,7 +36,7 @@ class ParticleEntry:
     particle: Particle
     health: "MeshHealth | None" = None
     descriptors: "Descriptors | None" = None
-    place: "Place | None" = None
+    place: "ParticleRef | None" = None
     visibility: "StarPointVisibility | None" = None
 
 

@@ -17,18 +17,24 @@ from regolith_studio.jobs.particle_jobs import (
 )
 from regolith_studio.jobs.runners.protocol import Runner
 from regolith_studio.readers.particles import FileProblem, LoadedParticles, unique_names
-from regolith_studio.session.bringing import Brought, bring_back
 from regolith_studio.session.choices import Choices
+from regolith_studio.session.dependencies import STUDIES, Kind, depends
 from regolith_studio.session.events import Failure, SessionEvents
-from regolith_studio.session.live import LiveResults
-from regolith_studio.session.origins import Files, Origin, Place, Shipped, place_by_source, places_of
-from regolith_studio.session.plan import STUDIES, Kind, depends
-from regolith_studio.session.recipe import SAMPLE, Recipe
-from regolith_studio.session.recipe_dataset import Standing
+from regolith_studio.session.history import History
+from regolith_studio.session.provenance import (
+    FileSource,
+    ParticleRef,
+    ParticleSource,
+    SampleSource,
+    place_by_source,
+    places_of,
+)
+from regolith_studio.session.recipe import SAMPLE, DatasetRequest, Recipe
+from regolith_studio.session.recompute import LiveResults
+from regolith_studio.session.restore import RestoredParticles, restore_particles
 from regolith_studio.session.results import ParticleEntry, Results
-from regolith_studio.session.studies import study_job
+from regolith_studio.session.study_requests import study_job
 from regolith_studio.session.tasks import Reactions, Task, TaskBoard
-from regolith_studio.session.undo import History
 
 
 class Session:
@@ -63,9 +69,9 @@ class Session:
         self._live = LiveResults(self, self._board)
         self._studied: dict[Kind, Choices] = {}
         self._dataset_folder: Path | None = None
-        self._opened_request: Standing | None = None
+        self._opened_request: DatasetRequest | None = None
         self.runs_folder: Path | None = None
-        self.dataset_request: Standing | None = None
+        self.dataset_request: DatasetRequest | None = None
 
     # --- reading -------------------------------------------------------------------------------
 
@@ -105,12 +111,12 @@ class Session:
         self.events.dataset_folder.emit()
 
     @property
-    def opened_request(self) -> Standing | None:
+    def opened_request(self) -> DatasetRequest | None:
         """What the recipe that was opened last says of its dataset."""
         return self._opened_request
 
     @opened_request.setter
-    def opened_request(self, request: Standing) -> None:
+    def opened_request(self, request: DatasetRequest) -> None:
         self._opened_request = request
         self.events.opened_request.emit()
 
@@ -137,12 +143,12 @@ class Session:
         unit = unit or self.choices.unit
         repair = self.choices.repair if repair is None else repair
         named = tuple(Path(path).absolute() for path in paths)
-        origin = Files(tuple(map(str, named)), unit, repair)
+        origin = FileSource(tuple(map(str, named)), unit, repair)
         return self._load("Reading particles", Job(load_particles, (named, unit, repair)), origin, add)
 
     def open_sample(self) -> int:
         """Load the particles that ship with the program; returns the task's id."""
-        return self._load("Reading the sample", Job(load_sample), Shipped())
+        return self._load("Reading the sample", Job(load_sample), SampleSource())
 
     def open_recipe(self, recipe: Recipe, beside: Path) -> int:
         """Bring the particles of a recipe into the session, read, extracted or drawn; returns the task's id.
@@ -158,11 +164,11 @@ class Session:
             ((files, unit, repair),) = recipe.openings
             return self.open([beside / file for file in files], unit, repair=repair)
 
-        def take(brought: Brought) -> None:
+        def take(brought: RestoredParticles) -> None:
             self._replace_particles(brought.loaded, brought.places)
 
         title = "Bringing particles back"
-        job = Job(bring_back, (recipe, beside))
+        job = Job(restore_particles, (recipe, beside))
         return self._board.start("load", title, job, Reactions(take, failed=self.tell_failure(title)))
 
     def keep(self, ids: Collection[str]) -> None:
@@ -179,7 +185,9 @@ class Session:
         loaded = LoadedParticles(tuple(entry.particle for entry in kept))
         self._replace_particles(loaded, tuple(entry.place for entry in kept))
 
-    def adopt(self, particles: Sequence[Particle], add: bool = False, origin: Origin | None = None) -> None:
+    def adopt(
+        self, particles: Sequence[Particle], add: bool = False, origin: ParticleSource | None = None
+    ) -> None:
         """Take particles that have been made elsewhere, as if they had been read.
 
         Parameters
@@ -363,14 +371,14 @@ class Session:
             changed = names ^ self.results.outdated
             self.update(*sorted(changed), outdated=names)
 
-    def _load(self, title: str, job: Job, origin: Origin, add: bool = False) -> int:
+    def _load(self, title: str, job: Job, origin: ParticleSource, add: bool = False) -> int:
         def take(loaded: LoadedParticles) -> None:
             self._replace_particles(loaded, places_of(loaded.particles, origin), add)
 
         return self._board.start("load", title, job, Reactions(take, failed=self.tell_failure(title)))
 
     def _replace_particles(
-        self, loaded: LoadedParticles, places: Sequence[Place | None] = (), add: bool = False
+        self, loaded: LoadedParticles, places: Sequence[ParticleRef | None] = (), add: bool = False
     ) -> None:
         if loaded.problems:
             self.events.problems.emit(loaded.problems)

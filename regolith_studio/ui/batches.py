@@ -8,18 +8,18 @@ from PySide6.QtWidgets import QWidget
 
 from regolith_studio.errors import RegolithError
 from regolith_studio.jobs.events import Failed, Job
-from regolith_studio.session.hired import Hired, perform_hired
-from regolith_studio.session.portrait import Portrait
+from regolith_studio.session.batch_job import ExecutorReady, run_recipe_job
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.session.project import without_file
 from regolith_studio.session.recipe import Recipe, read_recipe
 from regolith_studio.session.session import Session
+from regolith_studio.session.session_recipe import SessionRecipe
 from regolith_studio.ui.dialogs.batch import BatchDialog, BatchOrder
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.toast import Toast
 
 if TYPE_CHECKING:  # what it brings is loaded when a batch runs
-    from regolith_studio.session.performing import Performed
+    from regolith_studio.session.run_recipe import RecipeRun
 
 TITLE = mark("Running the recipe")
 
@@ -79,7 +79,7 @@ class Batches(QObject):
             dialog.finish(str(error))
             return
         base = order.recipe.parent if order.recipe else Path.cwd()
-        job = Job(perform_hired, (recipe, base, order.folder, order.executor, order.resume))
+        job = Job(run_recipe_job, (recipe, base, order.folder, order.executor, order.resume))
         self._task = self._session.run(
             "batch", TITLE, job, self._done, self._hired, self._failed, self._stopped
         )
@@ -89,14 +89,14 @@ class Batches(QObject):
         if order.recipe:
             return read_recipe(order.recipe)
         standing = self._session.dataset_request
-        portrait = Portrait.of(self._session.particles, self._session.choices, order.outputs, standing)
+        portrait = SessionRecipe.of(self._session.particles, self._session.choices, order.outputs, standing)
         return portrait.beside((order.folder / "drawn.json").absolute(), whole_path=True)
 
     def _hired(self, value: object) -> None:
-        if isinstance(value, Hired) and self._dialog is not None:
+        if isinstance(value, ExecutorReady) and self._dialog is not None:
             self._dialog.show_hired(value)
 
-    def _done(self, done: "Performed") -> None:
+    def _done(self, done: "RecipeRun") -> None:
         written = tr("Done: {count} files in {folder}.", count=len(done.files), folder=done.folder)
         failed = tr("{count} problems are listed in failed.csv.", count=len(done.problems))
         self._end(" ".join((written, *((failed,) if done.problems else ()))), report=True)

@@ -11,17 +11,16 @@ from PySide6.QtWidgets import QDialog, QFileDialog, QWidget
 
 from regolith_studio.errors import RegolithError
 from regolith_studio.io.atomic import write_bytes
-from regolith_studio.session.bringing import MOST
 from regolith_studio.session.choices import Choices
-from regolith_studio.session.opening import FileKind, kind_of_all
-from regolith_studio.session.plan import Kind
-from regolith_studio.session.portrait import Portrait
+from regolith_studio.session.code_export import as_command, as_python
+from regolith_studio.session.dependencies import Kind
+from regolith_studio.session.file_kinds import FileKind, kind_of_all
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.session.project import input_shown, inputs_of
-from regolith_studio.session.recipe import read_recipe
-from regolith_studio.session.recipe_dataset import Standing
-from regolith_studio.session.scripting import as_command, as_python
+from regolith_studio.session.recipe import DatasetRequest, read_recipe
+from regolith_studio.session.restore import MOST
 from regolith_studio.session.session import Session
+from regolith_studio.session.session_recipe import SessionRecipe
 from regolith_studio.ui.dialogs.export import ExportDialog, ExportOrder
 from regolith_studio.ui.dialogs.unit import UnitDialog
 from regolith_studio.ui.translation import mark, tr
@@ -37,7 +36,7 @@ MESH_FILTERS = (
 T = TypeVar("T")
 
 
-def without(portrait: Portrait) -> tuple[str, ...]:
+def without(portrait: SessionRecipe) -> tuple[str, ...]:
     """What a recipe or project lacks, as one sentence; none where it is nothing."""
     if not portrait.lost:
         return ()
@@ -114,7 +113,7 @@ class Commands(QObject):
         if not name:
             return
         standing = self._session.dataset_request
-        portrait = Portrait.of(self._session.particles, self._session.choices, standing=standing)
+        portrait = SessionRecipe.of(self._session.particles, self._session.choices, standing=standing)
         try:
             write_bytes(Path(name), portrait.beside(Path(name)).to_json().encode("utf-8"))
         except RegolithError as error:
@@ -183,7 +182,7 @@ class Commands(QObject):
         names = {each.name for each in dataclasses.fields(Choices)} - {"selected"}
         self._session.choose(**{name: getattr(recipe.choices(), name) for name in names})
         if recipe.representatives or recipe.exports:
-            self._session.opened_request = Standing(recipe.representatives, recipe.exports)
+            self._session.opened_request = DatasetRequest(recipe.representatives, recipe.exports)
         if recipe.population is not None and recipe.population.n > MOST:
             self._toast.note(tr("Its choices are taken; it is too large to be opened: use Run as a batch."))
             return None

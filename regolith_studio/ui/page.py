@@ -8,7 +8,7 @@ from typing import Any
 from PySide6.QtWidgets import QWidget
 
 from regolith_studio.jobs.events import Failed, Job
-from regolith_studio.session.opening import FileKind
+from regolith_studio.session.file_kinds import FileKind
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.session.session import Session
 from regolith_studio.ui.action_spec import ActionSpec

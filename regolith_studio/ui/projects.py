@@ -8,10 +8,10 @@ from PySide6.QtCore import QDateTime, QLockFile, QObject, QTimer, Signal
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
 from regolith_studio.errors import RegolithError
-from regolith_studio.session.portrait import Portrait
 from regolith_studio.session.preferences import preferences_path
 from regolith_studio.session.project import SUFFIX, Project, read_project
 from regolith_studio.session.session import Session
+from regolith_studio.session.session_recipe import SessionRecipe
 from regolith_studio.ui.commands import without
 from regolith_studio.ui.page_stack import PageStack
 from regolith_studio.ui.translation import mark, tr
@@ -135,8 +135,8 @@ class Projects(QObject):
         pages = {key: state for key, widget in self._pages.widgets.items() if (state := widget.state())}
         return Project.of(self._session, self._pages.current, pages)
 
-    def _portrait(self) -> Portrait:
-        return Portrait.of(self._session.particles, self._session.choices)
+    def _portrait(self) -> SessionRecipe:
+        return SessionRecipe.of(self._session.particles, self._session.choices)
 
     def _write(self, path: Path) -> bool:
         state, portrait = self._state(), self._portrait()

@@ -10,7 +10,7 @@ import pytest
 from regolith_studio.cli.entry import run
 from regolith_studio.dataset.folder_io import read_dataset
 from regolith_studio.readers.particles import sample_particles
-from regolith_studio.session.batch import items
+from regolith_studio.session.batch import inputs
 
 EXPECTED = {
     "summary.html",
@@ -60,7 +60,7 @@ def test_that_the_demo_shows_the_whole_chain(
     command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     few = [particle for particle in sample_particles() if particle.name in ("angular-1", "bead-2")]
-    monkeypatch.setattr(items, "sample_particles", lambda: few)
+    monkeypatch.setattr(inputs, "sample_particles", lambda: few)
     said = command("demo", "-o", tmp_path / "demo", "--jobs", 1)
     assert said.err == ""
     assert said.code == 0

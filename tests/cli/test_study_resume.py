@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from regolith_studio.session import solids
+from regolith_studio.session import study_requests
 from regolith_studio.studies import coarsening, lmax, population_work
 
 STUDIES: dict[str, tuple[Any, str, tuple[object, ...]]] = {
@@ -17,7 +17,11 @@ STUDIES: dict[str, tuple[Any, str, tuple[object, ...]]] = {
         "coarsening_errors",
         ("--method", "annealing", "--set", "iterations=5", "--weight", "volume=1", "--facets", 12),
     ),
-    "solids": (solids, "solids_of", ("--method", "quadric", "--loss", "all", "--loss", "only_volume")),
+    "solids": (
+        study_requests,
+        "coarsen_column",
+        ("--method", "quadric", "--loss", "all", "--loss", "only_volume"),
+    ),
     "lmax": (lmax, "errors_or_reason", ("--degrees", "1,4", "--level", 2)),
 }
 

@@ -19,8 +19,8 @@ from regolith_studio.jobs.events import Progress
 from regolith_studio.jobs.executor import Executor
 from regolith_studio.jobs.runners import dask_cluster
 from regolith_studio.jobs.runners.dask_cluster import TlsFiles
-from regolith_studio.session.performing import perform
 from regolith_studio.session.recipe import Recipe, recipe_of
+from regolith_studio.session.run_recipe import run_recipe
 
 pytest.importorskip("distributed")
 pytestmark = pytest.mark.filterwarnings("default")  # Dask's own
@@ -46,7 +46,7 @@ def digests(folder: Path) -> dict[str, bytes]:
 
 
 def done(folder: Path, executor: Executor | int, n: int = 12) -> dict[str, bytes]:
-    for _ in perform(wish(n), folder.parent, folder, executor, chunk=2):
+    for _ in run_recipe(wish(n), folder.parent, folder, executor, chunk=2):
         pass
     return digests(folder)
 
@@ -115,7 +115,7 @@ def test_that_a_cluster_that_loses_a_worker_ends_with_the_same_bytes(
     with cluster() as there, closing(Executor.on_cluster(there.address)) as executor:
         executor._runner._client.wait_for_workers(2, timeout=60)  # type: ignore[union-attr]
         killed = False
-        for step in perform(wish(), tmp_path, tmp_path / "out", executor, chunk=2):
+        for step in run_recipe(wish(), tmp_path, tmp_path / "out", executor, chunk=2):
             if isinstance(step, Progress) and step.done >= 2 and not killed:
                 there.workers[0].send_signal(signal.SIGKILL)
                 killed = True
@@ -128,12 +128,12 @@ def test_that_a_cluster_that_goes_away_is_one_sentence_and_the_run_can_go_on(
     tmp_path: Path, alone: dict[str, bytes]
 ) -> None:
     with cluster() as there, closing(Executor.on_cluster(there.address)) as executor:
-        steps = perform(wish(), tmp_path, tmp_path / "out", executor, chunk=2)
+        steps = run_recipe(wish(), tmp_path, tmp_path / "out", executor, chunk=2)
         with pytest.raises(EnvironmentProblem, match="--resume"):  # noqa: PT012
             for step in steps:
                 if isinstance(step, Progress) and step.done >= 4:
                     there.scheduler.kill()
-    for _ in perform(wish(), tmp_path, tmp_path / "out", resume=True):
+    for _ in run_recipe(wish(), tmp_path, tmp_path / "out", resume=True):
         pass
     assert digests(tmp_path / "out") == alone
 

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from regolith_studio.session.performing import perform
 from regolith_studio.session.recipe import recipe_of
+from regolith_studio.session.run_recipe import run_recipe
 
 pytest.importorskip("distributed")
 pytest.importorskip("dask_jobqueue")
@@ -81,7 +81,7 @@ def test_that_the_script_of_the_guide_brings_workers_that_give_the_same_bytes(
     names = {"input": work, "print": said.append}
     exec(compile(here(script()), "docs/batch.md", "exec"), names)
     names["cluster"].close()
-    for _ in perform(wish, tmp_path, tmp_path / "b" / "out"):
+    for _ in run_recipe(wish, tmp_path, tmp_path / "b" / "out"):
         pass
     assert results(tmp_path / "a" / "out") == results(tmp_path / "b" / "out")
     told = (tmp_path / "job.sh").read_text()

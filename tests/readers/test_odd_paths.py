@@ -20,7 +20,7 @@ from regolith_studio.readers.particles import FileProblem, read_mesh
 from regolith_studio.readers.positions import read_positions
 from regolith_studio.readers.shape_files import read_shape_source
 from regolith_studio.readers.volumes.read import describe_volume
-from regolith_studio.session.opening import FileKind, kind_of
+from regolith_studio.session.file_kinds import FileKind, kind_of
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.session.project import read_project
 from regolith_studio.session.recipe import read_recipe

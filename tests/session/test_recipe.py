@@ -12,7 +12,6 @@ from regolith_studio.session.choices import Choices
 from regolith_studio.session.recipe import (
     LARGEST,
     Outputs,
-    Population,
     Recipe,
     read_recipe,
     recipe_of,
@@ -74,14 +73,6 @@ def test_that_an_empty_recipe_means_the_defaults(tmp_path: Path) -> None:
 def test_that_a_bad_recipe_is_refused_with_the_entry_named(tmp_path: Path, text: str, words: str) -> None:
     with pytest.raises(FileError, match=words):
         read_recipe(written(tmp_path, text))
-
-
-def test_that_a_recipe_of_version_1_means_what_it_meant(tmp_path: Path) -> None:
-    text = '{"version": 1, "population": {"card": "ma165", "n": 7, "l_max": 6}, "n_facets": 12}'
-    recipe = read_recipe(written(tmp_path, text))
-    assert recipe.version == 2
-    assert recipe.inputs == ["sample:all"]
-    assert recipe.population == Population(sources=["ma165"], n=7, l_max=6)
 
 
 def test_that_volumes_and_a_population_stand_alone_unless_inputs_are_named(tmp_path: Path) -> None:

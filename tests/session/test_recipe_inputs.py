@@ -18,9 +18,9 @@ from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
 from regolith_studio.jobs.volume_jobs import extract_file
 from regolith_studio.readers.particles import read_mesh
 from regolith_studio.resources import resource
-from regolith_studio.session.batch.prepared import read_grain, read_index
-from regolith_studio.session.performing import perform
+from regolith_studio.session.batch.preprocessing import read_grain, read_index
 from regolith_studio.session.recipe import recipe_of
+from regolith_studio.session.run_recipe import run_recipe
 from regolith_studio.shape_models.files import write_model
 from regolith_studio.shape_models.materials import materials
 
@@ -37,7 +37,7 @@ def ended(steps: Any) -> Any:
 
 
 def run(folder: Path, resume: bool = False, workers: int = 1, **entries: Any) -> Any:
-    return ended(perform(recipe_of(**{**BASE, **entries}), folder.parent, folder, workers, resume))
+    return ended(run_recipe(recipe_of(**{**BASE, **entries}), folder.parent, folder, workers, resume))
 
 
 def results(folder: Path) -> dict[str, bytes]:
@@ -115,7 +115,7 @@ def test_that_a_run_given_up_while_grains_are_extracted_or_worked_on_ends_with_t
     run(tmp_path / "whole", **entries)
     for moment in ("Extracting particles", "Working on particles"):
         folder = tmp_path / moment / "whole"
-        steps = perform(recipe_of(**BASE, **entries), tmp_path, folder)
+        steps = run_recipe(recipe_of(**BASE, **entries), tmp_path, folder)
         seen = ""
         for step in steps:
             seen = step.title if isinstance(step, Started) else seen
@@ -132,7 +132,7 @@ def test_that_a_run_given_up_while_grains_are_extracted_or_worked_on_ends_with_t
 
 
 def test_that_a_grain_is_kept_bit_for_bit(tmp_path: Path, scan: dict[str, Any]) -> None:
-    steps = perform(recipe_of(**BASE, volumes=[scan]), tmp_path, tmp_path / "out")
+    steps = run_recipe(recipe_of(**BASE, volumes=[scan]), tmp_path, tmp_path / "out")
     for step in steps:
         if isinstance(step, Started) and step.title == "Working on particles":
             break

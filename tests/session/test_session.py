@@ -18,9 +18,9 @@ from regolith_studio.io.stl import stl_bytes
 from regolith_studio.jobs.dataset_jobs import DatasetOptions
 from regolith_studio.jobs.runners.inline import InlineRunner
 from regolith_studio.jobs.runners.thread import ThreadRunner
-from regolith_studio.session import live
+from regolith_studio.session import recompute
 from regolith_studio.session.choices import Choices
-from regolith_studio.session.plan import Kind
+from regolith_studio.session.dependencies import Kind
 from regolith_studio.session.session import Session
 
 SMALL = Choices(method="quadric", level=2, l_max=4)
@@ -123,7 +123,7 @@ def test_that_going_back_to_a_particle_finds_its_fit_again(opened: Session) -> N
 
 
 def test_that_only_the_last_fits_are_at_hand(opened: Session, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(live, "FITS_KEPT", 2)
+    monkeypatch.setattr(recompute, "FITS_KEPT", 2)
     first = opened.results.fit
     opened.select("grain-1")
     second = opened.results.fit

@@ -10,8 +10,8 @@ from regolith_studio.errors import InputError
 from regolith_studio.jobs.executor import Executor, ExecutorSettings
 from regolith_studio.jobs.runners import dask_cluster
 from regolith_studio.jobs.runners.thread import ThreadRunner
-from regolith_studio.session.performing import perform
 from regolith_studio.session.recipe import Outputs, recipe_of
+from regolith_studio.session.run_recipe import run_recipe
 from regolith_studio.session.session import Session
 from regolith_studio.ui.batches import Batches
 from regolith_studio.ui.dialogs.batch import BatchDialog
@@ -74,7 +74,7 @@ def digests(folder: Path):
 
 
 def alone(folder: Path):
-    for _ in perform(WISH, folder.parent, folder):
+    for _ in run_recipe(WISH, folder.parent, folder):
         pass
     return digests(folder)
 

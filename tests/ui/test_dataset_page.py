@@ -16,9 +16,8 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.jobs.runners.inline import InlineRunner
-from regolith_studio.session.performing import perform
-from regolith_studio.session.recipe import Recipe, read_recipe
-from regolith_studio.session.recipe_dataset import Exports, Representatives
+from regolith_studio.session.recipe import Exports, Recipe, Representatives, read_recipe
+from regolith_studio.session.run_recipe import run_recipe
 from regolith_studio.session.session import Session
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.dialogs.folder import FolderDialog
@@ -329,7 +328,7 @@ def test_that_a_saved_recipe_makes_the_dataset_and_the_exports_of_the_page(
     page.build_in(tmp_path / "window" / "dataset")
     page.export_to(tmp_path / "window" / "exports")
     wait(lambda: page.exports.exports)
-    for _ in perform(read_recipe(saved), tmp_path, tmp_path / "run"):
+    for _ in run_recipe(read_recipe(saved), tmp_path, tmp_path / "run"):
         pass
     for part in ("dataset", "exports"):
         assert tree(tmp_path / "run" / part) == tree(tmp_path / "window" / part)

@@ -1,7 +1,8 @@
-"""A recipe worked through particle by particle, with everything on disk at once.
+"""A recipe run particle by particle, with every result on disk at once.
 
-* :mod:`~regolith_studio.session.batch.items`: what a recipe's inputs stand for; nothing is read yet.
-* :mod:`~regolith_studio.session.batch.working`: all that is done to one particle, in any process.
-* :mod:`~regolith_studio.session.batch.sinks`: the files that the results become, one particle after
-  the other.
+* :mod:`~regolith_studio.session.batch.inputs`: what a recipe's inputs stand for; nothing is read yet.
+* :mod:`~regolith_studio.session.batch.preprocessing`: grains of volumes and fitted models, made before.
+* :mod:`~regolith_studio.session.batch.particle_task`: all that is done to one particle, in any process.
+* :mod:`~regolith_studio.session.batch.writers`: the files that the results become.
+* :mod:`~regolith_studio.session.batch.dataset_step`: the dataset and its exports.
 """

@@ -16,8 +16,8 @@ from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
 from regolith_studio.jobs.particle_jobs import MeasuredParticle
 from regolith_studio.jobs.volume_jobs import ExtractedFile
 from regolith_studio.session.outputs.descriptors import described, descriptor_table
-from regolith_studio.session.outputs.particles import STL_HEADER
 
+STL_HEADER = "Regolith Studio, particle, micrometres"
 RECIPE = "extraction.json"
 _LIBRARIES = ("scikit-image", "connected-components-3d", "vtk", "tifffile", "h5py")
 

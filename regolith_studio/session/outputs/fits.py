@@ -19,7 +19,7 @@ from regolith_studio.io.json_text import json_bytes
 from regolith_studio.io.stl import stl_bytes
 
 
-class Known(Protocol):
+class FittedParticle(Protocol):
     """What the files say of a particle besides its fit."""
 
     @property
@@ -43,7 +43,7 @@ class Known(Protocol):
 class FittedSample:
     """Particles with their fits, all of the same degree, and the sentences of those that failed."""
 
-    particles: tuple[Known, ...]
+    particles: tuple[FittedParticle, ...]
     fits: tuple[HarmonicFit, ...]
     failed: tuple[tuple[str, str], ...] = ()
 

@@ -76,4 +76,4 @@ STUDIES: Mapping[str, StudyKind] = {
         for key, each in VARIATIONS.items()
     },
 }
-"""The first two can be asked for by a recipe, in the words of :class:`~regolith_studio.session.plan.Kind`."""
+"""The first two can be asked for by a recipe, by the keys of ``session.dependencies.Kind``."""

@@ -21,7 +21,7 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.errors import InputError
 from regolith_studio.jobs.executor import ExecutorSettings
-from regolith_studio.session.hired import Hired, is_unfinished
+from regolith_studio.session.batch_job import ExecutorReady, is_unfinished
 from regolith_studio.session.recipe import Outputs
 from regolith_studio.session.tasks import Task
 from regolith_studio.ui.dialogs.batch_fields import PathField, SourceField, WorkersField
@@ -142,7 +142,7 @@ class BatchDialog(QDialog):
         count = tr("{at:,} of {total:,}", at=task.done, total=task.total) if task.total else ""
         self.state.setText(", ".join(filter(None, [f"{tr(task.title)} {count}".strip(), task.message])))
 
-    def show_hired(self, hired: Hired) -> None:
+    def show_hired(self, hired: ExecutorReady) -> None:
         """Say who works, and where that can be watched."""
         who = tr_count("1 worker", "{count} workers", hired.workers)
         link = f'<a href="{hired.dashboard}">{hired.dashboard}</a>'

@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QGridLayout, QVBoxLayout, QWidget
 from regolith_studio.coarsening.weights import JACCARD, WEIGHT_KEYS, LossWeights, Preset, presets
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.errors import InputError
-from regolith_studio.session.own_presets import OwnPresets
+from regolith_studio.session.user_presets import OwnPresets
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
 from regolith_studio.ui.widgets.labels import heading, remark, rich_symbol

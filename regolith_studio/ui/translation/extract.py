@@ -114,7 +114,7 @@ def tasks_of(source: str) -> Iterator[str]:
 
 def words_below() -> Iterator[str]:
     """What tables of the layers below bring to the screen."""
-    from regolith_studio.session.live import TITLES
+    from regolith_studio.session.recompute import TITLES
 
     yield from SAID_BELOW
     for row in CATALOGUE.values():

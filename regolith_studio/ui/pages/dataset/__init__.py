@@ -1,6 +1,6 @@
 """Page "Dataset": particles that stand for all, their sizes, the folder, and its way to DEM programs."""
 
-from regolith_studio.session.opening import FileKind
+from regolith_studio.session.file_kinds import FileKind
 from regolith_studio.ui.action_spec import BREAK, PAGE_MENU, ActionSpec
 from regolith_studio.ui.page import Page, PageContext, PageWidget
 

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLineEdit, QPushButton, QV
 from regolith_studio.dataset.size_parsing import SizeRule, parse_sizes
 from regolith_studio.errors import InputError
 from regolith_studio.jobs.representatives_jobs import RepresentativesRequest
-from regolith_studio.session.recipe_dataset import Representatives, Standing
+from regolith_studio.session.recipe import DatasetRequest, Representatives
 from regolith_studio.ui.pages.dataset.export_panel import ExportPanel
 from regolith_studio.ui.translation import mark, tr, tr_count
 from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
@@ -244,7 +244,7 @@ class DatasetControls:
     folder: FolderPanel
     targets: ExportPanel
 
-    def take(self, opened: Standing) -> None:
+    def take(self, opened: DatasetRequest) -> None:
         """Set them as a recipe says."""
         if wish := opened.representatives:
             self.representatives.setValue(wish.model_dump())
@@ -253,7 +253,7 @@ class DatasetControls:
         if opened.exports:
             self.targets.take(opened.exports)
 
-    def standing(self) -> Standing:
+    def standing(self) -> DatasetRequest:
         """What a recipe would say."""
         name = self.folder.name.text().strip()
-        return Standing(self.representatives.wish(self.sizes.text(), name), self.targets.wish())
+        return DatasetRequest(self.representatives.wish(self.sizes.text(), name), self.targets.wish())

@@ -22,7 +22,7 @@ from regolith_studio.dataset.export import PARTS, ExportOptions, ExportResult
 from regolith_studio.dataset.exporters import EXPORTERS
 from regolith_studio.dataset.parameters import NOT_GIVEN, ContactParameters, LiftingCylinderTest, ScriptTimes
 from regolith_studio.errors import InputError
-from regolith_studio.session.recipe_dataset import Exports
+from regolith_studio.session.recipe import Exports
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.collapsible import Collapsible
 from regolith_studio.ui.widgets.forms import ParameterForm

@@ -29,7 +29,7 @@ from regolith_studio.jobs.representatives_jobs import (
     choose_job,
     survey_representatives,
 )
-from regolith_studio.session.recipe_dataset import Standing
+from regolith_studio.session.recipe import DatasetRequest
 from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.layout import equal_parts, padded, scrolled_column, side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
@@ -72,7 +72,7 @@ class DatasetPage(PageWidget):
         self._dataset: Dataset | None = None
         self._folder: Path | None = None
         self._exports: list[ExportResult] = []
-        self._opened: Standing | None = None
+        self._opened: DatasetRequest | None = None
 
     def build(self) -> None:
         self.representatives, self.sizes = RepresentativesPanel(), SizesPanel()

@@ -1,6 +1,6 @@
 """Page "Shape model": fit a stochastic model to a sample, draw virtual particles, judge both."""
 
-from regolith_studio.session.opening import FileKind
+from regolith_studio.session.file_kinds import FileKind
 from regolith_studio.ui.action_spec import BREAK, PAGE_MENU, ActionSpec
 from regolith_studio.ui.page import Page, PageContext, PageWidget
 

@@ -23,7 +23,7 @@ from regolith_studio.jobs.model_jobs import (
     make_particles,
 )
 from regolith_studio.readers.shape_files import ShapeSource, read_shape_source
-from regolith_studio.session.origins import Drawn
+from regolith_studio.session.provenance import VirtualSource
 from regolith_studio.shape_models.protocol import FittedModel
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.shape_models.spectra import can_be_edited, relative_amplitudes, with_amplitudes
@@ -167,7 +167,7 @@ class ModelPage(PageWidget):
                 )
             )
             return
-        origin = Drawn.of(self._drawn, self._fitted, POPULATION_LEVEL)
+        origin = VirtualSource.of(self._drawn, self._fitted, POPULATION_LEVEL)
         job = Job(make_particles, (draws, self._drawn.model, origin.population.name, POPULATION_LEVEL))
         self._context.start(
             tr("Making virtual particles"), job, lambda made: self._take_over(made, origin), lane="adopt"
@@ -292,7 +292,7 @@ class ModelPage(PageWidget):
         finally:
             self.drawing.show_names(getattr(self._model, "names", ()))
 
-    def _take_over(self, particles: tuple[Particle, ...], origin: Drawn) -> None:
+    def _take_over(self, particles: tuple[Particle, ...], origin: VirtualSource) -> None:
         self._context.session.adopt(particles, origin=origin)
         self._context.toast.note(tr("{count:,} virtual particles are open now.", count=len(particles)))
 

@@ -29,9 +29,9 @@ from regolith_studio.jobs.volume_jobs import (
     read_scan,
 )
 from regolith_studio.readers.volumes.header import VolumeHeader, layout_from_name
-from regolith_studio.session.batch.prepared import entry_of
-from regolith_studio.session.origins import Grains
-from regolith_studio.session.recipe_inputs import VolumeEntry
+from regolith_studio.session.batch.preprocessing import entry_of
+from regolith_studio.session.provenance import VolumeSource
+from regolith_studio.session.recipe import VolumeEntry
 from regolith_studio.ui.layout import CONTROLS_WIDTH, padded, scrolled_column, side_by_side
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.scan.controls import SegmentationControls
@@ -273,7 +273,7 @@ class ScanPage(PageWidget):
                 )
             )
             return
-        origin = Grains.of(entry, extraction.particles)
+        origin = VolumeSource.of(entry, extraction.particles)
         self._context.session.adopt(extraction.particles, origin=origin)
         summary = retold(extraction.summary)
         self._context.toast.note(summary)

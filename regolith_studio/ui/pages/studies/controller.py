@@ -7,8 +7,8 @@ from regolith_studio.errors import RegolithError
 from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.study_jobs import study_coarsening
 from regolith_studio.session.choices import Choices
-from regolith_studio.session.plan import Kind, depends
-from regolith_studio.session.variations import varied_rows
+from regolith_studio.session.dependencies import Kind, depends
+from regolith_studio.session.study_requests import varied_rows
 from regolith_studio.studies.coarsening import CoarseningStudy
 from regolith_studio.studies.variations import VARIATIONS
 from regolith_studio.ui.page import PageContext

@@ -17,7 +17,7 @@ from PySide6.QtWidgets import (
 )
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
-from regolith_studio.session.solids import Solid
+from regolith_studio.session.study_requests import GalleryCell
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.heat_table import centred_remark
@@ -39,7 +39,7 @@ class PolyhedronGallery(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("solid_gallery")
-        self._solids: tuple[Solid, ...] = ()
+        self._solids: tuple[GalleryCell, ...] = ()
         self._colour = current_theme().polyhedron
         self.table = QTableWidget()
         self.table.setAccessibleName(tr("Polyhedra by loss function and particle"))
@@ -74,13 +74,13 @@ class PolyhedronGallery(QWidget):
         self.table.setVerticalHeaderLabels(list(labels))
         self.table.setHorizontalHeaderLabels(list(names))
 
-    def show_solids(self, solids: Sequence[Solid]) -> None:
+    def show_solids(self, solids: Sequence[GalleryCell]) -> None:
         """Fill the cells that are known and still empty."""
         for solid in solids[len(self._solids) :]:
             self.table.setItem(solid.row, solid.column, self._cell(solid))
         self._solids = tuple(solids)
 
-    def value(self) -> tuple[Solid, ...]:
+    def value(self) -> tuple[GalleryCell, ...]:
         """What is shown."""
         return self._solids
 
@@ -91,7 +91,7 @@ class PolyhedronGallery(QWidget):
             for solid in self._solids:
                 self.table.setItem(solid.row, solid.column, self._cell(solid))
 
-    def _cell(self, solid: Solid) -> QTableWidgetItem:
+    def _cell(self, solid: GalleryCell) -> QTableWidgetItem:
         found = solid.outcome.coarsened
         item = QTableWidgetItem()
         item.setTextAlignment(Qt.AlignmentFlag.AlignCenter)

@@ -8,7 +8,7 @@ from PySide6.QtGui import QAction, QMouseEvent
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QMenu, QToolButton, QWidget
 
 from regolith_studio.session.choices import Choices
-from regolith_studio.session.variations import loss_names
+from regolith_studio.session.study_requests import loss_names
 from regolith_studio.studies.loss_rows import ALONE, PAPER_ROWS
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.translation.sentences import retold

@@ -10,11 +10,10 @@ from PySide6.QtWidgets import QTabWidget, QVBoxLayout, QWidget
 
 from regolith_studio.errors import RegolithError
 from regolith_studio.jobs.events import Job, Progress, Started, Steps
+from regolith_studio.session.dependencies import STUDIES as KINDS
+from regolith_studio.session.dependencies import Kind
 from regolith_studio.session.outputs.studies import STUDIES
-from regolith_studio.session.plan import STUDIES as KINDS
-from regolith_studio.session.plan import Kind
-from regolith_studio.session.solids import draw_solids, solid_study
-from regolith_studio.session.variations import chosen_rows
+from regolith_studio.session.study_requests import chosen_rows, coarsen_gallery, solid_study
 from regolith_studio.studies.variations import VARIATIONS
 from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.layout import side_by_side, stacked, tabs
@@ -125,7 +124,9 @@ class StudiesPage(PageWidget):
         rows = chosen_rows(self.bar.names(), self._session.choices)
         self._drawn = [row.label for row in rows], [entry.particle.name for entry in shown]
         self.gallery.begin([entry.id for entry in shown], [retold(row.label) for row in rows])
-        job = Job(draw_solids, (tuple(entry.particle for entry in shown), self._session.choices.order, rows))
+        job = Job(
+            coarsen_gallery, (tuple(entry.particle for entry in shown), self._session.choices.order, rows)
+        )
         show = self.gallery.show_solids
         self._context.start(tr("Coarsening for the gallery"), job, show, partial=show, lane="gallery")
 

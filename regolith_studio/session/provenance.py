@@ -1,4 +1,4 @@
-"""Where open particles came from, in the words of a recipe: what was read, extracted or drawn."""
+"""Where open particles came from, in the terms of a recipe: files, the sample, a volume, a shape model."""
 
 import re
 from collections.abc import Sequence
@@ -10,27 +10,27 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.readers.coefficient_tables import TABLE_SUFFIXES, TEXT_SUFFIXES
 from regolith_studio.readers.formats import mesh_suffixes
 from regolith_studio.readers.particles import find_files, sample_particles
-from regolith_studio.session.recipe_inputs import Population, VolumeEntry
+from regolith_studio.session.recipe import Population, VolumeEntry
 
 if TYPE_CHECKING:  # what draws shapes takes a third of a second to import: the window begins without it
     from regolith_studio.jobs.model_jobs import GenerationResult, ModelFitResult
     from regolith_studio.shape_models.protocol import FittedModel
 
-Known = tuple[str, str, str]
+Member = tuple[str, str, str]
 """A particle that an origin gives: what tells it from the others there, its name and its group."""
 
 
 @dataclass(frozen=True)
-class Shipped:
+class SampleSource:
     """The particles that ship with the program."""
 
-    def members(self) -> tuple[Known, ...]:
+    def members(self) -> tuple[Member, ...]:
         """All that it gives, in order."""
         return tuple((each.name, each.name, each.group) for each in sample_particles())
 
 
 @dataclass(frozen=True)
-class Files:
+class FileSource:
     """Files and folders that were read together.
 
     Parameters
@@ -47,14 +47,14 @@ class Files:
     unit: str
     repair: bool = True
 
-    def members(self) -> tuple[Known, ...]:
+    def members(self) -> tuple[Member, ...]:
         """All files that are there now, in order; also those that cannot be read."""
         found = find_files([Path(path) for path in self.paths], [])
         return tuple((str(file.path), file.path.stem, file.group) for file in found)
 
 
 @dataclass(frozen=True, eq=False)
-class Grains:
+class VolumeSource:
     """Particles of a CT volume.
 
     Parameters
@@ -66,20 +66,20 @@ class Grains:
     """
 
     volume: VolumeEntry
-    known: tuple[Known, ...] = field(repr=False)
+    known: tuple[Member, ...] = field(repr=False)
 
     @classmethod
-    def of(cls, volume: VolumeEntry, particles: Sequence[Particle]) -> "Grains":
+    def of(cls, volume: VolumeEntry, particles: Sequence[Particle]) -> "VolumeSource":
         """The origin of all particles of an extraction."""
         return cls(volume, tuple((each.name, each.name, each.group) for each in particles))
 
-    def members(self) -> tuple[Known, ...]:
+    def members(self) -> tuple[Member, ...]:
         """All that it gives, in order."""
         return self.known
 
 
 @dataclass(frozen=True, eq=False)
-class Drawn:
+class VirtualSource:
     """Virtual particles.
 
     Parameters
@@ -94,7 +94,7 @@ class Drawn:
     model: "FittedModel | None" = field(default=None, repr=False)
 
     @classmethod
-    def of(cls, drawn: "GenerationResult", fitted: "ModelFitResult", level: int) -> "Drawn":
+    def of(cls, drawn: "GenerationResult", fitted: "ModelFitResult", level: int) -> "VirtualSource":
         """The origin of particles that were drawn from `fitted`, or from what was edited in it.
 
         Parameters
@@ -117,7 +117,7 @@ class Drawn:
         )
         return cls(population, None if shipped else drawn.model)
 
-    def members(self) -> tuple[Known, ...]:
+    def members(self) -> tuple[Member, ...]:
         """All that it gives, in order."""
         from regolith_studio.jobs.model_jobs import drawn_names
 
@@ -130,35 +130,35 @@ def _title(name: str) -> str:
     return re.sub(r"[^\w.+-]+", "_", name).strip("_.")[:40] or "virtual"
 
 
-Origin = Shipped | Files | Grains | Drawn
+ParticleSource = SampleSource | FileSource | VolumeSource | VirtualSource
 
 
 @dataclass(frozen=True)
-class Place:
+class ParticleRef:
     """Which particle of an origin one is."""
 
-    origin: Origin
+    origin: ParticleSource
     key: str
 
 
-def places_of(particles: Sequence[Particle], origin: Origin) -> tuple[Place, ...]:
+def places_of(particles: Sequence[Particle], origin: ParticleSource) -> tuple[ParticleRef, ...]:
     """Where each of the particles stands that an origin has just given.
 
     Files are told apart by their paths, all others by their names before these were made unique.
     """
-    if isinstance(origin, Files):
-        return tuple(Place(origin, each.source.path if each.source else "") for each in particles)
-    return tuple(Place(origin, each.name) for each in particles)
+    if isinstance(origin, FileSource):
+        return tuple(ParticleRef(origin, each.source.path if each.source else "") for each in particles)
+    return tuple(ParticleRef(origin, each.name) for each in particles)
 
 
-def place_by_source(particle: Particle) -> Place | None:
+def place_by_source(particle: Particle) -> ParticleRef | None:
     """Where a particle stands of which only its file is known."""
     source = particle.source
     if source is None:
         return None
     kind, _, name = source.path.partition(":")
     if kind == "sample":
-        return Place(Shipped(), name)
+        return ParticleRef(SampleSource(), name)
     if Path(source.path).suffix.lower() not in {*mesh_suffixes(), *TABLE_SUFFIXES, *TEXT_SUFFIXES}:
         return None
-    return Place(Files((source.path,), source.unit, source.repaired), source.path)
+    return ParticleRef(FileSource((source.path,), source.unit, source.repaired), source.path)

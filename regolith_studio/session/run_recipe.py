@@ -29,34 +29,37 @@ from regolith_studio.jobs.journal import Journal
 from regolith_studio.jobs.shards import Record
 from regolith_studio.jobs.study_jobs import study_coarsening, study_lmax
 from regolith_studio.readers.particles import unique_name
-from regolith_studio.session.batch.items import Items
-from regolith_studio.session.batch.prepared import Prepared, clear_prepared, prepare
-from regolith_studio.session.batch.sinks import (
-    Sink,
-    Tally,
-    descriptor_sink,
-    failure_sink,
-    fit_sink,
-    mesh_sink,
+from regolith_studio.session.batch.dataset_step import (
+    build_dataset_step,
+    check_dataset_request,
+    export_dataset_step,
+)
+from regolith_studio.session.batch.inputs import BatchInputs
+from regolith_studio.session.batch.particle_task import ParticleTask, process_particles
+from regolith_studio.session.batch.preprocessing import PreparedInputs, clear_prepared_inputs, prepare_inputs
+from regolith_studio.session.batch.writers import (
+    ResultWriter,
+    RunStatistics,
+    descriptor_writer,
+    failure_writer,
+    fit_writer,
+    mesh_writer,
     n_failures,
     shapes_of,
-    time_sink,
+    time_writer,
 )
-from regolith_studio.session.batch.standing import build_standing, check_standing, export_standing
-from regolith_studio.session.batch.working import Wish, work_on
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.outputs.extraction import RECIPE as EXTRACTION
 from regolith_studio.session.outputs.studies import STUDIES
 from regolith_studio.session.outputs.summary import Summary, write_summary
-from regolith_studio.session.recipe import Recipe
-from regolith_studio.session.recipe_dataset import Representatives
+from regolith_studio.session.recipe import Recipe, Representatives
 
 Part = Generator[Step, None, Any]
 JOURNAL_FOLDER, PREPARED_FOLDER = "journal", "prepared"
 
 
 @dataclass
-class Performed:
+class RecipeRun:
     """What a recipe has led to.
 
     Parameters
@@ -76,8 +79,8 @@ class Performed:
     folder: Path
     recipe: Recipe
     choices: Choices
-    items: Items
-    tally: Tally = field(default_factory=Tally)
+    items: BatchInputs
+    tally: RunStatistics = field(default_factory=RunStatistics)
     summary: Summary = field(default_factory=Summary)
     studies: list[str] = field(default_factory=list)
     problems: list[str] = field(default_factory=list)
@@ -90,7 +93,7 @@ class Performed:
         return sorted(path.as_posix() for path in found if path.parts[0] != JOURNAL_FOLDER)
 
 
-def perform(
+def run_recipe(
     recipe: Recipe,
     base: Path,
     folder: Path,
@@ -98,7 +101,7 @@ def perform(
     resume: bool = False,
     chunk: int | None = None,
 ) -> Steps:
-    """Do all that `recipe` asks for; returns :class:`Performed`.
+    """Do all that `recipe` asks for; returns :class:`RecipeRun`.
 
     Particles that fail are told and do not stop the others. Each part of the output appears whole or
     not at all.
@@ -136,10 +139,10 @@ def perform(
     if recipe.population is not None:
         _check_size(recipe, recipe.population.n)
     with open_executor(workers) as executor:
-        prepared: Prepared = yield from prepare(
+        prepared: PreparedInputs = yield from prepare_inputs(
             recipe, base, place / PREPARED_FOLDER, executor, over=over and resume
         )
-        done = Performed(folder, recipe, choices, Items.of(recipe, base, prepared), resume=resume)
+        done = RecipeRun(folder, recipe, choices, BatchInputs.of(recipe, base, prepared), resume=resume)
         _check(done)
         with _opened(done, resume, chunk) as batch:
             if (ended := _ending(batch)) is not None:
@@ -154,17 +157,17 @@ def perform(
             write_bytes(folder / "recipe.json", recipe.to_json().encode("utf-8"))
             batch.note({"ended": done.problems})
             batch.clear()
-            clear_prepared(prepared)
+            clear_prepared_inputs(prepared)
     return done
 
 
-def _check(done: Performed) -> None:
+def _check(done: RecipeRun) -> None:
     """Refuse before the work what could not be done after it."""
     if not done.items.members:
         sentences = [problem.sentence for problem in done.items.problems]
         raise FileError(sentences[0] if sentences else "There is no file to read.")
     _check_size(done.recipe, len(done.items.members))
-    check_standing(done.recipe, len(done.items.members))
+    check_dataset_request(done.recipe, len(done.items.members))
 
 
 def _check_size(recipe: Recipe, n_particles: int) -> None:
@@ -174,13 +177,13 @@ def _check_size(recipe: Recipe, n_particles: int) -> None:
         check_count(wish.count if wish and wish.count else n_particles, recipe.choices().order.max_facets)
 
 
-def _opened(done: Performed, resume: bool, chunk: int | None) -> Batch:
+def _opened(done: RecipeRun, resume: bool, chunk: int | None) -> Batch:
     """The batch of the recipe, begun or taken up again."""
     items, place = done.items, done.folder / JOURNAL_FOLDER
-    marks = hashlib.sha256("\n".join(items.marks()).encode("utf-8", "surrogateescape")).hexdigest()
+    inputs = "\n".join(items.fingerprints()).encode("utf-8", "surrogateescape")
     subject = {
         "recipe": done.recipe.model_dump(mode="json"),
-        "set of input files": marks,
+        "set of input files": hashlib.sha256(inputs).hexdigest(),
         "set of program versions": software_versions(),
     }
     if resume and (place / JOURNAL).exists():
@@ -198,11 +201,11 @@ def _ending(batch: Batch) -> list[str] | None:
     return next((list(entry["ended"]) for entry in batch.notes if "ended" in entry), None)
 
 
-def _worked(done: Performed, batch: Batch, executor: Executor) -> Part:
+def _worked(done: RecipeRun, batch: Batch, executor: Executor) -> Part:
     wish = done.recipe.outputs
     shapes = wish.dataset and done.recipe.representatives is None
     coarse = wish.meshes or shapes or wish.summary
-    asked = Wish(
+    asked = ParticleTask(
         measure=wish.descriptors or wish.summary,
         fit=wish.fits,
         order=done.choices.order if coarse else None,
@@ -214,29 +217,29 @@ def _worked(done: Performed, batch: Batch, executor: Executor) -> Part:
     yield Started("Working on particles", len(members))
     yield from work_through(
         batch,
-        lambda chunk: Job(work_on, (tuple((i, members[i]) for i in chunk), asked)),
+        lambda chunk: Job(process_particles, (tuple((i, members[i]) for i in chunk), asked)),
         executor,
         n_failures,
     )
 
 
-def _assembled(done: Performed, batch: Batch) -> Part:
+def _assembled(done: RecipeRun, batch: Batch) -> Part:
     """Turn what is on disk into the files that were asked for."""
     wish = done.recipe.outputs
     yield Started("Writing the results", batch.n_items)
     _tally(done, batch)
     with contextlib.ExitStack() as stack:
-        sinks: list[Sink] = [
+        sinks: list[ResultWriter] = [
             done.summary,
-            stack.enter_context(failure_sink(done.folder)),
-            stack.enter_context(time_sink(batch.folder / "times.csv")),
+            stack.enter_context(failure_writer(done.folder)),
+            stack.enter_context(time_writer(batch.folder / "times.csv")),
         ]
         if wish.descriptors:
-            sinks.append(stack.enter_context(descriptor_sink(done.folder)))
+            sinks.append(stack.enter_context(descriptor_writer(done.folder)))
         if wish.meshes:
-            sinks.append(stack.enter_context(mesh_sink(done.folder / "meshes", done.choices.order)))
+            sinks.append(stack.enter_context(mesh_writer(done.folder / "meshes", done.choices.order)))
         if wish.fits:
-            sinks.append(stack.enter_context(fit_sink(done.folder / "fit")))
+            sinks.append(stack.enter_context(fit_writer(done.folder / "fit")))
         for record in _records(done, batch):
             for sink in sinks:
                 sink.add(record)
@@ -245,7 +248,7 @@ def _assembled(done: Performed, batch: Batch) -> Part:
         _write_dataset(done, batch)
 
 
-def _tally(done: Performed, batch: Batch) -> None:
+def _tally(done: RecipeRun, batch: Batch) -> None:
     for record in _records(done, batch):
         done.tally.add(record)
     done.problems += [problem.with_path for problem in done.items.problems]
@@ -257,7 +260,7 @@ def _tally(done: Performed, batch: Batch) -> None:
         raise FileError(done.tally.unread[0])
 
 
-def _records(done: Performed, batch: Batch) -> Iterator[Record]:
+def _records(done: RecipeRun, batch: Batch) -> Iterator[Record]:
     """What is known of each particle; those that ended their process get a name."""
     for record in batch.records():
         if LOST in record.values:
@@ -267,7 +270,7 @@ def _records(done: Performed, batch: Batch) -> Iterator[Record]:
         yield record
 
 
-def _tell_of_volumes(done: Performed, prepared: Prepared) -> None:
+def _tell_of_volumes(done: RecipeRun, prepared: PreparedInputs) -> None:
     """Write beside the results how the grains of each volume were found, and which were left out."""
     taken: set[str] = set()
     for entry, source in zip(done.recipe.volumes, prepared.volumes, strict=True):
@@ -275,7 +278,7 @@ def _tell_of_volumes(done: Performed, prepared: Prepared) -> None:
         write_bytes(done.folder / "volumes" / f"{name}.json", (source / EXTRACTION).read_bytes())
 
 
-def _write_dataset(done: Performed, batch: Batch) -> None:
+def _write_dataset(done: RecipeRun, batch: Batch) -> None:
     try:
         write_stored(
             done.folder / "dataset",
@@ -290,11 +293,11 @@ def _write_dataset(done: Performed, batch: Batch) -> None:
         done.problems.append(f"There is no dataset, because no particle could be coarsened. ({error})")
 
 
-def _preset(done: Performed) -> str | None:
+def _preset(done: RecipeRun) -> str | None:
     return None if done.choices.preset_modified else done.choices.preset
 
 
-def _whole(done: Performed, executor: Executor) -> Part:
+def _whole(done: RecipeRun, executor: Executor) -> Part:
     """What needs all particles at the same time: representatives and studies; then the exports."""
     recipe, wish, there = done.recipe, done.recipe.outputs, done.tally.n_coarse > 0
     if recipe.representatives or wish.lmax_study or wish.coarsening_study:
@@ -304,17 +307,17 @@ def _whole(done: Performed, executor: Executor) -> Part:
         yield from _studied(done, particles, executor)
     if recipe.exports is not None and there:
         try:
-            yield from export_standing(recipe.exports, recipe.seed, done.folder)
+            yield from export_dataset_step(recipe.exports, recipe.seed, done.folder)
         except RegolithError as error:
             done.problems.append(str(error))
 
 
 def _represented(
-    done: Performed, wish: Representatives, particles: list[Particle], executor: Executor
+    done: RecipeRun, wish: Representatives, particles: list[Particle], executor: Executor
 ) -> Generator[Step, None, bool]:
     """Write the dataset of those that stand for all; whether that was possible."""
     try:
-        built = yield from build_standing(
+        built = yield from build_dataset_step(
             done.recipe, wish, particles, done.choices.order, _preset(done), done.folder, executor
         )
     except RegolithError as error:
@@ -325,7 +328,7 @@ def _represented(
     return True
 
 
-def _studied(done: Performed, particles: list[Particle], executor: Executor) -> Part:
+def _studied(done: RecipeRun, particles: list[Particle], executor: Executor) -> Part:
     wish, choices = done.recipe.outputs, done.choices
     if wish.lmax_study:
         lmax = partial(study_lmax, particles, executor, choices.seed, fit_options=choices.fit_options)
@@ -336,7 +339,7 @@ def _studied(done: Performed, particles: list[Particle], executor: Executor) -> 
         )
 
 
-def _read(done: Performed) -> Generator[Step, None, list[Particle]]:
+def _read(done: RecipeRun) -> Generator[Step, None, list[Particle]]:
     """All particles that can be read, which a study needs at the same time."""
     yield Started("Reading particles", len(done.items.members))
     found: list[Particle] = []
@@ -347,7 +350,7 @@ def _read(done: Performed) -> Generator[Step, None, list[Particle]]:
     return found
 
 
-def _study(done: Performed, name: str, study: Callable[..., Steps]) -> Part:
+def _study(done: RecipeRun, name: str, study: Callable[..., Steps]) -> Part:
     with Answers(done.folder / JOURNAL_FOLDER / f"{name}.jsonl", done.resume) as answers:
         try:
             found = yield from study(answers=answers)

@@ -1,4 +1,4 @@
-"""All that a recipe wants done to one particle, in whatever process; the result is a record on disk."""
+"""All that a recipe asks for one particle, in any process; the result is a record on disk."""
 
 import json
 import time
@@ -20,7 +20,7 @@ from regolith_studio.jobs.executor import call
 from regolith_studio.jobs.particle_jobs import FitRequest, MeasuredParticle, fit_one, measure_particle
 from regolith_studio.jobs.runners.run_job import iterate_job
 from regolith_studio.jobs.shards import Record
-from regolith_studio.session.batch.items import Item
+from regolith_studio.session.batch.inputs import BatchInput
 from regolith_studio.session.outputs.coarsening import STL_HEADER, coarsening_entry
 from regolith_studio.session.outputs.descriptors import described
 
@@ -33,7 +33,7 @@ STAGES = ("reading", "measuring", "fitting", "coarsening", "writing")
 
 
 @dataclass(frozen=True)
-class Wish:
+class ParticleTask:
     """What is to be found out about each particle.
 
     Parameters
@@ -78,7 +78,7 @@ class _Entry:
                 raise Cancelled("The work was stopped.")
 
 
-def work_on(items: Sequence[tuple[int, Item]], wish: Wish) -> Steps:
+def process_particles(items: Sequence[tuple[int, BatchInput]], wish: ParticleTask) -> Steps:
     """Read, measure, fit and coarsen particles; returns a tuple of :class:`Record`, one an item.
 
     Whatever goes wrong with a particle stands in its record, under ``failures``, and stops nothing else.
@@ -91,7 +91,7 @@ def work_on(items: Sequence[tuple[int, Item]], wish: Wish) -> Steps:
     return tuple(records)
 
 
-def _record(index: int, item: Item, wish: Wish) -> Generator[Step, None, Record]:
+def _record(index: int, item: BatchInput, wish: ParticleTask) -> Generator[Step, None, Record]:
     entry = _Entry(index, {"name": item.name, "group": "", "seconds": {}})
     particle = yield from entry.attempt("reading", Job(call, (_particle, item)))
     if particle is not None:
@@ -101,7 +101,7 @@ def _record(index: int, item: Item, wish: Wish) -> Generator[Step, None, Record]
     return Record(index, entry.values, entry.blobs)
 
 
-def _results(entry: _Entry, particle: Particle, wish: Wish) -> Generator[Step, None, None]:
+def _results(entry: _Entry, particle: Particle, wish: ParticleTask) -> Generator[Step, None, None]:
     if wish.measure:
         facts = yield from entry.attempt("measuring", Job(_examined, (particle, wish.box_metric)))
         if facts is not None:
@@ -123,7 +123,7 @@ def _results(entry: _Entry, particle: Particle, wish: Wish) -> Generator[Step, N
             yield from entry.attempt("writing", Job(_keep_coarse, (entry, particle, outcome, wish.shapes)))
 
 
-def _particle(item: Item) -> Particle:
+def _particle(item: BatchInput) -> Particle:
     return item.particle()
 
 

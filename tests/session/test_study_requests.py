@@ -11,7 +11,7 @@ from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
 from regolith_studio.jobs.events import Partial, Progress, Steps
 from regolith_studio.session.choices import Choices
-from regolith_studio.session.solids import draw_solids, solid_study, study_solids
+from regolith_studio.session.study_requests import coarsen_gallery, solid_study, study_gallery
 from regolith_studio.studies.loss_rows import paper_rows
 from regolith_studio.studies.solid_study import solid_table
 
@@ -24,7 +24,7 @@ def order() -> CoarseningRequest:
 def test_that_each_particle_is_coarsened_once_for_each_row(order: CoarseningRequest) -> None:
     sphere = icosphere(3)
     eggs = [Particle(f"egg-{n}", Mesh(sphere.vertices * [n, 2, 3], sphere.faces)) for n in (1, 2)]
-    told, story = [], draw_solids(eggs, order)
+    told, story = [], coarsen_gallery(eggs, order)
     try:
         while True:
             told.append(next(story))
@@ -44,7 +44,7 @@ def test_that_a_particle_that_cannot_be_coarsened_does_not_stop_the_rest(
 ) -> None:
     sphere = icosphere(2)
     flat = Particle("flat", Mesh(sphere.vertices * [1, 1, 0], sphere.faces))
-    story = draw_solids([flat, Particle("ball", sphere)], order)
+    story = coarsen_gallery([flat, Particle("ball", sphere)], order)
     try:
         while True:
             next(story)
@@ -68,8 +68,8 @@ def test_that_the_study_has_the_polyhedra_of_the_gallery(order: CoarseningReques
     sphere = icosphere(2)
     eggs = [Particle(f"egg-{n}", Mesh(sphere.vertices * [n, 2, 3], sphere.faces)) for n in (1, 2, 0)]
     rows, names = paper_rows()[:3], [egg.name for egg in eggs]
-    drawn = solid_study(ended(draw_solids(eggs, order, rows)), [row.label for row in rows], names)
-    study = ended(study_solids(eggs, order, rows, workers))
+    drawn = solid_study(ended(coarsen_gallery(eggs, order, rows)), [row.label for row in rows], names)
+    study = ended(study_gallery(eggs, order, rows, workers))
     assert (study.rows, study.names) == (drawn.rows, drawn.names)
     assert solid_table(study) == solid_table(drawn)
     assert [isinstance(study.cells[0, column], str) for column in range(3)] == [False, False, True]
@@ -78,5 +78,5 @@ def test_that_the_study_has_the_polyhedra_of_the_gallery(order: CoarseningReques
 def test_that_a_particle_without_a_fit_is_told_for_each_row() -> None:
     fitted = Choices(method="quadric", n_facets=12, l_max=4, level=2, target="fit").order
     flat = Mesh(icosphere(2).vertices * [1, 1, 0], icosphere(2).faces)
-    solids = ended(draw_solids([Particle("flat", flat)], fitted, paper_rows()[:2]))
+    solids = ended(coarsen_gallery([Particle("flat", flat)], fitted, paper_rows()[:2]))
     assert [bool(each.outcome.problem) for each in solids] == [True, True]

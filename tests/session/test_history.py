@@ -3,7 +3,7 @@
 from hypothesis import given
 from hypothesis import strategies as some
 
-from regolith_studio.session.undo import History
+from regolith_studio.session.history import History
 
 
 def test_that_a_dragged_slider_is_one_step() -> None:

@@ -1,4 +1,4 @@
-"""Steps back and forth through what the user has chosen."""
+"""Undo and redo of a value."""
 
 from collections.abc import Hashable
 from typing import Generic, TypeVar

@@ -7,7 +7,7 @@ import pytest
 
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.session.choices import Choices
-from regolith_studio.session.plan import LIVE, Kind, depends, needs, plan
+from regolith_studio.session.dependencies import LIVE, Kind, depends, needs, plan
 
 HERE = Choices(selected="a")
 FIT, SURFACE, DESCRIPTORS, COARSENING = LIVE

@@ -1,4 +1,4 @@
-"""A session as a recipe: all that is open and chosen, so that ``run`` makes the same bytes of it."""
+"""The recipe of a session: all that is open and chosen, so that ``run`` writes the same bytes."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
@@ -7,17 +7,22 @@ from pathlib import Path
 from regolith_studio.errors import FileError
 from regolith_studio.readers.particles import unique_name
 from regolith_studio.session.choices import Choices
-from regolith_studio.session.origins import Drawn, Files, Grains, Origin, Place, Shipped
-from regolith_studio.session.recipe import SAMPLE, Outputs, Recipe
-from regolith_studio.session.recipe_dataset import Standing
-from regolith_studio.session.recipe_inputs import Chosen, FilesEntry
+from regolith_studio.session.provenance import (
+    FileSource,
+    ParticleRef,
+    ParticleSource,
+    SampleSource,
+    VirtualSource,
+    VolumeSource,
+)
+from regolith_studio.session.recipe import SAMPLE, DatasetRequest, FilesEntry, NamedParticle, Outputs, Recipe
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.shape_models.files import write_model
 from regolith_studio.shape_models.protocol import FittedModel
 
 
 @dataclass(frozen=True)
-class Portrait:
+class SessionRecipe:
     """A recipe, and what it cannot hold by itself.
 
     Parameters
@@ -40,16 +45,16 @@ class Portrait:
         entries: Sequence[ParticleEntry],
         choices: Choices,
         outputs: Outputs | None = None,
-        standing: Standing | None = None,
-    ) -> "Portrait":
+        standing: DatasetRequest | None = None,
+    ) -> "SessionRecipe":
         """Of particles and choices, and of the wish for a dataset; without any particle, of the sample."""
-        wish = standing if standing and (outputs is None or outputs.dataset) else Standing()
+        wish = standing if standing and (outputs is None or outputs.dataset) else DatasetRequest()
         placed = [(entry.id, entry.place) for entry in entries]
         origins = _in_order([place.origin for _, place in placed if place is not None])
         named = dict(_names(origins))
         pairs = [(named.get(place), name) for name, place in placed]
-        files = [each for each in origins if isinstance(each, Files)]
-        drawn = next((each for each in origins if isinstance(each, Drawn)), None)
+        files = [each for each in origins if isinstance(each, FileSource)]
+        drawn = next((each for each in origins if isinstance(each, VirtualSource)), None)
         first = files[0] if files else None
         recipe = Recipe.from_choices(
             choices,
@@ -57,7 +62,7 @@ class Portrait:
             outputs,
             unit=first.unit if first else choices.unit,
             repair=first.repair if first else choices.repair,
-            volumes=[each.volume for each in origins if isinstance(each, Grains)],
+            volumes=[each.volume for each in origins if isinstance(each, VolumeSource)],
             population=drawn.population if drawn else None,
             particles=_selection(pairs, list(named.values())),
             representatives=wish.representatives,
@@ -91,17 +96,17 @@ class Portrait:
         return self.recipe.model_copy(update={"population": told})
 
 
-def _in_order(origins: Sequence[Origin]) -> list[Origin]:
+def _in_order(origins: Sequence[ParticleSource]) -> list[ParticleSource]:
     """As a recipe takes them: the sample, files, volumes, one population."""
-    kinds = (Shipped, Files, Grains, Drawn)
+    kinds = (SampleSource, FileSource, VolumeSource, VirtualSource)
     found = [each for kind in kinds for each in dict.fromkeys(o for o in origins if isinstance(o, kind))]
-    populations = [each for each in found if isinstance(each, Drawn)]
+    populations = [each for each in found if isinstance(each, VirtualSource)]
     return [each for each in found if each not in populations[1:]]
 
 
-def _inputs(origins: Sequence[Origin]) -> list[str | FilesEntry]:
-    files = [each for each in origins if isinstance(each, Files)]
-    named: list[str | FilesEntry] = [SAMPLE] if not origins or Shipped() in origins else []
+def _inputs(origins: Sequence[ParticleSource]) -> list[str | FilesEntry]:
+    files = [each for each in origins if isinstance(each, FileSource)]
+    named: list[str | FilesEntry] = [SAMPLE] if not origins or SampleSource() in origins else []
     for number, each in enumerate(files):
         entry = FilesEntry(files=list(each.paths), unit=each.unit, repair=each.repair)
         named += [entry] if number else each.paths
@@ -110,17 +115,17 @@ def _inputs(origins: Sequence[Origin]) -> list[str | FilesEntry]:
 
 def _selection(
     pairs: Sequence[tuple[str | None, str]], all_names: Sequence[str]
-) -> list[str | Chosen] | None:
+) -> list[str | NamedParticle] | None:
     """Names of the particles among all that a run finds; ``None`` where it is all of them in their order."""
     found = [(known, name) for known, name in pairs if known is not None]
     if not found or found == [(name, name) for name in all_names]:
         return None
-    return [known if known == name else Chosen(name=known, called=name) for known, name in found]
+    return [known if known == name else NamedParticle(name=known, called=name) for known, name in found]
 
 
-def _names(origins: Sequence[Origin]) -> Iterator[tuple[Place | None, str]]:
+def _names(origins: Sequence[ParticleSource]) -> Iterator[tuple[ParticleRef | None, str]]:
     """The name that each particle of the origins gets in a run."""
     taken: set[str] = set()
     for origin in origins:
         for key, name, group in origin.members():
-            yield Place(origin, key), unique_name(name, group, taken)
+            yield ParticleRef(origin, key), unique_name(name, group, taken)

@@ -1,25 +1,107 @@
-"""The polyhedra of Fig. 7: some particles, coarsened once for each row of loss weights."""
+"""Studies of the present choices: rows of loss weights, the jobs of the studies, the gallery of Fig. 7."""
 
 import dataclasses
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from regolith_studio.errors import RegolithError
+from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.jobs.answers import Answers, fingerprint
 from regolith_studio.jobs.coarsening_jobs import CoarsenedParticle, CoarseningRequest, coarsen_particle
-from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
+from regolith_studio.jobs.events import Job, Partial, Progress, Started, Step, Steps
 from regolith_studio.jobs.executor import Executor, open_executor
-from regolith_studio.session.choices import L_MAX_LIMIT
-from regolith_studio.studies.loss_rows import StudyRow, paper_rows
+from regolith_studio.jobs.study_jobs import study_coarsening, study_lmax
+from regolith_studio.session.choices import L_MAX_LIMIT, Choices
+from regolith_studio.session.dependencies import Kind
+from regolith_studio.studies.loss_rows import StudyRow, loss_rows, losses, paper_rows
 from regolith_studio.studies.solid_study import SolidStudy, StudiedSolid
+from regolith_studio.studies.variations import VARIATIONS, parsed_values
+
+CHOSEN = "chosen"
+"""Name of the loss whose weights are the present ones."""
+
+
+def present_row(choices: Choices) -> StudyRow:
+    """What is chosen now, as a row."""
+    return StudyRow("Chosen weights", choices.weights, choices.method, choices.facet_count, choices.settings)
+
+
+def loss_names() -> dict[str, str]:
+    """Every loss that can be a row, with its label; the chosen weights last."""
+    return {name: loss.label for name, loss in losses().items()} | {CHOSEN: "Chosen weights"}
+
+
+def chosen_rows(names: Sequence[str], choices: Choices) -> tuple[StudyRow, ...]:
+    """A row for each name of :func:`loss_names`.
+
+    Raises
+    ------
+    InputError
+        If there is no such loss.
+    """
+    like = present_row(choices)
+    return tuple(like if name == CHOSEN else loss_rows((name,), like)[0] for name in names)
+
+
+def varied_rows(key: str, choices: Choices, values: str) -> tuple[StudyRow, ...]:
+    """The rows of a variation of the present choices, from values with commas between them.
+
+    Raises
+    ------
+    InputError
+        If a value is wrong, or the choices leave nothing to vary.
+    """
+    rows = VARIATIONS[key].rows(present_row(choices), parsed_values(values))
+    for row in rows:
+        Choices(n_facets=row.n_facets)
+    return rows
 
 
 @dataclass(frozen=True)
-class Solid:
+class StudyJob:
+    """A job and what it is called on screen."""
+
+    title: str
+    job: Job
+
+
+def study_job(
+    kind: Kind, particles: Sequence[Particle], choices: Choices, options: Mapping[str, Any]
+) -> StudyJob:
+    """The job of a study of `particles` with the present `choices`.
+
+    Raises
+    ------
+    InputError
+        If `kind` is no study.
+    """
+    match kind:
+        case Kind.LMAX_STUDY:
+            return StudyJob(
+                "RMSRE against l_max",
+                Job(
+                    study_lmax,
+                    (tuple(particles),),
+                    {
+                        "seed": choices.seed,
+                        "level": choices.level,
+                        "fit_options": choices.fit_options,
+                        **options,
+                    },
+                ),
+            )
+        case Kind.COARSENING_STUDY:
+            job = Job(study_coarsening, (tuple(particles), choices.order), options)
+            return StudyJob("RMSRE against loss weights", job)
+        case _:
+            raise InputError(f"There is no study called {kind}.")
+
+
+@dataclass(frozen=True)
+class GalleryCell:
     """One picture of the gallery.
 
     Parameters
@@ -35,7 +117,7 @@ class Solid:
     outcome: CoarsenedParticle
 
 
-def draw_solids(
+def coarsen_gallery(
     particles: Sequence[Particle], order: CoarseningRequest, rows: Sequence[StudyRow] | None = None
 ) -> Steps:
     """Coarsen each particle by the loss of each row; partial results and the result are ``list[Solid]``.
@@ -50,26 +132,26 @@ def draw_solids(
     chosen = paper_rows() if rows is None else tuple(rows)
     total = len(particles) * len(chosen)
     yield Started("Coarsening for the gallery", total)
-    done: list[Solid] = []
+    done: list[GalleryCell] = []
     for column, particle in enumerate(particles):
         fit = _fit_of(particle, order)
         for row, each in enumerate(chosen):
             now = Progress(len(done), total)
             outcome = yield from _outcome(particle, _by_row(order, each), column, fit, now)
-            done.append(Solid(row, column, outcome))
+            done.append(GalleryCell(row, column, outcome))
             yield Partial(list(done))
             yield Progress(len(done), total, particle.name)
     return done
 
 
-def study_solids(
+def study_gallery(
     particles: Sequence[Particle],
     order: CoarseningRequest,
     rows: Sequence[StudyRow] | None = None,
     workers: int | Executor = 1,
     answers: Answers | None = None,
 ) -> Steps:
-    """As :func:`draw_solids`, particle by particle; the result is the study that can be written.
+    """As :func:`coarsen_gallery`, particle by particle; the result is the study that can be written.
 
     Parameters
     ----------
@@ -86,7 +168,7 @@ def study_solids(
     cells: dict[tuple[int, int], StudiedSolid | str] = {}
     with open_executor(workers) as executor:
         mapper = executor.map if answers is None else answers.through(executor.map)
-        found = mapper(partial(solids_of, order=order, rows=chosen), list(enumerate(particles)))
+        found = mapper(partial(coarsen_column, order=order, rows=chosen), list(enumerate(particles)))
         for column, (name, answer) in enumerate(zip(names, found, strict=True)):
             for row, cell in enumerate(answer["rows"]):
                 cells[row, column] = cell if isinstance(cell, str) else StudiedSolid.from_document(cell)
@@ -94,7 +176,7 @@ def study_solids(
     return SolidStudy(tuple(labels), tuple(names), cells)
 
 
-def solids_of(
+def coarsen_column(
     numbered: tuple[int, Particle], order: CoarseningRequest, rows: Sequence[StudyRow]
 ) -> dict[str, Any]:
     """The polyhedra of one particle, by row, as a document; a sentence where there is none.
@@ -111,7 +193,7 @@ def solids_of(
     return {"rows": cells}
 
 
-def solid_study(solids: Sequence[Solid], labels: Sequence[str], names: Sequence[str]) -> SolidStudy:
+def solid_study(solids: Sequence[GalleryCell], labels: Sequence[str], names: Sequence[str]) -> SolidStudy:
     """What has been drawn, as a study that can be written."""
     cells: dict[tuple[int, int], StudiedSolid | str] = {}
     for each in solids:

@@ -1,4 +1,4 @@
-"""What was chosen in the window as a command line and as Python, to be pasted elsewhere."""
+"""The present choices as a command line and as Python code."""
 
 import shlex
 

@@ -1,4 +1,4 @@
-"""What must be made of a recipe's inputs before its particles are known: grains of volumes, a fitted model.
+"""Preprocessing of a recipe's inputs: extract the grains of volumes, fit the model of a population.
 
 Each lies in a folder of its own, named by a hash of all that it depends on, beside the journal: whole or not
 there at all, so that a run that goes on finds it.
@@ -33,8 +33,7 @@ from regolith_studio.readers.particles import FileProblem, find_files
 from regolith_studio.readers.shape_files import is_shape_source, read_shape_source
 from regolith_studio.readers.volumes.header import RawLayout
 from regolith_studio.session.outputs.extraction import RECIPE, recipe_document
-from regolith_studio.session.recipe import Recipe
-from regolith_studio.session.recipe_inputs import Population, RawVolume, VolumeEntry
+from regolith_studio.session.recipe import Population, RawVolume, Recipe, VolumeEntry
 from regolith_studio.shape_models.files import write_model
 from regolith_studio.shape_models.materials import materials
 
@@ -45,7 +44,7 @@ SAMPLE_VOLUMES: dict[str, SampleVolume] = {"sample:labels": "labels", "sample:gr
 
 
 @dataclass(frozen=True)
-class Prepared:
+class PreparedInputs:
     """What the particles of a recipe are read or drawn from, besides its mesh files.
 
     Parameters
@@ -63,8 +62,8 @@ class Prepared:
     problems: tuple[FileProblem, ...] = ()
 
 
-def prepare(recipe: Recipe, base: Path, place: Path, executor: Executor, over: bool = False) -> Steps:
-    """Extract the grains of all volumes and fit the population's model; returns :class:`Prepared`.
+def prepare_inputs(recipe: Recipe, base: Path, place: Path, executor: Executor, over: bool = False) -> Steps:
+    """Extract the grains of all volumes and fit the population's model; returns :class:`PreparedInputs`.
 
     Parameters
     ----------
@@ -88,7 +87,7 @@ def prepare(recipe: Recipe, base: Path, place: Path, executor: Executor, over: b
     model, problems = None, ()
     if recipe.population is not None and not is_card(recipe.population, base):
         model, problems = yield from _model(recipe, recipe.population, base, place, executor)
-    return Prepared(tuple(volumes), model, problems)
+    return PreparedInputs(tuple(volumes), model, problems)
 
 
 def is_card(population: Population, base: Path) -> bool:
@@ -137,7 +136,7 @@ def read_grain(folder: Path, entry: Mapping[str, Any]) -> Particle:
     )
 
 
-def clear_prepared(prepared: Prepared) -> None:
+def clear_prepared_inputs(prepared: PreparedInputs) -> None:
     """Remove the grains of a run that has ended; what says which there were stays, and the model."""
     for folder in prepared.volumes:
         for path in folder.glob("*.npz"):

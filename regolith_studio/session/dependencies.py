@@ -1,4 +1,4 @@
-"""Compares two snapshots of choices and says which work must be done again. Pure."""
+"""Which results depend on which choices: compares two snapshots and names the work to be done again."""
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""The particles of a recipe before anybody has read them: small, picklable, in a fixed order."""
+"""The particles of a recipe before they are read: small, picklable, in a fixed order."""
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
@@ -19,17 +19,16 @@ from regolith_studio.readers.particles import (
     unique_name,
 )
 from regolith_studio.readers.shape_files import read_shape_source
-from regolith_studio.session.batch.prepared import MODEL, Prepared, read_grain, read_index
-from regolith_studio.session.recipe import SAMPLE, Recipe
-from regolith_studio.session.recipe_inputs import Chosen, Population
+from regolith_studio.session.batch.preprocessing import MODEL, PreparedInputs, read_grain, read_index
+from regolith_studio.session.recipe import SAMPLE, NamedParticle, Population, Recipe
 from regolith_studio.shape_models.draws import Draws, virtual_mesh
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.shape_models.protocol import FittedModel
 
-NOTHING = Prepared()
+NOTHING = PreparedInputs()
 
 
-class Item(Protocol):
+class BatchInput(Protocol):
     """One particle that a recipe asks for."""
 
     @property
@@ -37,7 +36,7 @@ class Item(Protocol):
         """Unique within the batch."""
 
     @property
-    def mark(self) -> str:
+    def fingerprint(self) -> str:
         """Changes when the input changes."""
 
     def particle(self) -> Particle:
@@ -49,7 +48,7 @@ class Item(Protocol):
             If that is impossible.
         """
 
-    def called(self, name: str) -> "Item":
+    def called(self, name: str) -> "BatchInput":
         """The same particle under another name."""
 
 
@@ -71,7 +70,7 @@ class _Named:
 
 
 @dataclass(frozen=True)
-class FileItem(_Named):
+class FileInput(_Named):
     """A mesh file."""
 
     file: MeshFile
@@ -79,7 +78,7 @@ class FileItem(_Named):
     repair: bool = True
 
     @property
-    def mark(self) -> str:
+    def fingerprint(self) -> str:
         """Path, size and time of the file."""
         try:
             state = self.file.path.stat()
@@ -93,13 +92,13 @@ class FileItem(_Named):
 
 
 @dataclass(frozen=True)
-class SampleItem(_Named):
+class SampleInput(_Named):
     """A particle that ships with the program."""
 
     original: str
 
     @property
-    def mark(self) -> str:
+    def fingerprint(self) -> str:
         """Its name."""
         return f"sample:{self.original}"
 
@@ -110,14 +109,14 @@ class SampleItem(_Named):
 
 
 @dataclass(frozen=True)
-class GrainItem(_Named):
+class GrainInput(_Named):
     """A grain of a CT volume that has been extracted."""
 
     folder: Path
     entry: Mapping[str, Any]
 
     @property
-    def mark(self) -> str:
+    def fingerprint(self) -> str:
         """The folder, which is named by all that its grains depend on, and the grain."""
         return f"{self.folder.name} {self.entry['file']}"
 
@@ -127,7 +126,7 @@ class GrainItem(_Named):
 
 
 @dataclass(frozen=True)
-class DrawnItem(_Named):
+class VirtualInput(_Named):
     """A virtual particle.
 
     Parameters
@@ -143,7 +142,7 @@ class DrawnItem(_Named):
     model: Path | None = None
 
     @property
-    def mark(self) -> str:
+    def fingerprint(self) -> str:
         """What it is drawn from, and its number."""
         known = self.model.name if self.model else ""
         return f"{self.population.model_dump_json()} {known} {self.seed} {self.index} {self.level}"
@@ -156,7 +155,7 @@ class DrawnItem(_Named):
 
 
 @dataclass(frozen=True)
-class Items:
+class BatchInputs:
     """All particles of a recipe.
 
     Parameters
@@ -165,11 +164,11 @@ class Items:
         Inputs that hold none.
     """
 
-    members: tuple[Item, ...]
+    members: tuple[BatchInput, ...]
     problems: tuple[FileProblem, ...] = ()
 
     @classmethod
-    def of(cls, recipe: Recipe, base: Path, prepared: Prepared = NOTHING) -> Self:
+    def of(cls, recipe: Recipe, base: Path, prepared: PreparedInputs = NOTHING) -> Self:
         """What the inputs of `recipe` stand for; relative ones are looked up in `base`.
 
         Raises
@@ -179,26 +178,26 @@ class Items:
             there.
         """
         problems: list[FileProblem] = list(prepared.problems)
-        members: list[Item] = []
+        members: list[BatchInput] = []
         taken: set[str] = set()
         if SAMPLE in recipe.inputs:
             for particle in sample_particles():
-                members.append(SampleItem(unique_name(particle.name, particle.group, taken), particle.name))
+                members.append(SampleInput(unique_name(particle.name, particle.group, taken), particle.name))
         for files, unit, repair in recipe.openings:
             for file in find_files([base / name for name in files], problems):
-                members.append(FileItem(unique_name(file.path.stem, file.group, taken), file, unit, repair))
+                members.append(FileInput(unique_name(file.path.stem, file.group, taken), file, unit, repair))
         for folder in prepared.volumes:
             for entry in read_index(folder):
-                members.append(GrainItem(unique_name(entry["name"], entry["group"], taken), folder, entry))
+                members.append(GrainInput(unique_name(entry["name"], entry["group"], taken), folder, entry))
         if recipe.population is not None:
             members += _drawn(recipe, recipe.population, prepared.model, taken)
         if recipe.particles is not None:
             members = _chosen(members, recipe.particles)
         return cls(tuple(members), tuple(problems))
 
-    def marks(self) -> Iterable[str]:
+    def fingerprints(self) -> Iterable[str]:
         """Of all members."""
-        return (member.mark for member in self.members)
+        return (member.fingerprint for member in self.members)
 
 
 def title_of(population: Population) -> str:
@@ -209,18 +208,18 @@ def title_of(population: Population) -> str:
     return first if first in materials() else Path(first).stem or "virtual"
 
 
-def _drawn(recipe: Recipe, population: Population, model: Path | None, taken: set[str]) -> list[Item]:
+def _drawn(recipe: Recipe, population: Population, model: Path | None, taken: set[str]) -> list[BatchInput]:
     if model is None:
         model_of(population, None)
     seed = recipe.seed if population.seed is None else population.seed
     level = recipe.level if population.level is None else population.level
     return [
-        DrawnItem(unique_name(name, "", taken), population, seed, index, level, model)
+        VirtualInput(unique_name(name, "", taken), population, seed, index, level, model)
         for index, name in enumerate(drawn_names(title_of(population), population.n))
     ]
 
 
-def _chosen(members: Sequence[Item], wish: Sequence[str | Chosen]) -> list[Item]:
+def _chosen(members: Sequence[BatchInput], wish: Sequence[str | NamedParticle]) -> list[BatchInput]:
     known = {member.name: member for member in members}
     pairs = [(each, each) if isinstance(each, str) else (each.name, each.called) for each in wish]
     if missing := next((name for name, _ in pairs if name not in known), None):

@@ -25,14 +25,14 @@ from regolith_studio.jobs.volume_jobs import (
     read_scan,
 )
 from regolith_studio.readers.shape_files import ShapeSource
-from regolith_studio.session.batch.prepared import entry_of
+from regolith_studio.session.batch.preprocessing import entry_of
 from regolith_studio.session.choices import Choices
-from regolith_studio.session.origins import Drawn, Grains
-from regolith_studio.session.performing import perform
-from regolith_studio.session.portrait import Portrait
 from regolith_studio.session.project import Project, read_project
+from regolith_studio.session.provenance import VirtualSource, VolumeSource
 from regolith_studio.session.recipe import Outputs, read_recipe
+from regolith_studio.session.run_recipe import run_recipe
 from regolith_studio.session.session import Session
+from regolith_studio.session.session_recipe import SessionRecipe
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.shape_models.spectra import relative_amplitudes, with_amplitudes
 
@@ -54,16 +54,16 @@ def files(folder: Path) -> dict[str, bytes]:
     return {name: path.read_bytes() for name, path in found.items()}
 
 
-def assert_that_a_run_gives_the_dataset_of(session: Session, place: Path) -> Portrait:
+def assert_that_a_run_gives_the_dataset_of(session: Session, place: Path) -> SessionRecipe:
     """By way of the recipe on disk; the dataset of the session has the name of the run's folder."""
     exported: list[Path] = []
     session.events.exported.connect(exported.append)
     session.export_dataset(place / "window" / "grains")
     assert exported
-    portrait = Portrait.of(session.particles, session.choices, ONLY_DATASET)
+    portrait = SessionRecipe.of(session.particles, session.choices, ONLY_DATASET)
     saved = place / "recipe.json"
     saved.write_text(portrait.beside(saved).to_json())
-    done = ended(perform(read_recipe(saved), saved.parent, place / "run" / "grains"))
+    done = ended(run_recipe(read_recipe(saved), saved.parent, place / "run" / "grains"))
     assert not done.problems
     assert files(place / "run" / "grains" / "dataset") == files(place / "window" / "grains")
     return portrait
@@ -160,7 +160,7 @@ def extracted(session: Session, given: VolumeInput, settings: GrainSettings) -> 
     if found.kind == "grey":
         found, grey = ended(find_grains(scan, settings.segmentation)).segmentation.labels, found
     made = ended(extract_labels(found, settings.extraction, given.path, grey))
-    session.adopt(made.particles, origin=Grains.of(entry_of(given, settings), made.particles))
+    session.adopt(made.particles, origin=VolumeSource.of(entry_of(given, settings), made.particles))
 
 
 def test_that_grains_of_a_label_volume_are_the_same_in_a_run(
@@ -204,7 +204,7 @@ def drawn(
     """What the page of models does."""
     fitted = ended(fit_shapes(source, order))
     made = ended(draw_shapes(edit(fitted.model), order))
-    origin = Drawn.of(made, fitted, LEVEL)
+    origin = VirtualSource.of(made, fitted, LEVEL)
     particles = ended(make_particles(made.draws, made.model, origin.population.name, LEVEL))
     session.adopt(particles, origin=origin)
 
@@ -260,7 +260,7 @@ def test_that_a_project_brings_grains_and_drawn_particles_back(
         begin()
         session.open([write_grains(tmp_path / "more", "a.stl")], add=True)
         session.keep({entry.id for entry in session.particles[1:]})
-        portrait = Portrait.of(session.particles, session.choices)
+        portrait = SessionRecipe.of(session.particles, session.choices)
         Project.of(session).save(tmp_path / f"{number}.regolith", portrait.model)
         again = Session(InlineRunner())
         read_project(tmp_path / f"{number}.regolith").open_in(again, tmp_path)
@@ -268,7 +268,7 @@ def test_that_a_project_brings_grains_and_drawn_particles_back(
         for old, new in zip(session.particles, again.particles, strict=True):
             assert np.array_equal(old.particle.mesh.vertices, new.particle.mesh.vertices)
             assert old.particle.group == new.particle.group
-        third = Portrait.of(again.particles, again.choices).recipe
+        third = SessionRecipe.of(again.particles, again.choices).recipe
         assert third.particles == portrait.recipe.particles
         assert third.volumes == portrait.recipe.volumes
 
@@ -276,9 +276,9 @@ def test_that_a_project_brings_grains_and_drawn_particles_back(
 def test_that_what_was_made_by_hand_is_named(session: Session, tmp_path: Path) -> None:
     session.open([write_grains(tmp_path / "one", "a.stl", "b.stl")])
     session.adopt([Particle("mine", icosphere(2))], add=True)
-    portrait = Portrait.of(session.particles, session.choices)
+    portrait = SessionRecipe.of(session.particles, session.choices)
     assert portrait.lost == ("mine",)
     (tmp_path / "one" / "a.stl").unlink()
-    assert Portrait.of(session.particles, session.choices).lost == ("a", "mine")
+    assert SessionRecipe.of(session.particles, session.choices).lost == ("a", "mine")
     with pytest.raises(InputError, match="no particles to keep"):
         session.keep(set())

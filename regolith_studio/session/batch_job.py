@@ -1,4 +1,4 @@
-"""A recipe worked through by whoever is hired for it: what the window runs in the background."""
+"""Run a recipe on local processes or a Dask cluster, as the window does in the background."""
 
 import contextlib
 import json
@@ -12,8 +12,8 @@ from regolith_studio.session.recipe import Recipe
 
 
 @dataclass(frozen=True)
-class Hired:
-    """Who works; told once they are there.
+class ExecutorReady:
+    """Executor details, emitted once the workers are ready.
 
     Parameters
     ----------
@@ -27,24 +27,24 @@ class Hired:
     dashboard: str = ""
 
 
-def perform_hired(
+def run_recipe_job(
     recipe: Recipe, base: Path, folder: Path, settings: ExecutorSettings, resume: bool = False
 ) -> Steps:
-    """As :func:`~regolith_studio.session.performing.perform`, with an executor of its own, closed at the end.
+    """Run a recipe with an executor of its own, which is closed at the end.
 
-    The first partial result is :class:`Hired`.
+    The first partial result is :class:`ExecutorReady`.
     """
-    from regolith_studio.session.performing import perform  # with all that a batch needs, figures included
+    from regolith_studio.session.run_recipe import run_recipe  # with all that a batch needs, figures included
 
     yield Started("Looking for the cluster" if settings.runner == "dask" else "Starting the workers")
     with contextlib.closing(settings.open()) as executor:
-        yield Partial(Hired(executor.workers, executor.dashboard))
-        return (yield from perform(recipe, base, folder, executor, resume))
+        yield Partial(ExecutorReady(executor.workers, executor.dashboard))
+        return (yield from run_recipe(recipe, base, folder, executor, resume))
 
 
 def is_unfinished(folder: Path) -> bool:
     """Whether a run into `folder` was begun and has not ended."""
-    from regolith_studio.session.performing import JOURNAL_FOLDER
+    from regolith_studio.session.run_recipe import JOURNAL_FOLDER
 
     try:
         lines = (folder / JOURNAL_FOLDER / JOURNAL).read_text(encoding="utf-8").splitlines()

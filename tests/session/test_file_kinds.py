@@ -6,7 +6,7 @@ import pytest
 
 from regolith_studio.errors import InputError
 from regolith_studio.resources import resource
-from regolith_studio.session.opening import FileKind, kind_of, kind_of_all
+from regolith_studio.session.file_kinds import FileKind, kind_of, kind_of_all
 from regolith_studio.session.project import Project
 from regolith_studio.session.recipe import Recipe
 

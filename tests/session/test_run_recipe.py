@@ -21,8 +21,8 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.jobs.events import Progress, Started
-from regolith_studio.session.performing import Performed, perform
 from regolith_studio.session.recipe import Recipe, recipe_of
+from regolith_studio.session.run_recipe import RecipeRun, run_recipe
 from regolith_studio.studies import lmax
 
 BASE: dict[str, Any] = {"method": "quadric", "level": 2, "l_max": 4, "n_facets": 12}
@@ -47,8 +47,8 @@ def recipe(grains: Path, **entries: Any) -> Recipe:
     return recipe_of(**{**BASE, "inputs": [str(grains)], "outputs": outputs, **entries})
 
 
-def done(*arguments: Any, **options: Any) -> Performed:
-    steps = perform(*arguments, **options)
+def done(*arguments: Any, **options: Any) -> RecipeRun:
+    steps = run_recipe(*arguments, **options)
     while True:
         try:
             next(steps)
@@ -68,13 +68,13 @@ def digests(folder: Path) -> dict[str, str]:
 
 
 @pytest.fixture(scope="module")
-def alone(grains: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Performed, dict[str, str]]:
+def alone(grains: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[RecipeRun, dict[str, str]]:
     """The recipe by one worker, each particle a chunk."""
     found = done(recipe(grains), grains, tmp_path_factory.mktemp("one") / "out")
     return found, digests(found.folder)
 
 
-def test_that_failed_particles_are_listed_and_the_rest_goes_on(alone: tuple[Performed, dict]) -> None:
+def test_that_failed_particles_are_listed_and_the_rest_goes_on(alone: tuple[RecipeRun, dict]) -> None:
     found, files = alone
     (sentence,) = found.problems
     assert "broken.stl" in sentence
@@ -89,7 +89,7 @@ def test_that_failed_particles_are_listed_and_the_rest_goes_on(alone: tuple[Perf
 
 @pytest.mark.parametrize(("workers", "chunk"), [(1, 4), (2, 3)])
 def test_that_workers_and_chunks_change_no_byte(
-    grains: Path, tmp_path: Path, alone: tuple[Performed, dict], workers: int, chunk: int
+    grains: Path, tmp_path: Path, alone: tuple[RecipeRun, dict], workers: int, chunk: int
 ) -> None:
     found = done(recipe(grains), grains, tmp_path / "out", workers, chunk=chunk)
     assert digests(found.folder) == alone[1]
@@ -97,21 +97,21 @@ def test_that_workers_and_chunks_change_no_byte(
 
 @pytest.mark.slow
 def test_that_four_workers_change_no_byte(
-    grains: Path, tmp_path: Path, alone: tuple[Performed, dict]
+    grains: Path, tmp_path: Path, alone: tuple[RecipeRun, dict]
 ) -> None:
     assert digests(done(recipe(grains), grains, tmp_path / "out", 4).folder) == alone[1]
 
 
 @pytest.mark.parametrize("after", range(0, 12, 3))
 def test_that_a_run_given_up_after_any_particle_goes_on_to_the_same_bytes(
-    grains: Path, tmp_path: Path, alone: tuple[Performed, dict], after: int
+    grains: Path, tmp_path: Path, alone: tuple[RecipeRun, dict], after: int
 ) -> None:
-    steps = perform(recipe(grains), grains, tmp_path / "out")
+    steps = run_recipe(recipe(grains), grains, tmp_path / "out")
     for step in steps:
         if isinstance(step, Progress) and step.done == after:
             break
     steps.close()
-    again = perform(recipe(grains), grains, tmp_path / "out", resume=True)
+    again = run_recipe(recipe(grains), grains, tmp_path / "out", resume=True)
     first = next(step for step in again if isinstance(step, Progress))
     assert first.done == min(after, 10)
     for _ in again:
@@ -124,7 +124,7 @@ def test_that_a_study_given_up_within_a_run_goes_on_to_the_same_bytes(
 ) -> None:
     outputs = {"meshes": False, "dataset": False, "lmax_study": True}
     wish = recipe(grains, outputs=outputs, inputs=["grain-0.stl", "grain-1.stl"])
-    steps = perform(wish, grains, tmp_path / "out")
+    steps = run_recipe(wish, grains, tmp_path / "out")
     studied = False
     for step in steps:
         studied = studied or step == Started("RMSRE against l_max", 2)
@@ -157,7 +157,7 @@ def killed(wish: Path, folder: Path, lines: int) -> None:
 
 @pytest.mark.skipif(os.name == "nt", reason="signals are a matter of POSIX")
 def test_that_a_run_killed_again_and_again_ends_with_the_same_bytes(
-    grains: Path, tmp_path: Path, alone: tuple[Performed, dict]
+    grains: Path, tmp_path: Path, alone: tuple[RecipeRun, dict]
 ) -> None:
     wish = tmp_path / "recipe.json"
     wish.write_text(recipe(grains).to_json())
@@ -181,7 +181,7 @@ def test_that_a_run_that_has_ended_is_not_done_again(grains: Path, tmp_path: Pat
 
 
 def test_that_an_unfinished_run_is_neither_overwritten_nor_mixed(grains: Path, tmp_path: Path) -> None:
-    steps = perform(recipe(grains), grains, tmp_path / "out")
+    steps = run_recipe(recipe(grains), grains, tmp_path / "out")
     while not (isinstance(step := next(steps), Progress) and step.done == 3):
         pass
     steps.close()
@@ -196,7 +196,7 @@ def test_that_a_changed_input_is_noticed(tmp_path: Path, grains: Path) -> None:
     for index in range(3):
         (tmp_path / "in" / f"{index}.stl").write_bytes((grains / f"grain-{index}.stl").read_bytes())
     wish = recipe(tmp_path / "in")
-    steps = perform(wish, tmp_path, tmp_path / "out")
+    steps = run_recipe(wish, tmp_path, tmp_path / "out")
     while not (isinstance(step := next(steps), Progress) and step.done == 1):
         pass
     steps.close()
@@ -212,13 +212,13 @@ def test_that_nothing_is_left_where_nothing_can_be_read(tmp_path: Path, grains: 
 
 
 def test_that_a_population_is_drawn_measured_coarsened_and_written(tmp_path: Path) -> None:
-    entries = {"inputs": [], "population": {"card": "ma165", "n": 4, "l_max": 6}, "target": "particle"}
+    entries = {"inputs": [], "population": {"sources": ["ma165"], "n": 4, "l_max": 6}, "target": "particle"}
     wish = recipe_of(**{**BASE, **entries}, outputs={"fits": False, "summary": False})
     found = done(wish, tmp_path, tmp_path / "out")
     names = [entry["name"] for entry in json.loads((tmp_path / "out" / "descriptors.json").read_text())]
     assert names == [f"ma165-{index:04d}" for index in range(4)]
     assert validate_dataset(tmp_path / "out" / "dataset") == []
-    longer = recipe_of(**{**wish.model_dump(), "population": {"card": "ma165", "n": 6, "l_max": 6}})
+    longer = recipe_of(**{**wish.model_dump(), "population": {"sources": ["ma165"], "n": 6, "l_max": 6}})
     more = done(longer, tmp_path, tmp_path / "more")
     same = {name: digest for name, digest in digests(found.folder).items() if name.startswith("meshes/ma")}
     assert len(same) == 4
@@ -237,7 +237,7 @@ def test_that_a_recipe_divides_radii_by_the_reference_that_it_names(tmp_path: Pa
 
 
 def test_that_an_unknown_card_is_an_error_before_any_work(tmp_path: Path) -> None:
-    wish = recipe_of(inputs=[], population={"card": "cheese", "n": 4})
+    wish = recipe_of(inputs=[], population={"sources": ["cheese"], "n": 4})
     with pytest.raises(InputError, match=r"no material card 'cheese'"):
         done(wish, tmp_path, tmp_path / "out")
     assert not (tmp_path / "out").exists()
@@ -245,9 +245,9 @@ def test_that_an_unknown_card_is_an_error_before_any_work(tmp_path: Path) -> Non
 
 @pytest.mark.skipif(os.name == "nt", reason="signals are a matter of POSIX")
 def test_that_a_worker_killed_in_mid_run_changes_no_byte(
-    grains: Path, tmp_path: Path, alone: tuple[Performed, dict]
+    grains: Path, tmp_path: Path, alone: tuple[RecipeRun, dict]
 ) -> None:
-    steps = perform(recipe(grains), grains, tmp_path / "out", 2, chunk=2)
+    steps = run_recipe(recipe(grains), grains, tmp_path / "out", 2, chunk=2)
     killed_one = False
     for step in steps:
         if isinstance(step, Progress) and step.done >= 2 and not killed_one:
@@ -258,7 +258,7 @@ def test_that_a_worker_killed_in_mid_run_changes_no_byte(
 
 
 def test_that_a_dataset_too_large_to_be_read_again_is_refused_before_the_work(tmp_path: Path) -> None:
-    wish = recipe_of(inputs=[], population={"card": "ma165", "n": 120_000}, n_facets=20)
+    wish = recipe_of(inputs=[], population={"sources": ["ma165"], "n": 120_000}, n_facets=20)
     with pytest.raises(InputError, match="make several of at most 104,"):
         done(wish, tmp_path, tmp_path / "out")
     assert not (tmp_path / "out").exists()

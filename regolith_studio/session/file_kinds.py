@@ -1,4 +1,4 @@
-"""What a file or folder is that somebody drops, chooses or names: by its name, and JSON by its content."""
+"""The kind of a file or folder that is opened: by its name, and of JSON by its content."""
 
 import re
 from collections.abc import Sequence

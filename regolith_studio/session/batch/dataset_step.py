@@ -1,4 +1,4 @@
-"""A recipe's dataset of representatives and its exports, made as ``regolith-studio dataset`` makes them."""
+"""The dataset of a recipe, with its representatives and exports."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -18,13 +18,12 @@ from regolith_studio.jobs.dataset_jobs import (
 from regolith_studio.jobs.events import Steps
 from regolith_studio.jobs.executor import Executor
 from regolith_studio.jobs.representatives_jobs import RepresentativesRequest
-from regolith_studio.session.recipe import Recipe
-from regolith_studio.session.recipe_dataset import Exports, Representatives
+from regolith_studio.session.recipe import Exports, Recipe, Representatives
 
 DATASET, EXPORTS = "dataset", "exports"
 
 
-def check_standing(recipe: Recipe, n_particles: int) -> None:
+def check_dataset_request(recipe: Recipe, n_particles: int) -> None:
     """Refuse before the work what could not be done after it.
 
     Raises
@@ -47,7 +46,7 @@ def check_standing(recipe: Recipe, n_particles: int) -> None:
         export_options(recipe.exports, recipe.seed)
 
 
-def build_standing(
+def build_dataset_step(
     recipe: Recipe,
     wish: Representatives,
     particles: Sequence[Particle],
@@ -70,7 +69,7 @@ def build_standing(
     return (yield from build_dataset_folder(particles, order, folder / DATASET, options))
 
 
-def export_standing(wish: Exports, seed: int, folder: Path) -> Steps:
+def export_dataset_step(wish: Exports, seed: int, folder: Path) -> Steps:
     """Write ``dataset`` below `folder` for other programs, below ``exports``; returns the exports.
 
     Raises

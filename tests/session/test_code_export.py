@@ -12,9 +12,9 @@ from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.jobs.runners.inline import InlineRunner
 from regolith_studio.session.choices import Choices
+from regolith_studio.session.code_export import as_command, as_python
 from regolith_studio.session.project import Project, input_shown, inputs_of, read_project, without_file
 from regolith_studio.session.recipe import SAMPLE
-from regolith_studio.session.scripting import as_command, as_python
 from regolith_studio.session.session import Session
 
 CHOICES = Choices(method="quadric", level=2, l_max=4, n_facets=14, seed=3)

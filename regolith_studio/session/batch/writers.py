@@ -1,4 +1,4 @@
-"""The files that the records of a batch become, record by record: nothing is gathered whole but fits."""
+"""Writers of the files of a batch: they take the records one by one, and hold only fits in memory."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -20,13 +20,13 @@ from regolith_studio.io.tables import csv_bytes
 from regolith_studio.jobs.chunked import LOST, Batch
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
 from regolith_studio.jobs.shards import Record
-from regolith_studio.session.batch.working import COEFFICIENTS, CUT, MESH, SHAPE, STAGES
+from regolith_studio.session.batch.particle_task import COEFFICIENTS, CUT, MESH, SHAPE, STAGES
 from regolith_studio.session.outputs.coarsening import document_head
 from regolith_studio.session.outputs.descriptors import table_columns, table_row
 from regolith_studio.session.outputs.fits import FittedSample, write_fits
 
 
-class Sink(Protocol):
+class ResultWriter(Protocol):
     """Takes the records of a batch in their order."""
 
     def add(self, record: Record) -> None:
@@ -34,7 +34,7 @@ class Sink(Protocol):
 
 
 @dataclass(frozen=True)
-class Origin:
+class FitOrigin:
     """What a fit's file says of its particle."""
 
     name: str
@@ -79,7 +79,7 @@ class _Descriptors:
 
 
 @contextmanager
-def descriptor_sink(folder: Path) -> Iterator[Sink]:
+def descriptor_writer(folder: Path) -> Iterator[ResultWriter]:
     """Writes ``descriptors.json`` and ``descriptors.csv``."""
     with (
         staged_file(folder / "descriptors.json") as entries,
@@ -106,7 +106,7 @@ class _Meshes:
 
 
 @contextmanager
-def mesh_sink(folder: Path, order: CoarseningRequest) -> Iterator[Sink]:
+def mesh_writer(folder: Path, order: CoarseningRequest) -> Iterator[ResultWriter]:
     """Writes one STL a polyhedron, and ``coarsening.json``."""
     with staged_folder(folder) as stage, (stage / "coarsening.json").open("wb") as stream:
         sink = _Meshes(stage, JsonListWriter(stream, document_head(order), "particles"))
@@ -116,7 +116,7 @@ def mesh_sink(folder: Path, order: CoarseningRequest) -> Iterator[Sink]:
 
 @dataclass
 class _Fits:
-    origins: list[Origin] = field(default_factory=list)
+    origins: list[FitOrigin] = field(default_factory=list)
     fits: list[HarmonicFit] = field(default_factory=list)
     failed: list[tuple[str, str]] = field(default_factory=list)
 
@@ -125,14 +125,14 @@ class _Fits:
         if known := values.get("fit"):
             given = values["origin"]
             source = None if given["source"] is None else Source(*given["source"])
-            self.origins.append(Origin(values["name"], values["group"], source, tuple(given["notes"])))
+            self.origins.append(FitOrigin(values["name"], values["group"], source, tuple(given["notes"])))
             self.fits.append(_fit(known, record.blobs[COEFFICIENTS]))
         elif reason := reason_of(record, "fitting"):
             self.failed.append((values["name"], reason))
 
 
 @contextmanager
-def fit_sink(stem: Path) -> Iterator[Sink]:
+def fit_writer(stem: Path) -> Iterator[ResultWriter]:
     """Writes the coefficients of all particles: nine kilobytes of memory each."""
     sink = _Fits()
     yield sink
@@ -149,7 +149,7 @@ class _Failures:
 
 
 @contextmanager
-def failure_sink(folder: Path) -> Iterator[Sink]:
+def failure_writer(folder: Path) -> Iterator[ResultWriter]:
     """Writes ``failed.csv`` with everything that went wrong, if anything did."""
     sink = _Failures()
     yield sink
@@ -171,7 +171,7 @@ class _Times:
 
 
 @contextmanager
-def time_sink(path: Path) -> Iterator[Sink]:
+def time_writer(path: Path) -> Iterator[ResultWriter]:
     """Writes how long each stage took for each particle, as CSV."""
     with staged_file(path) as stream:
         stream.write(csv_bytes([["name", *[f"{stage} [s]" for stage in STAGES]]]))
@@ -179,7 +179,7 @@ def time_sink(path: Path) -> Iterator[Sink]:
 
 
 @dataclass
-class Tally:
+class RunStatistics:
     """What has to be known of all particles together.
 
     Parameters
