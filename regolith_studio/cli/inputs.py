@@ -34,11 +34,11 @@ def read_inputs(paths: Sequence[Path], unit: str, repair: bool = True) -> "Loade
 
 def start_reader() -> None:
     """Let the process that reads files start while this one is still importing what it computes with."""
-    from regolith_studio.readers.sandbox.parent import shared_guard
+    from regolith_studio.readers.sandbox.parent import shared_sandbox
 
     def start() -> None:
         with contextlib.suppress(RegolithError, OSError):  # whoever reads first will hear of it
-            shared_guard().warm_up()
+            shared_sandbox().start()
 
     threading.Thread(target=start, name="start reader", daemon=True).start()
 

@@ -19,8 +19,7 @@ from regolith_studio.imaging.segmentation.tiles import TileSettings
 from regolith_studio.imaging.volume import VolumeKind
 from regolith_studio.readers.file_bytes import read_bytes
 from regolith_studio.readers.volumes.header import RawLayout
-from regolith_studio.readers.volumes.read import SlabSource as FileSource
-from regolith_studio.readers.volumes.read import open_slabs
+from regolith_studio.readers.volumes.read import VolumeFile, open_slabs
 
 S = TypeVar("S")
 _LARGEST = 64 * 2**20
@@ -132,7 +131,7 @@ class VolumeInput:
     raw: RawLayout | None = None
     axes: str | None = None
 
-    def opened(self) -> FileSource:
+    def opened(self) -> VolumeFile:
         """The volume, read slab by slab.
 
         Raises

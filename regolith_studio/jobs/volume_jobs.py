@@ -40,8 +40,7 @@ from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
 from regolith_studio.jobs.particle_jobs import MeasuredParticle, measure_one
 from regolith_studio.readers.file_bytes import sha256_of
 from regolith_studio.readers.volumes.files import slice_names
-from regolith_studio.readers.volumes.read import SlabSource as FileSource
-from regolith_studio.readers.volumes.read import describe_volume, read_volume
+from regolith_studio.readers.volumes.read import VolumeFile, describe_volume, read_volume
 
 IN_MEMORY = 2**30
 """Bytes of a volume, or of what is computed from it, beyond which it stays on the disk."""
@@ -169,7 +168,7 @@ def preview_part(volume: Volume, box: Box, settings: SegmentationSettings, level
     return found
 
 
-def _map_volume(source: FileSource) -> Generator[Step, None, Scan]:
+def _map_volume(source: VolumeFile) -> Generator[Step, None, Scan]:
     array, scratch = source.mapped(), Scratch()
     try:
         if array is None:
@@ -197,7 +196,7 @@ def _slice_images(volume: Volume) -> Generator[Step, None, Sections]:
             yield Progress(done, total, "Looking through the slices")
 
 
-def _n_bytes(source: FileSource) -> int:
+def _n_bytes(source: VolumeFile) -> int:
     return int(np.prod([int(edge) for edge in source.shape])) * source.dtype.itemsize
 
 

@@ -10,9 +10,9 @@ from regolith_studio.errors import FileError, GeometryError, InputError
 from regolith_studio.geometry.particle import Particle, Source
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.io import from_complex_rows, from_shtools_rows
-from regolith_studio.readers.error_messages import counted, sentence_about
+from regolith_studio.readers.error_messages import message_about, plural
 from regolith_studio.readers.file_bytes import sha256_of
-from regolith_studio.readers.sandbox.parent import Guard, shared_guard
+from regolith_studio.readers.sandbox.parent import Sandbox, shared_sandbox
 from regolith_studio.readers.units import unit_factor
 
 __all__ = ["CoefficientFile", "TableConvention", "read_coefficients"]
@@ -41,7 +41,7 @@ def read_coefficients(
     unit: str = "um",
     *,
     convention: TableConvention = "auto",
-    guard: Guard | None = None,
+    sandbox: Sandbox | None = None,
 ) -> CoefficientFile:
     """The radius function of one particle, from rows ``l m Re Im`` or ``l, m, C, S``.
 
@@ -66,12 +66,12 @@ def read_coefficients(
     """
     factor = unit_factor(unit)
     path = Path(path)
-    answer = (guard or shared_guard()).request("numbers", path, headers=_HEADER_LINES)
+    answer = (sandbox or shared_sandbox()).request("numbers", path, headers=_HEADER_LINES)
     rows = answer.arrays[0]
     try:
         if rows.shape[1] < 4:
             points = " Points alone enclose no particle." if rows.shape[1] == 3 else ""
-            found = counted(rows.shape[1], "column")
+            found = plural(rows.shape[1], "column")
             raise InputError(f"has {found}; a table of coefficients has four: l m Re Im.{points}")
         notes: tuple[str, ...] = ()
         if convention == "auto":
@@ -81,7 +81,7 @@ def read_coefficients(
         if not coefficients.values[0] > 0.0:
             raise InputError("has no positive mean radius: its row l = 0, m = 0 is missing or not positive.")
     except InputError as error:
-        raise FileError(sentence_about(path, _as_predicate(str(error)))) from None
+        raise FileError(message_about(path, _as_predicate(str(error)))) from None
     source = Source(str(path), sha256_of(path), unit)
     return CoefficientFile(path.stem, coefficients.scaled(factor), source, notes)
 
@@ -131,7 +131,7 @@ _FINE_DEGREE = 16
 """Above it 2,562 vertices would not show what the coefficients hold."""
 
 
-def particle_of_table(path: Path, unit: str, group: str = "", guard: Guard | None = None) -> Particle:
+def read_table_particle(path: Path, unit: str, group: str = "", sandbox: Sandbox | None = None) -> Particle:
     """The particle that a table of coefficients describes, about its star point.
 
     Its mesh has 5,120 faces, or 20,480 where the degree is above 16, and the volume of the smooth surface.
@@ -145,10 +145,10 @@ def particle_of_table(path: Path, unit: str, group: str = "", guard: Guard | Non
     """
     from regolith_studio.harmonics.surface import reconstruct
 
-    table = read_coefficients(path, unit, guard=guard)
+    table = read_coefficients(path, unit, sandbox=sandbox)
     try:
         mesh = reconstruct(table.coefficients, level=5 if table.coefficients.l_max > _FINE_DEGREE else 4)
     except GeometryError as error:
         sentence = f"holds no particle: {str(error)[0].lower()}{str(error)[1:]}"
-        raise GeometryError(sentence_about(path, sentence)) from None
+        raise GeometryError(message_about(path, sentence)) from None
     return Particle(table.name, mesh, group, table.source, table.notes)

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-LONGEST_NAME = 80
-LONGEST_SENTENCE = 240
+MAX_NAME_LENGTH = 80
+MAX_MESSAGE_LENGTH = 240
 
 
 def printable(text: str) -> str:
@@ -11,22 +11,22 @@ def printable(text: str) -> str:
     return "".join(sign if sign.isprintable() else "?" for sign in text)
 
 
-def counted(number: int, thing: str) -> str:
+def plural(number: int, thing: str) -> str:
     """``1 column``, ``2 columns``."""
     return f"{number:,} {thing}{'' if number == 1 else 's'}"
 
 
-def shown_name(path: Path) -> str:
+def display_name(path: Path) -> str:
     """The file's name, without its middle where it is long."""
     name = printable(path.name or str(path))
-    if len(name) <= LONGEST_NAME:
+    if len(name) <= MAX_NAME_LENGTH:
         return name
-    return f"{name[: LONGEST_NAME - 25]}…{name[-24:]}"
+    return f"{name[: MAX_NAME_LENGTH - 25]}…{name[-24:]}"
 
 
-def sentence_about(path: Path, predicate: str) -> str:
+def message_about(path: Path, predicate: str) -> str:
     """The sentence that begins with the file's name; one that grows too long loses its end."""
-    sentence = f"{shown_name(path)} {printable(predicate)}"
-    if len(sentence) <= LONGEST_SENTENCE:
+    sentence = f"{display_name(path)} {printable(predicate)}"
+    if len(sentence) <= MAX_MESSAGE_LENGTH:
         return sentence
-    return f"{sentence[: LONGEST_SENTENCE - 2]}…."
+    return f"{sentence[: MAX_MESSAGE_LENGTH - 2]}…."

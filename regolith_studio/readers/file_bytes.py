@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError, reason_of
-from regolith_studio.readers.error_messages import sentence_about
+from regolith_studio.readers.error_messages import message_about
 from regolith_studio.readers.sandbox.parent import checked_size
 
-MOST_ARRAYS = 64
-LARGEST_UNPACKED = 2 * 1024**3
+MAX_ARRAYS = 64
+MAX_UNPACKED_BYTES = 2 * 1024**3
 """Bytes of all arrays together."""
 KINDS = "biufU"
 """Truth values, whole numbers, numbers and text; no objects, no structures, no dates."""
@@ -35,12 +35,12 @@ def read_bytes(path: Path, largest: int | None = None) -> bytes:
     size = checked_size(path)
     if largest is not None and size > largest:
         raise FileError(
-            sentence_about(path, f"has {size / 1e6:.0f} MB; at most {largest / 1e6:.0f} are read.")
+            message_about(path, f"has {size / 1e6:.0f} MB; at most {largest / 1e6:.0f} are read.")
         )
     try:
         return path.read_bytes()
     except OSError as error:
-        raise FileError(sentence_about(path, f"cannot be read: {reason_of(error)}.")) from None
+        raise FileError(message_about(path, f"cannot be read: {reason_of(error)}.")) from None
 
 
 def read_npz(path: Path) -> tuple[dict[str, NDArray[Any]], str]:
@@ -56,12 +56,12 @@ def read_npz(path: Path) -> tuple[dict[str, NDArray[Any]], str]:
         with zipfile.ZipFile(io.BytesIO(packed)) as archive:
             arrays = _arrays(archive)
     except FileError as error:
-        raise FileError(sentence_about(path, str(error))) from None
+        raise FileError(message_about(path, str(error))) from None
     except MemoryError:
-        raise FileError(sentence_about(path, "needs more memory than there is.")) from None
+        raise FileError(message_about(path, "needs more memory than there is.")) from None
     except _BROKEN:
         raise FileError(
-            sentence_about(path, "is no NPZ archive of arrays, or is damaged; save it again.")
+            message_about(path, "is no NPZ archive of arrays, or is damaged; save it again.")
         ) from None
     return arrays, hashlib.sha256(packed).hexdigest()
 
@@ -70,11 +70,11 @@ def _arrays(archive: zipfile.ZipFile) -> dict[str, NDArray[Any]]:
     entries = archive.infolist()
     names = [entry.filename for entry in entries]
     total = sum(entry.file_size for entry in entries)
-    if len(entries) > MOST_ARRAYS or len(set(names)) < len(names):
+    if len(entries) > MAX_ARRAYS or len(set(names)) < len(names):
         raise FileError(f"holds {len(entries)} entries, some maybe twice; an NPZ of this program has few.")
     if not all(name.endswith(".npy") for name in names):
         raise FileError("holds something else than arrays.")
-    if total > LARGEST_UNPACKED:
+    if total > MAX_UNPACKED_BYTES:
         raise FileError(f"unpacks to {total / 1024**3:.1f} GiB; at most 2 are read.")
     found = {}
     for entry in entries:

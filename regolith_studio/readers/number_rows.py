@@ -12,8 +12,8 @@ from regolith_studio.readers.error_messages import printable
 from regolith_studio.readers.units import unit_named
 
 COMMENTS = (b"#", b"%", b"!", b"//")
-MOST_COLUMNS = 1000
-LONGEST_UNIT = 12
+MAX_COLUMNS = 1000
+MAX_UNIT = 12
 _NUMBER = re.compile(rb"[+-]?(\d|\.\d|nan|inf)", re.IGNORECASE)
 
 
@@ -89,7 +89,7 @@ def number_rows(
         words.append(row)
     if not words:
         raise FileError("holds no row of numbers.")
-    if width > MOST_COLUMNS:
+    if width > MAX_COLUMNS:
         raise FileError(f"has {width:,} columns; no table here has so many.")
     names = _names(header or comment.lstrip(b"#%!/"), width)
     return NumberRows(names, _numbers(words, data), _names(below, width))
@@ -98,7 +98,7 @@ def number_rows(
 def _are_units(line: bytes) -> bool:
     """Whether a line names a length between its separators, and words that may be units otherwise."""
     words = [word.strip(" \t\"'[]()") for word in re.split(r"[,;\t ]", line.decode("utf-8", "replace"))]
-    return any(map(unit_named, words)) and all(len(word) <= LONGEST_UNIT for word in words)
+    return any(map(unit_named, words)) and all(len(word) <= MAX_UNIT for word in words)
 
 
 def _row(line: bytes, decimal_comma: bool) -> list[bytes]:

@@ -15,10 +15,10 @@ from regolith_studio.geometry.merge_vertices import merged_vertices
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.mesh_health import inspect
 from regolith_studio.geometry.particle import Particle, Source
-from regolith_studio.readers.coefficient_tables import TABLE_SUFFIXES, TEXT_SUFFIXES, particle_of_table
-from regolith_studio.readers.error_messages import counted, sentence_about, shown_name
+from regolith_studio.readers.coefficient_tables import TABLE_SUFFIXES, TEXT_SUFFIXES, read_table_particle
+from regolith_studio.readers.error_messages import display_name, message_about, plural
 from regolith_studio.readers.formats import mesh_suffixes
-from regolith_studio.readers.sandbox.parent import Guard, shared_guard
+from regolith_studio.readers.sandbox.parent import Sandbox, shared_sandbox
 from regolith_studio.readers.units import unit_factor
 from regolith_studio.resources import resource
 
@@ -47,7 +47,7 @@ class FileProblem:
     @property
     def with_path(self) -> str:
         """The sentence with the whole path, where the file's name alone may be ambiguous."""
-        name = shown_name(Path(self.path))
+        name = display_name(Path(self.path))
         if self.sentence.startswith(f"{name} "):
             return self.path + self.sentence.removeprefix(name)
         return f"{self.path}: {self.sentence}"
@@ -62,7 +62,7 @@ class LoadedParticles:
 
 
 def read_mesh(
-    path: str | Path, unit: str = "um", *, repair: bool = True, guard: Guard | None = None
+    path: str | Path, unit: str = "um", *, repair: bool = True, sandbox: Sandbox | None = None
 ) -> Particle:
     """The particle in one file.
 
@@ -75,7 +75,7 @@ def read_mesh(
         Unit of the file's numbers, a key of `UNITS`, or ``voxel:SIZE`` in micrometres.
     repair
         Whether to make one sound body of it; if not, what is wrong stands in the notes only.
-    guard
+    sandbox
         The child process that parses the file; by default the one of this process.
 
     Raises
@@ -85,7 +85,7 @@ def read_mesh(
     GeometryError
         With one sentence if it holds nothing that encloses a volume.
     """
-    return read_file(MeshFile(Path(path)), unit, repair, guard)
+    return read_file(MeshFile(Path(path)), unit, repair, sandbox)
 
 
 def read_particles(
@@ -152,7 +152,7 @@ def collect_particles(
         return LoadedParticles(unique_names(particles), problems)
     if not problems:
         raise FileError("There is no file to read.")
-    more = f" ({counted(len(problems) - 1, 'more file')} could not be read either.)" if problems[1:] else ""
+    more = f" ({plural(len(problems) - 1, 'more file')} could not be read either.)" if problems[1:] else ""
     raise FileError(problems[0].sentence + more)
 
 
@@ -176,33 +176,35 @@ def unique_name(name: str, group: str, used: set[str]) -> str:
     return name
 
 
-def read_file(file: MeshFile, unit: str = "um", repair: bool = True, guard: Guard | None = None) -> Particle:
+def read_file(
+    file: MeshFile, unit: str = "um", repair: bool = True, sandbox: Sandbox | None = None
+) -> Particle:
     """As `read_mesh`, for one of `mesh_files`: the particle gets its group and its weight."""
     suffix = file.path.suffix.lower()
     if suffix in TABLE_SUFFIXES:
-        return replace(particle_of_table(file.path, unit, file.group, guard), weight=file.weight)
+        return replace(read_table_particle(file.path, unit, file.group, sandbox), weight=file.weight)
     if suffix in TEXT_SUFFIXES:
-        return _mesh_or_table(file, unit, repair, guard)
-    return _read_mesh(file, unit, repair, guard)
+        return _mesh_or_table(file, unit, repair, sandbox)
+    return _read_mesh(file, unit, repair, sandbox)
 
 
-def _mesh_or_table(file: MeshFile, unit: str, repair: bool, guard: Guard | None) -> Particle:
+def _mesh_or_table(file: MeshFile, unit: str, repair: bool, sandbox: Sandbox | None) -> Particle:
     """The particle in a text file that says by its content what it is."""
     try:
-        return replace(particle_of_table(file.path, unit, file.group, guard), weight=file.weight)
+        return replace(read_table_particle(file.path, unit, file.group, sandbox), weight=file.weight)
     except FileError as no_table:
         try:
-            return _read_mesh(file, unit, repair, guard)
+            return _read_mesh(file, unit, repair, sandbox)
         except FileError:
-            said = str(no_table).removeprefix(f"{shown_name(file.path)} ")
+            said = str(no_table).removeprefix(f"{display_name(file.path)} ")
             sentence = f"is no mesh, and as a table of coefficients it {said}"
-            raise FileError(sentence_about(file.path, sentence)) from None
+            raise FileError(message_about(file.path, sentence)) from None
 
 
-def _read_mesh(file: MeshFile, unit: str, repair: bool, guard: Guard | None) -> Particle:
+def _read_mesh(file: MeshFile, unit: str, repair: bool, sandbox: Sandbox | None) -> Particle:
     factor = unit_factor(unit)
     path = file.path
-    answer = (guard or shared_guard()).request("mesh", path)
+    answer = (sandbox or shared_sandbox()).request("mesh", path)
     vertices, faces = answer.arrays
     if not answer.header["shares_vertices"]:
         vertices, faces = merged_vertices(vertices, faces)
@@ -216,7 +218,7 @@ def _read_mesh(file: MeshFile, unit: str, repair: bool, guard: Guard | None) -> 
         else:
             notes += inspect(mesh).problems
     except GeometryError as error:
-        raise GeometryError(sentence_about(path, f"holds no particle: {_lower(str(error))}")) from None
+        raise GeometryError(message_about(path, f"holds no particle: {_lower(str(error))}")) from None
     source = Source(str(path), answer.header["sha256"], unit, repair)
     return Particle(path.stem, mesh, file.group, source, notes, file.weight, mended)
 
@@ -249,12 +251,12 @@ def mesh_files(paths: Sequence[str | Path]) -> list[MeshFile]:
         found = list(_in_folder(path, several)) if path.is_dir() else [MeshFile(path)]
         if not found:
             raise FileError(
-                f"The folder {shown_name(path)} holds no mesh file; "
+                f"The folder {display_name(path)} holds no mesh file; "
                 f"meshes end in {', '.join(sorted(mesh_suffixes()))}, tables of coefficients in "
                 f"{', '.join(TABLE_SUFFIXES)}."
             )
         files += found
-    weights = {folder: weights_in(folder) for folder in {file.path.parent for file in files}}
+    weights = {folder: read_weights(folder) for folder in {file.path.parent for file in files}}
     return [replace(file, weight=weights[file.path.parent].get(file.path.stem, 1.0)) for file in files]
 
 
@@ -279,10 +281,10 @@ def _lower(sentence: str) -> str:
 
 
 WEIGHTS_FILE = "particles.csv"
-LARGEST_TABLE = 256 * 1024**2
+MAX_TABLE_BYTES = 256 * 1024**2
 
 
-def weights_in(folder: Path) -> dict[str, float]:
+def read_weights(folder: Path) -> dict[str, float]:
     """Weight of each particle by its name; empty where the folder has no such table.
 
     A table that somebody else wrote, with no columns ``name`` and ``weight``, or without a positive
@@ -291,7 +293,7 @@ def weights_in(folder: Path) -> dict[str, float]:
     path = folder / WEIGHTS_FILE
     found: dict[str, float] = {}
     try:
-        if not path.is_file() or path.stat().st_size > LARGEST_TABLE:
+        if not path.is_file() or path.stat().st_size > MAX_TABLE_BYTES:
             return found
         with path.open(encoding="utf-8-sig", newline="") as file:
             rows = csv.DictReader(file)

@@ -22,7 +22,7 @@ SCALARS = {
     **dict.fromkeys(("double", "float64"), "f8"),
 }
 ENCODINGS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
-LONGEST_HEADER = 1 << 16
+MAX_HEADER_BYTES = 1 << 16
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class Element:
     count: int
     properties: tuple[Property, ...]
 
-    def least_row(self, ascii_rows: bool) -> int:
+    def min_row_bytes(self, ascii_rows: bool) -> int:
         """Bytes that a row takes at least."""
         if ascii_rows:
             return 2 * max(len(self.properties), 1)
@@ -93,7 +93,7 @@ def read_header(data: bytes) -> Header:
 def _header_lines(data: bytes) -> tuple[list[list[str]], int]:
     lines: list[list[str]] = []
     place = 0
-    while place < min(len(data), LONGEST_HEADER):
+    while place < min(len(data), MAX_HEADER_BYTES):
         ends = [
             end
             for end in (data.find(b"\n", place, place + 4096), data.find(b"\r", place, place + 4096))
@@ -124,7 +124,7 @@ def _check_size(elements: tuple[Element, ...], held: int, ascii_rows: bool) -> N
     for element in elements:
         if not element.properties and element.count:
             raise FileError(f"is not a proper PLY: its element “{element.name}” has no properties.")
-        least += element.count * element.least_row(ascii_rows)
+        least += element.count * element.min_row_bytes(ascii_rows)
         if least > held + 2:
             raise FileError(
                 f"is cut short: it promises {element.count:,} rows of “{element.name}”, "

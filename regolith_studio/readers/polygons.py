@@ -3,9 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
-LARGEST_EARED = 2000
+MAX_EAR_CLIPPED = 2000
 """Concave polygons with more corners are cut fan-wise: ear clipping takes quadratic time."""
-MOST_TRIALS = 20_000
+MAX_TRIALS = 20_000
 """Corners of one polygon that are looked at; the ears of simple ones are found long before."""
 
 
@@ -43,7 +43,7 @@ def _of_one_size(vertices: NDArray[np.float64], polygons: NDArray[np.int64]) -> 
         return polygons
     fan = np.column_stack([np.zeros(size - 2, dtype=np.int64), np.arange(1, size - 1), np.arange(2, size)])
     triangles = polygons[:, fan]
-    if size <= LARGEST_EARED:
+    if size <= MAX_EAR_CLIPPED:
         with np.errstate(all="ignore"):
             for index in np.flatnonzero(_concave(vertices[polygons])):
                 triangles[index] = polygons[index][_ears(vertices[polygons[index]])]
@@ -68,7 +68,7 @@ def _ears(points: NDArray[np.float64]) -> NDArray[np.int64]:
     flat, ring = _in_its_plane(points).T.copy(), np.arange(len(points))
     size, triangles = len(ring), []
     place = misses = trials = 0
-    while size > 3 and misses < size and trials < MOST_TRIALS:
+    while size > 3 and misses < size and trials < MAX_TRIALS:
         place, trials = place % size, trials + 1
         corners = [place - 1 if place else size - 1, place, (place + 1) % size]
         if not _is_ear(flat[:, :size], corners):

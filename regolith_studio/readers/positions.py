@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, locked_floats
-from regolith_studio.readers.sandbox.parent import Guard, shared_guard
+from regolith_studio.readers.sandbox.parent import Sandbox, shared_sandbox
 from regolith_studio.readers.units import UNITS, unit_factor
 
 __all__ = ["ParticlePositions", "read_positions"]
@@ -60,7 +60,7 @@ class ParticlePositions:
 
 
 def read_positions(
-    path: str | Path, unit: str = "m", *, fourth_column: str = "diameter", guard: Guard | None = None
+    path: str | Path, unit: str = "m", *, fourth_column: str = "diameter", sandbox: Sandbox | None = None
 ) -> ParticlePositions:
     """The particles of a position file; of several time steps the last.
 
@@ -72,7 +72,7 @@ def read_positions(
         Unit of the file's numbers, where the file names none itself (``x [mm]``).
     fourth_column
         What a fourth column without a name is: ``diameter`` or ``radius`` (as YADE writes it).
-    guard
+    sandbox
         The child process that parses the file; by default the one of this process.
 
     Raises
@@ -89,7 +89,7 @@ def read_positions(
     if fourth_column not in ("diameter", "radius"):
         raise InputError(f"A fourth column is a diameter or a radius, not {fourth_column}.")
     path = Path(path)
-    answer = (guard or shared_guard()).request("positions", path)
+    answer = (sandbox or shared_sandbox()).request("positions", path)
     header = answer.header
     points = answer.arrays[0] * (unit_factor(header["unit"] or unit) * _METRES)
     diameters = None

@@ -16,7 +16,7 @@ from regolith_studio.harmonics.coefficients import CONVENTION, ShCoefficients
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.sphere_grid import sphere_grid
 from regolith_studio.harmonics.surface import radii
-from regolith_studio.readers.error_messages import printable, sentence_about
+from regolith_studio.readers.error_messages import message_about, printable
 from regolith_studio.readers.file_bytes import read_bytes, read_npz
 from regolith_studio.readers.units import unit_factor
 from regolith_studio.shape_models import files as model_files
@@ -24,7 +24,7 @@ from regolith_studio.shape_models.materials import MaterialCard, card_from, mate
 from regolith_studio.shape_models.protocol import FittedModel
 from regolith_studio.shape_models.sample import Sample
 
-LARGEST_TEXT = 512 * 1024**2
+MAX_TEXT_BYTES = 512 * 1024**2
 REFERENCE_DEGREE = 60
 """Degree of the grid on which a radius is put together that was expanded over an ellipsoid's."""
 
@@ -76,7 +76,7 @@ def read_shape_source(text: str) -> ShapeSource:
     path = _text_file(Path(text))
     if not path.exists() and text in materials():
         return ShapeSource(materials()[text], text)
-    content = read_bytes(path, LARGEST_TEXT)
+    content = read_bytes(path, MAX_TEXT_BYTES)
     found = hashlib.sha256(content).hexdigest()
     document = _document(path, content)
     kind = document.get("format")
@@ -90,8 +90,8 @@ def read_shape_source(text: str) -> ShapeSource:
     except FileError:
         raise
     except InputError as error:
-        raise FileError(sentence_about(path, f"cannot be used: {_lower(str(error))}")) from None
-    raise FileError(sentence_about(path, _NO_SOURCE))
+        raise FileError(message_about(path, f"cannot be used: {_lower(str(error))}")) from None
+    raise FileError(message_about(path, _NO_SOURCE))
 
 
 def radius_of(fit: HarmonicFit) -> ShCoefficients:
@@ -110,18 +110,16 @@ def _text_file(path: Path) -> Path:
 
 def _document(path: Path, content: bytes) -> Mapping[str, Any]:
     if not content:
-        raise FileError(sentence_about(path, "is empty: it has no bytes at all."))
+        raise FileError(message_about(path, "is empty: it has no bytes at all."))
     try:
         document = json.loads(content)
     except json.JSONDecodeError as error:
         place = f"line {error.lineno}, sign {error.colno}"
-        raise FileError(
-            sentence_about(path, f"is not JSON, or is cut short: it breaks in {place}.")
-        ) from None
+        raise FileError(message_about(path, f"is not JSON, or is cut short: it breaks in {place}.")) from None
     except (ValueError, RecursionError):
-        raise FileError(sentence_about(path, "is not JSON.")) from None
+        raise FileError(message_about(path, "is not JSON.")) from None
     if not isinstance(document, dict):
-        raise FileError(sentence_about(path, _NO_SOURCE))
+        raise FileError(message_about(path, _NO_SOURCE))
     return document
 
 
@@ -129,22 +127,20 @@ def _sample(path: Path, document: Mapping[str, Any], digest: str) -> ShapeSource
     check_document(FitDocument, document, path, "fit")
     arrays, _ = read_npz(path.with_suffix(".npz"))
     if not {"coefficients", "star_points"} <= arrays.keys():
-        raise FileError(
-            sentence_about(path, "is a broken fit: its NPZ file holds other arrays than a fit's.")
-        )
+        raise FileError(message_about(path, "is a broken fit: its NPZ file holds other arrays than a fit's."))
     try:
         fits = fit_io.fits_from(document, arrays)
     except (KeyError, TypeError, ValueError):
         said = "is a broken fit: the arrays in its NPZ file are not of the shape or type that a fit has."
-        raise FileError(sentence_about(path, said)) from None
+        raise FileError(message_about(path, said)) from None
     if not fits:
-        raise FileError(sentence_about(path, "is a fit without a particle."))
+        raise FileError(message_about(path, "is a fit without a particle."))
     reached, stated = next(iter(fits.values())).l_max, document["l_max"]
     if reached != stated:
         said = (
             f"is a broken fit: it says l_max = {stated}, and its NPZ file has coefficients up to {reached}."
         )
-        raise FileError(sentence_about(path, said))
+        raise FileError(message_about(path, said))
     rows = np.stack([radius_of(fit).values for fit in fits.values()]) * unit_factor(document["unit"])
     expanded = sum(fit.reference is not None for fit in fits.values())
     note = f"{expanded} of {len(fits)} fits are over an ellipsoid; their radii were expanded again."
@@ -158,7 +154,7 @@ def _model(path: Path, document: Mapping[str, Any]) -> FittedModel:
         model = model_files.model_from(document, arrays, digest)
         unit_factor(model.unit)
     except InputError as error:
-        raise FileError(sentence_about(path, f"is a broken model: {_lower(str(error))}")) from None
+        raise FileError(message_about(path, f"is a broken model: {_lower(str(error))}")) from None
     return model
 
 
@@ -262,4 +258,4 @@ def check_document(
         kind.model_validate(document)
     except ValidationError as error:
         reason = of_the_entry(error.errors(include_url=False))
-        raise FileError(sentence_about(path, f"is a broken {called}: {reason}.")) from None
+        raise FileError(message_about(path, f"is a broken {called}: {reason}.")) from None

@@ -32,7 +32,7 @@ with atheris.instrument_imports(include=["regolith_studio.readers", "zipfile", "
     len(MESH_FORMATS), len(VOLUME_FORMATS), len(POSITION_FORMATS)
 
 JARGON = re.compile(r"Error\b|NoneType|Traceback|invalid literal|could not convert|object has no|<class")
-LONGEST_WORK = 1.0
+MAX_WORK = 1.0
 
 Reader = Callable[[Path, bytes], object]
 
@@ -69,7 +69,7 @@ def fault(read: Reader, path: Path, data: bytes) -> str:
             return f"sentence {re.sub(r'[0-9]+', '#', said)[:60]}"
     except Exception as error:  # noqa: BLE001 (this is what is looked for)
         return f"error {type(error).__name__}"
-    return "slow" if time.process_time() - start > LONGEST_WORK else ""
+    return "slow" if time.process_time() - start > MAX_WORK else ""
 
 
 def main(name: str, seconds: str, findings: Path) -> None:

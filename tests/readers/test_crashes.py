@@ -1,7 +1,7 @@
 """Files that once broke a parser, and files made to keep one busy: each has its answer now.
 
 The small files were found by atheris (see docs/reading.md) and by the mutations beside this file. Through the
-guard a small file has 1.5 s of work, so that an answer other than giving up proves that a trap is none.
+sandbox a small file has 1.5 s of work, so that an answer other than giving up proves that a trap is none.
 """
 
 import io
@@ -13,7 +13,7 @@ import pytest
 
 from regolith_studio.errors import FileError, GeometryError
 from regolith_studio.readers.particles import read_mesh
-from regolith_studio.readers.sandbox.parent import Guard
+from regolith_studio.readers.sandbox.parent import Sandbox
 from regolith_studio.readers.volumes.read import describe_volume, open_slabs
 
 HERE = Path(__file__).parent
@@ -34,9 +34,9 @@ def refusal_of_mesh(path: Path) -> str:
     return str(caught.value).removeprefix(f"{path.name} ")
 
 
-def read_voxels(path: Path, guard: Guard | None = None) -> None:
-    header = describe_volume(path, guard=guard)
-    open_slabs(path, voxel_size=1.0, kind="grey", guard=guard).read(0, header.shape[2])
+def read_voxels(path: Path, sandbox: Sandbox | None = None) -> None:
+    header = describe_volume(path, sandbox=sandbox)
+    open_slabs(path, voxel_size=1.0, kind="grey", sandbox=sandbox).read(0, header.shape[2])
 
 
 def test_that_every_file_that_was_found_is_asked_for() -> None:
@@ -53,10 +53,10 @@ def test_that_meshes_that_once_broke_a_parser_are_refused_in_words(name: str) ->
 
 @pytest.mark.parametrize("name", VOLUMES)
 def test_that_volumes_that_once_broke_a_parser_are_refused_in_words(name: str) -> None:
-    guard = Guard()
+    sandbox = Sandbox()
     with pytest.raises(FileError) as caught:
-        read_voxels(HERE / "crashes_volumes" / name, guard)
-    guard.close()
+        read_voxels(HERE / "crashes_volumes" / name, sandbox)
+    sandbox.close()
     assert str(caught.value).startswith(f"{name} {VOLUMES[name]}")
 
 

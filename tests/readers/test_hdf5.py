@@ -180,11 +180,11 @@ def test_that_slabs_end_where_chunks_do(path, monkeypatch) -> None:
 
     with h5py.File(path, "w") as file:
         file.create_dataset("data", data=SLICES, chunks=(4, 11, 13), compression="gzip")
-    opened = slabs.opened_file(path)
-    monkeypatch.setattr(slabs, "SLAB", 5 * opened.header.slice_bytes)
+    opened = slabs.open_slab_reader(path)
+    monkeypatch.setattr(slabs, "SLAB_BYTES", 5 * opened.header.slice_bytes)
     assert list(opened.pieces(0, 9)) == [(0, 4), (4, 8), (8, 9)]
     assert list(opened.pieces(2, 9)) == [(2, 4), (4, 8), (8, 9)]
-    monkeypatch.setattr(slabs, "SLAB", opened.header.slice_bytes)
+    monkeypatch.setattr(slabs, "SLAB_BYTES", opened.header.slice_bytes)
     assert list(opened.pieces(0, 9)) == [(0, 4), (4, 8), (8, 9)]
 
 

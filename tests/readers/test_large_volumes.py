@@ -26,8 +26,8 @@ total = count = 0
 for z0, slab in open_slabs(sys.argv[1], voxel_size=1.0, kind="labels").slabs(64):
     total += int(slab.sum(dtype="u8")) * (z0 // 64 + 1)
     count += slab.size
-from regolith_studio.readers.sandbox.parent import volume_guard
-volume_guard().close()
+from regolith_studio.readers.sandbox.parent import volume_sandbox
+volume_sandbox().close()
 own = next(line.split()[1] for line in open("/proc/self/status") if line.startswith("VmHWM"))
 print(total, count, own, resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)
 """

@@ -34,7 +34,7 @@ BAD = {
     "too many faces": (CUBE.replace("8 6 12", "8 7 12"), CUT),
     "half the faces missing": (CUBE[:-30], "(is cut short|promises 4 corners)"),
     "half the vertices missing": (CUBE[:40], CUT),
-    "too few vertices counted": (CUBE.replace("8 6 12", "7 6 12"), FACE),
+    "too few vertices plural": (CUBE.replace("8 6 12", "7 6 12"), FACE),
     "a vertex of two numbers": (CUBE.replace("0 1 1\n", "0 1\n", 1), VERTEX),
     "a vertex of words": (CUBE.replace("0 1 1\n", "a b c\n", 1), "has “a”"),
     "decimal commas": (CUBE.replace("0 1 1\n", "0,5 1 1\n", 1), VERTEX),

@@ -25,7 +25,7 @@ from regolith_studio.harmonics.fit import fit_harmonics
 from regolith_studio.readers.coefficient_tables import read_coefficients
 from regolith_studio.readers.file_bytes import read_npz
 from regolith_studio.readers.sandbox.tasks import read_number_rows
-from regolith_studio.readers.sandbox.volume_tasks import checked_slices, opened_volume
+from regolith_studio.readers.sandbox.volume_tasks import open_volume_file, read_checked_slices
 from regolith_studio.readers.shape_files import read_shape_source
 from regolith_studio.session.outputs.fits import FittedSample, write_fits
 from regolith_studio.session.project import Project, read_project
@@ -42,7 +42,7 @@ Reader = Callable[[Path], Any]
 
 
 class InProcess:
-    """Answers as the guard does, without a child."""
+    """Answers as the sandbox does, without a child."""
 
     def request(self, task: str, path: Path, **options: Any) -> Any:
         assert task == "numbers"
@@ -50,7 +50,7 @@ class InProcess:
 
 
 def table(path: Path) -> Any:
-    return read_coefficients(path, guard=InProcess())  # type: ignore[arg-type]
+    return read_coefficients(path, sandbox=InProcess())  # type: ignore[arg-type]
 
 
 def source(path: Path) -> Any:
@@ -58,17 +58,17 @@ def source(path: Path) -> Any:
 
 
 def slices(path: Path) -> Any:
-    volume, _ = opened_volume(path.parent, {"names": sorted(each.name for each in path.parent.iterdir())})
+    volume, _ = open_volume_file(path.parent, {"names": sorted(each.name for each in path.parent.iterdir())})
     try:
-        return checked_slices(volume, 0, 2)
+        return read_checked_slices(volume, 0, 2)
     finally:
         volume.close()
 
 
 def detached(path: Path) -> Any:
-    volume, _ = opened_volume(path, {})
+    volume, _ = open_volume_file(path, {})
     try:
-        return checked_slices(volume, 0, 2)
+        return read_checked_slices(volume, 0, 2)
     finally:
         volume.close()
 

@@ -8,7 +8,7 @@ import pytest
 
 from regolith_studio.errors import FileError, GeometryError
 from regolith_studio.harmonics.coefficients import ShCoefficients
-from regolith_studio.readers.particles import read_mesh, read_particles, weights_in
+from regolith_studio.readers.particles import read_mesh, read_particles, read_weights
 from tests.harmonics.tables import complex_rows
 
 
@@ -105,4 +105,4 @@ def test_that_extracted_meshes_come_in_with_the_weights_beside_them(tmp_path, cu
 )
 def test_that_a_table_of_weights_that_makes_no_sense_gives_none(content, tmp_path) -> None:
     (tmp_path / "particles.csv").write_bytes(content)
-    assert weights_in(tmp_path) == {}
+    assert read_weights(tmp_path) == {}

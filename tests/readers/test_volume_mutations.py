@@ -1,7 +1,7 @@
 """Volumes with bytes changed at random: every parser gives voxels or one sentence, nothing else.
 
 The program's own parsers are asked directly, so that nothing but the error of a bad file passes for an
-answer; TIFF and HDF5, whose libraries are compiled, through the guard, as users meet them.
+answer; TIFF and HDF5, whose libraries are compiled, through the sandbox, as users meet them.
 """
 
 import gzip
@@ -18,8 +18,8 @@ import pytest
 import tifffile
 
 from regolith_studio.errors import FileError
-from regolith_studio.readers.sandbox.parent import Guard
-from regolith_studio.readers.sandbox.volume_tasks import checked_slices, opened_volume
+from regolith_studio.readers.sandbox.parent import Sandbox
+from regolith_studio.readers.sandbox.volume_tasks import open_volume_file, read_checked_slices
 from regolith_studio.readers.volumes.read import describe_volume, open_slabs
 
 SLICES = np.random.default_rng(1).integers(0, 9, (4, 5, 6)).astype(np.uint16)
@@ -102,10 +102,10 @@ def mutated(data: bytes, rng: np.random.Generator) -> bytes:
 def answer_of(path: Path) -> str:
     """What a parser says to a file, in this process: its sentence, or nothing if it gives voxels."""
     try:
-        volume, _ = opened_volume(path, {})
+        volume, _ = open_volume_file(path, {})
         try:
             header = volume.header
-            checked_slices(volume, 0, min(header.shape[0], 2))
+            read_checked_slices(volume, 0, min(header.shape[0], 2))
         finally:
             volume.close()
     except FileError as error:
@@ -113,12 +113,12 @@ def answer_of(path: Path) -> str:
     return ""
 
 
-def guarded_answer_of(path: Path, guard: Guard) -> str:
+def sandboxed_answer_of(path: Path, sandbox: Sandbox) -> str:
     """The same through the child."""
     start = time.monotonic()
     try:
-        header = describe_volume(path, guard=guard)
-        open_slabs(path, voxel_size=1.0, kind="grey", guard=guard).read(0, min(header.shape[2], 2))
+        header = describe_volume(path, sandbox=sandbox)
+        open_slabs(path, voxel_size=1.0, kind="grey", sandbox=sandbox).read(0, min(header.shape[2], 2))
     except FileError as error:
         sentence = str(error)
     else:
@@ -144,23 +144,23 @@ def run_own(name: str, count: int, seed: int, path: Path) -> None:
         check_sentence(answer_of(path))
 
 
-def run_guarded(name: str, count: int, seed: int, path: Path) -> int:
+def run_sandboxed(name: str, count: int, seed: int, path: Path) -> int:
     """How many files ended the child that read them."""
     rng = np.random.default_rng(seed)
     data = LIBRARIES[name]()
     path.write_bytes(data)
-    guard = Guard()
-    guard.warm_up()
-    assert guarded_answer_of(path, guard) == ""
+    sandbox = Sandbox()
+    sandbox.start()
+    assert sandboxed_answer_of(path, sandbox) == ""
     ended = 0
     for _ in range(count):
         path.write_bytes(mutated(data, rng))
-        sentence = guarded_answer_of(path, guard)
+        sentence = sandboxed_answer_of(path, sandbox)
         check_sentence(sentence)
         ended += "ended the process" in sentence or "given up" in sentence
     path.write_bytes(data)
-    assert guarded_answer_of(path, guard) == ""
-    guard.close()
+    assert sandboxed_answer_of(path, sandbox) == ""
+    sandbox.close()
     return ended
 
 
@@ -179,7 +179,7 @@ def test_that_four_hundred_mutations_give_voxels_or_a_sentence(name, folder) -> 
 
 @pytest.mark.parametrize("name", LIBRARIES)
 def test_that_two_hundred_mutations_of_library_formats_give_voxels_or_a_sentence(name, folder) -> None:
-    assert run_guarded(name, 200, 22, folder / name) <= 10
+    assert run_sandboxed(name, 200, 22, folder / name) <= 10
 
 
 @pytest.mark.slow
@@ -193,4 +193,4 @@ def test_that_forty_thousand_mutations_give_voxels_or_a_sentence(name, folder) -
 def test_that_forty_thousand_mutations_of_a_library_format_give_voxels_or_a_sentence(name, folder) -> None:
     """Five kinds of TIFF and two of HDF5 share 40,000 each; few files may end the child that reads them."""
     count = 40_000 // sum(Path(other).suffix == Path(name).suffix for other in LIBRARIES)
-    assert run_guarded(name, count, 24, folder / name) <= count // 500
+    assert run_sandboxed(name, count, 24, folder / name) <= count // 500

@@ -18,9 +18,9 @@ _KINDS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126:
 _WIDTHS = {"SCALAR": 1, "VEC3": 3}
 _COMPRESSED = ("KHR_draco_mesh_compression", "EXT_meshopt_compression")
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
-MOST_INSTANCES = 10_000
-MOST_FACES = 20_000_000
-LARGEST_BUFFER = 1 << 30
+MAX_INSTANCES = 10_000
+MAX_FACES = 20_000_000
+MAX_BUFFER_BYTES = 1 << 30
 
 
 @dataclass(frozen=True)
@@ -71,8 +71,8 @@ def _parts(document: _Document) -> list[tuple[NDArray[np.float64], NDArray[np.in
         if placed is not None:
             parts.append(placed)
             total += max(len(placed[0]) // 3, len(placed[1]))
-        if total > MOST_FACES:
-            raise FileError(f"has more than {MOST_FACES:,} faces, which is more than can be read.")
+        if total > MAX_FACES:
+            raise FileError(f"has more than {MAX_FACES:,} faces, which is more than can be read.")
     return parts
 
 
@@ -141,7 +141,7 @@ def _buffer(row: dict[str, str], binary: bytes, path: Path) -> bytes:
     beside = path.parent / uri
     if not beside.is_file() or beside.is_symlink():
         raise FileError(f"needs the file {uri[:60]} beside it, which is not there.")
-    if beside.stat().st_size > LARGEST_BUFFER:
+    if beside.stat().st_size > MAX_BUFFER_BYTES:
         raise FileError(f"needs the file {uri[:60]}, which is larger than 1 GiB.")
     return beside.read_bytes()
 
@@ -159,7 +159,7 @@ def _instances(document: _Document) -> list[tuple[dict[str, Any], NDArray[np.flo
     while waiting:
         index, above, depth = waiting.pop()
         visited += 1
-        if visited > MOST_INSTANCES or depth > 200:
+        if visited > MAX_INSTANCES or depth > 200:
             raise FileError("is not a proper glTF: its nodes go round in circles, or are far too many.")
         node = document.row("nodes", index)
         matrix = above @ _matrix(node)
@@ -202,8 +202,7 @@ def _placed(
     faces = _faces(order, mode)
     if len(faces) and int(faces.max()) >= len(points):
         raise FileError(
-            f"is not a proper glTF: a face points to vertex {faces.max()} "
-            f"of {len(points):,} (counted from 0)."
+            f"is not a proper glTF: a face points to vertex {faces.max()} of {len(points):,} (plural from 0)."
         )
     if np.linalg.det(matrix[:3, :3]) < 0:
         faces = faces[:, ::-1]
@@ -242,7 +241,7 @@ def _accessor(index: Any, document: _Document, kind: str) -> NDArray[np.float64]
         raise FileError(
             f"is cut short: accessor {index} needs {needed:,} bytes of a buffer of {len(source):,}."
         )
-    if count > 3 * MOST_FACES:
+    if count > 3 * MAX_FACES:
         raise FileError(f"has {count:,} values in one accessor, which is more than can be read.")
     raw = np.ndarray((count, width), dtype=part, buffer=source, offset=start, strides=(stride, part.itemsize))
     values = raw.astype(np.float64)

@@ -94,7 +94,7 @@ def _face(words: list[bytes], seen: int, total: int, number: int) -> list[int]:
         if written == 0 or not 0 <= index < total:
             raise FileError(
                 f"is not a proper OBJ: face {number:,} points to vertex {written} "
-                f"of {total:,} (counted from 1)."
+                f"of {total:,} (plural from 1)."
             )
     return indices
 

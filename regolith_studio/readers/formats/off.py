@@ -10,7 +10,7 @@ from regolith_studio.readers.formats import MeshFormat, ParsedMesh
 from regolith_studio.readers.polygons import triangulated
 
 _KEYWORD = re.compile(rb"\s*((?:ST)?C?N?4?n?OFF)(?![A-Za-z])", re.ASCII)
-MOST_ROWS = 1 << 40
+MAX_ROWS = 1 << 40
 
 _COMMENT = re.compile(rb"#[^\r\n]*")
 
@@ -45,7 +45,7 @@ def _counts(rows: list[list[bytes]]) -> tuple[int, int, list[list[bytes]]]:
         n_vertices, n_faces = int(words[0]), int(words[1])
     except (IndexError, ValueError):
         raise FileError("is not an OFF: the counts of vertices and faces are missing at its top.") from None
-    if not (0 <= n_vertices < MOST_ROWS and 0 <= n_faces < MOST_ROWS):
+    if not (0 <= n_vertices < MAX_ROWS and 0 <= n_faces < MAX_ROWS):
         raise FileError(f"is not an OFF: it counts {n_vertices:.3g} vertices and {n_faces:.3g} faces.")
     taken = 3 if len(rows[0]) == 1 else 1
     if len(rows[0]) == 2 and n_vertices and len(rows) > 1 and len(rows[1]) == 1:
@@ -112,7 +112,7 @@ def _polygons(
         if min(indices) < 0 or max(indices) >= n_vertices:
             raise FileError(
                 f"is not a proper OFF: face {face:,} points to vertex {max(indices, key=abs)} "
-                f"of {n_vertices:,} (counted from 0)."
+                f"of {n_vertices:,} (plural from 0)."
             )
         corners += indices
         sizes.append(size)

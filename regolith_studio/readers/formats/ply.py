@@ -91,7 +91,7 @@ def _indices(values: NDArray[np.float64], n_vertices: int, allow_stop: bool) -> 
         index = float(values[~good][0])
         shown = f"{index:,.0f}" if index.is_integer() else f"{index:g}"
         raise FileError(
-            f"is not a proper PLY: a face points to vertex {shown} of {n_vertices:,} (counted from 0)."
+            f"is not a proper PLY: a face points to vertex {shown} of {n_vertices:,} (plural from 0)."
         )
     return values.astype(np.int64)
 

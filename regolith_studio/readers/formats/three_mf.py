@@ -16,14 +16,14 @@ from regolith_studio.errors import FileError
 from regolith_studio.readers.error_messages import printable
 from regolith_studio.readers.formats import MeshFormat, ParsedMesh
 
-LARGEST_PART = 1 << 29
+MAX_PART_BYTES = 1 << 29
 """Bytes of one unpacked part; a part that unpacks to more is refused."""
 
-SUSPICIOUS_PART, MOST_PACKED = 1 << 25, 100
+MIN_SUSPICIOUS_BYTES, MAX_PACKING_RATIO = 1 << 25, 100
 """XML of real meshes packs to a fifth or a twentieth; a part above 32 MiB that packs far better is a trap."""
 
-MOST_PLACEMENTS = 10_000
-MOST_FACES = 20_000_000
+MAX_PLACEMENTS = 10_000
+MAX_FACES = 20_000_000
 
 _Triangles = tuple[NDArray[np.float64], NDArray[np.int64]]
 
@@ -111,12 +111,17 @@ class _Package:
         entry = self._archive.getinfo(part)
         if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
             raise FileError("is not a proper 3MF: a part is compressed in another way than deflate.")
-        if entry.file_size > SUSPICIOUS_PART and entry.file_size > MOST_PACKED * entry.compress_size:
+        if (
+            entry.file_size > MIN_SUSPICIOUS_BYTES
+            and entry.file_size > MAX_PACKING_RATIO * entry.compress_size
+        ):
             size = entry.file_size / 1e6
-            raise FileError(f"unpacks to {size:,.0f} MB, {MOST_PACKED} times its size or more: no mesh does.")
+            raise FileError(
+                f"unpacks to {size:,.0f} MB, {MAX_PACKING_RATIO} times its size or more: no mesh does."
+            )
         with self._archive.open(part) as file:
-            data = file.read(LARGEST_PART + 1)
-        if len(data) > LARGEST_PART:
+            data = file.read(MAX_PART_BYTES + 1)
+        if len(data) > MAX_PART_BYTES:
             raise FileError("unpacks to more than 512 MiB, which is more than can be read.")
         return data
 
@@ -158,7 +163,7 @@ def _place(
 ) -> None:
     """Add the triangles of the object that `use` (an item or a component) refers to."""
     package.placements += 1
-    if depth > 50 or package.placements > MOST_PLACEMENTS:
+    if depth > 50 or package.placements > MAX_PLACEMENTS:
         raise FileError("is not a proper 3MF: its components go round in circles, or are far too many.")
     elsewhere = next((value for key, value in use.attrib.items() if key.rpartition("}")[2] == "path"), None)
     part = elsewhere.lstrip("/") if elsewhere else part
@@ -167,8 +172,8 @@ def _place(
     for mesh in _children(thing, "mesh"):
         points, faces = _triangles(mesh)
         package.faces += len(faces)
-        if package.faces > MOST_FACES:
-            raise FileError(f"has more than {MOST_FACES:,} faces, which is more than can be read.")
+        if package.faces > MAX_FACES:
+            raise FileError(f"has more than {MAX_FACES:,} faces, which is more than can be read.")
         faces = faces[:, ::-1] if np.linalg.det(matrix[:3, :3]) < 0 else faces
         parts.append((points @ matrix[:3, :3].T + matrix[:3, 3], faces))
     for components in _children(thing, "components"):

@@ -1,7 +1,7 @@
 """Tables of text: CSV with or without column names, or numbers between spaces."""
 
 from regolith_studio.errors import FileError
-from regolith_studio.readers.error_messages import counted
+from regolith_studio.readers.error_messages import plural
 from regolith_studio.readers.number_rows import number_rows
 from regolith_studio.readers.position_formats import ParsedPositions, PositionFormat, named_columns, sized
 
@@ -29,7 +29,7 @@ def parse(data: bytes) -> ParsedPositions:
             shown = ", ".join(table.names[:6])
             raise FileError(f"has no columns x, y and z; they are called {shown}.")
     if numbers.shape[1] < 3:
-        raise FileError(f"has {counted(numbers.shape[1], 'column')}; positions need three: x, y and z.")
+        raise FileError(f"has {plural(numbers.shape[1], 'column')}; positions need three: x, y and z.")
     if numbers.shape[1] > 4:
         raise FileError(f"has {numbers.shape[1]} columns without names; name them x, y, z and diameter.")
     if numbers.shape[1] == 4:

@@ -18,8 +18,8 @@ _TYPES = {
 }  # fmt: skip
 _SIZES = {"diameter": 1.0, "size": 1.0, "radius": 2.0, "rad": 2.0}
 _APPENDED = re.compile(rb"<AppendedData[^>]*\bencoding=\"(\w+)\"[^>]*>\s*_")
-MOST_BLOCKS = 1 << 20
-LARGEST_ARRAY = 1 << 31
+MAX_BLOCKS = 1 << 20
+MAX_ARRAY_BYTES = 1 << 31
 
 
 def parse(data: bytes) -> ParsedPositions:
@@ -90,7 +90,7 @@ class _Source:
         if self.compressor != "vtkZLibDataCompressor":
             raise FileError("is packed by a compressor that is not read here; save it with zlib or none.")
         blocks, block_size, last = (int(number) for number in self._header(data, 3, encoded))
-        if blocks > MOST_BLOCKS or blocks * block_size > LARGEST_ARRAY:
+        if blocks > MAX_BLOCKS or blocks * block_size > MAX_ARRAY_BYTES:
             raise FileError("is a broken VTK file: an array has more blocks than can be.")
         sizes = self._header(data, 3 + blocks, encoded)[3:]
         place = (3 + blocks) * self.header.itemsize

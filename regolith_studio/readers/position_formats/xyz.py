@@ -5,7 +5,7 @@ import re
 import numpy as np
 
 from regolith_studio.errors import FileError
-from regolith_studio.readers.error_messages import counted, printable
+from regolith_studio.readers.error_messages import plural, printable
 from regolith_studio.readers.number_rows import number_rows
 from regolith_studio.readers.position_formats import NamedColumns, ParsedPositions, PositionFormat, sized
 
@@ -46,9 +46,7 @@ def parse(data: bytes) -> ParsedPositions:
 def _table(data: bytes) -> ParsedPositions:
     numbers = number_rows(data).numbers
     if numbers.shape[1] not in (3, 4):
-        raise FileError(
-            f"has {counted(numbers.shape[1], 'column')}; x, y, z and perhaps a diameter are read."
-        )
+        raise FileError(f"has {plural(numbers.shape[1], 'column')}; x, y, z and perhaps a diameter are read.")
     note = "The fourth column has no name; it was taken for the diameter."
     if numbers.shape[1] == 3:
         return ParsedPositions(numbers)

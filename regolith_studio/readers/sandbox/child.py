@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from regolith_studio.errors import RegolithError, reason_of
-from regolith_studio.readers.error_messages import sentence_about
+from regolith_studio.readers.error_messages import message_about
 from regolith_studio.readers.formats import MESH_FORMATS
 from regolith_studio.readers.sandbox import tasks, volume_tasks
 from regolith_studio.readers.sandbox.messages import Message, receive, send
@@ -45,10 +45,10 @@ def answer(request: dict[str, Any]) -> Message:
     except MemoryError:
         return Message({"status": "memory"})
     except OSError as error:
-        sentence = sentence_about(path, f"cannot be opened: {reason_of(error)}.")
+        sentence = message_about(path, f"cannot be opened: {reason_of(error)}.")
         return Message({"status": "refused", "sentence": sentence})
     except Exception as error:  # noqa: BLE001 (whatever a parser trips over is the file's fault)
-        sentence = sentence_about(path, "is damaged in a way that its reader does not know; export it again.")
+        sentence = message_about(path, "is damaged in a way that its reader does not know; export it again.")
         return Message({"status": "refused", "sentence": sentence, "details": repr(error)})
     return Message({**message.header, "status": "read"}, message.arrays)
 
@@ -60,7 +60,7 @@ def main() -> None:
     _limit_memory(limit)
     warnings.simplefilter("ignore")
     send(sink, Message({"status": "ready", "pid": os.getpid()}))
-    len(MESH_FORMATS)  # imports them while the parent is busy with what to ask
+    len(MESH_FORMATS)  # imports them while the parent is busy with what to request_within
     with contextlib.suppress(EOFError, OSError, KeyboardInterrupt):
         while True:
             request = receive(source).header

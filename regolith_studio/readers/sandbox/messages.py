@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 _LENGTH = struct.Struct("<Q")
-LONGEST_HEADER = 1 << 24
+MAX_HEADER_BYTES = 1 << 24
 KINDS = frozenset(("|b1", "|u1", "|i1", "<u2", "<i2", "<u4", "<i4", "<u8", "<i8", "<f2", "<f4", "<f8"))
 
 
@@ -65,7 +65,7 @@ def receive(stream: Readable) -> Message:
         If the other side has gone, or what came is no message.
     """
     length = _LENGTH.unpack(_read_all(stream, _LENGTH.size))[0]
-    if length > LONGEST_HEADER:
+    if length > MAX_HEADER_BYTES:
         raise EOFError("a header of impossible length")
     header = json.loads(bytes(_read_all(stream, length)))
     arrays = []

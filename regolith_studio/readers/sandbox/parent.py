@@ -1,4 +1,4 @@
-"""The guard of the reading child: starts it, keeps it warm, limits it, replaces it when it dies."""
+"""The sandbox of the reading child: starts it, keeps it warm, limits it, replaces it when it dies."""
 
 import contextlib
 import multiprocessing.util as process_end
@@ -12,27 +12,27 @@ from pathlib import Path
 from typing import Any
 
 from regolith_studio.errors import EnvironmentProblem, FileError, reason_of
-from regolith_studio.readers.error_messages import sentence_about
+from regolith_studio.readers.error_messages import message_about
 from regolith_studio.readers.sandbox.messages import Message, receive, send
 
-LARGEST_FILE = 2 * 1024**3
-MEMORY = 6 * 1024**3
+MAX_FILE_BYTES = 2 * 1024**3
+MAX_MEMORY = 6 * 1024**3
 """Bytes of addresses that the child may use at most; a 2 GiB binary file and its arrays fit."""
 
-SHARE_OF_MEMORY = 0.75
+MAX_MEMORY_SHARE = 0.75
 """Nor may it use more than this share of what the machine has."""
 
 BASE_SECONDS = 40.0
 """Patience with a small file on a machine that has forty other things to do: sound files took 10 s there."""
-WORKING_SECONDS = 1.5
+WORK_SECONDS = 1.5
 """A small file may keep the processor busy for so long; the rest is patience with a busy machine."""
 SECONDS_PER_BYTE = 1.0 / 1e6
 START_SECONDS = 60.0
-LARGEST_WARM_RESULT = 256 * 1024**2
+MAX_WARM_RESULT_BYTES = 256 * 1024**2
 """After a larger result the child is replaced, so that its memory returns to the system."""
 
 
-class Guard:
+class Sandbox:
     """One warm child process; safe to share between threads, not between processes.
 
     Parameters
@@ -53,10 +53,10 @@ class Guard:
         self._ready = False
         self._ends_with_process = False
 
-    def warm_up(self) -> None:
+    def start(self) -> None:
         """Start the child now instead of at the first request."""
         with self._lock:
-            self._running()
+            self._running_process()
 
     def request(self, task: str, path: Path, **options: Any) -> Message:
         """Let the child do `task` on the file at `path`.
@@ -67,10 +67,10 @@ class Guard:
             With one sentence if the file is refused, hangs or kills its reader.
         """
         more = checked_size(path) * SECONDS_PER_BYTE
-        work = min(self._seconds, WORKING_SECONDS) + more
-        return self.ask(task, path, self._seconds + more, work, **options)
+        work = min(self._seconds, WORK_SECONDS) + more
+        return self.request_within(task, path, self._seconds + more, work, **options)
 
-    def ask(
+    def request_within(
         self, task: str, path: Path, seconds: float, work: float | None = None, **options: Any
     ) -> Message:
         """As `request`, for who has looked at the file or folder before: no check of its size.
@@ -89,7 +89,7 @@ class Guard:
         limits = {"seconds": seconds + 2.0, "work": work}
         header = {"task": task, "path": str(path.absolute()), **limits, **options}
         with self._lock:
-            message = self._asked(Message(header), seconds)
+            message = self._answer(Message(header), seconds)
         match message.header["status"]:
             case "read":
                 return message
@@ -106,16 +106,16 @@ class Guard:
                 reason = f"was given up after {seconds:.2g} s: it is damaged, or far larger than it looks."
             case _:
                 reason = "is damaged: it ended the process that tried to read it; export it again."
-        raise FileError(sentence_about(path, reason))
+        raise FileError(message_about(path, reason))
 
     def close(self) -> None:
         """End the child, if there is one."""
         with self._lock:
             process, self._process = self._process, None
             if process is not None:
-                _end(process)
+                _stop(process)
 
-    def forget(self) -> None:
+    def abandon(self) -> None:
         """Let go of a child that belongs to the process that this one was forked from."""
         self._lock = threading.RLock()
         self._ends_with_process = False
@@ -126,20 +126,18 @@ class Guard:
                 if pipe is not None:
                     pipe.close()
 
-    def _asked(self, message: Message, seconds: float) -> Message:
+    def _answer(self, message: Message, seconds: float) -> Message:
         """The child's answer, or a message of status ``late``, ``busy`` or ``dead``."""
-        answer = self._exchanged(self._running(), message, seconds)
+        answer = self._exchange(self._running_process(), message, seconds)
         if answer.header["status"] == "unheard":
             self.close()
-            answer = self._exchanged(self._running(), message, seconds)
-        if _ends_child(answer):
+            answer = self._exchange(self._running_process(), message, seconds)
+        if _must_replace_child(answer):
             with contextlib.suppress(OSError):  # whoever asks next will hear of it
-                self._begin()
+                self._start_process()
         return answer
 
-    def _exchanged(
-        self, process: subprocess.Popen[bytes], message: Message | None, seconds: float
-    ) -> Message:
+    def _exchange(self, process: subprocess.Popen[bytes], message: Message | None, seconds: float) -> Message:
         """Send a message and wait for the answer, no longer than `seconds`."""
         late = threading.Event()
 
@@ -158,7 +156,7 @@ class Guard:
         try:
             return receive(process.stdout)  # type: ignore[arg-type]
         except (EOFError, OSError, ValueError, KeyError):
-            return Message({"status": "late" if late.is_set() else _cause_of_death(process)})
+            return Message({"status": "late" if late.is_set() else _exit_reason(process)})
         except BaseException:
             self.close()
             raise
@@ -166,12 +164,12 @@ class Guard:
             watch.cancel()
             watch.join()
 
-    def _running(self) -> subprocess.Popen[bytes]:
+    def _running_process(self) -> subprocess.Popen[bytes]:
         process = self._process
         if process is None or process.poll() is not None:
-            process = self._begin()
+            process = self._start_process()
         if not self._ready:
-            if self._exchanged(process, None, START_SECONDS).header["status"] != "ready":
+            if self._exchange(process, None, START_SECONDS).header["status"] != "ready":
                 self.close()
                 raise EnvironmentProblem(
                     f"The program's reading process does not start with {sys.executable}."
@@ -179,10 +177,10 @@ class Guard:
             self._ready = True
         return process
 
-    def _begin(self) -> subprocess.Popen[bytes]:
+    def _start_process(self) -> subprocess.Popen[bytes]:
         """Let a child start, without waiting: the successor of one that a file has ended is ready in time."""
         self.close()
-        process = self._process = _started(self._memory)
+        process = self._process = _launch(self._memory)
         self._ready = False
         if not self._ends_with_process:
             process_end.Finalize(None, self.close, exitpriority=100)
@@ -190,7 +188,7 @@ class Guard:
         return process
 
 
-def _cause_of_death(process: subprocess.Popen[bytes]) -> str:
+def _exit_reason(process: subprocess.Popen[bytes]) -> str:
     """``busy`` if the child's own limit of work has ended it, else ``dead``."""
     with contextlib.suppress(subprocess.TimeoutExpired):
         if process.wait(timeout=1.0) == -getattr(signal, "SIGPROF", 0):
@@ -198,13 +196,13 @@ def _cause_of_death(process: subprocess.Popen[bytes]) -> str:
     return "dead"
 
 
-def _ends_child(answer: Message) -> bool:
+def _must_replace_child(answer: Message) -> bool:
     """Whether the child is gone, or has grown so large that a new one is better."""
     size = sum(array.nbytes for array in answer.arrays)
-    return answer.header["status"] not in ("read", "refused") or size > LARGEST_WARM_RESULT
+    return answer.header["status"] not in ("read", "refused") or size > MAX_WARM_RESULT_BYTES
 
 
-def checked_size(path: Path, largest: int | None = LARGEST_FILE) -> int:
+def checked_size(path: Path, largest: int | None = MAX_FILE_BYTES) -> int:
     """Size in bytes of a regular file that can be read whole, or in parts if `largest` is None.
 
     Raises
@@ -216,14 +214,14 @@ def checked_size(path: Path, largest: int | None = LARGEST_FILE) -> int:
         status = path.stat()
     except (OSError, ValueError) as error:
         reason = reason_of(error) if isinstance(error, OSError) else "its name cannot be the name of a file"
-        raise FileError(sentence_about(path, f"cannot be opened: {reason}.")) from None
+        raise FileError(message_about(path, f"cannot be opened: {reason}.")) from None
     if stat.S_ISDIR(status.st_mode):
-        raise FileError(sentence_about(path, "is a folder, not a file."))
+        raise FileError(message_about(path, "is a folder, not a file."))
     if not stat.S_ISREG(status.st_mode):
-        raise FileError(sentence_about(path, "is a device or a pipe, not a file."))
+        raise FileError(message_about(path, "is a device or a pipe, not a file."))
     if largest is not None and status.st_size > largest:
         raise FileError(
-            sentence_about(path, f"has {status.st_size / 1024**3:.1f} GiB; at most 2 GiB are read.")
+            message_about(path, f"has {status.st_size / 1024**3:.1f} GiB; at most 2 GiB are read.")
         )
     return status.st_size
 
@@ -232,11 +230,11 @@ def _memory_limit() -> int:
     try:
         machine = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     except (AttributeError, ValueError, OSError):
-        return MEMORY
-    return min(MEMORY, int(machine * SHARE_OF_MEMORY)) if machine > 0 else MEMORY
+        return MAX_MEMORY
+    return min(MAX_MEMORY, int(machine * MAX_MEMORY_SHARE)) if machine > 0 else MAX_MEMORY
 
 
-def _started(memory: int) -> subprocess.Popen[bytes]:
+def _launch(memory: int) -> subprocess.Popen[bytes]:
     package = str(Path(__file__).resolve().parents[3])
     single = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
     inherited = os.environ.get("PYTHONPATH")
@@ -252,7 +250,7 @@ def _started(memory: int) -> subprocess.Popen[bytes]:
     )
 
 
-def _end(process: subprocess.Popen[bytes]) -> None:
+def _stop(process: subprocess.Popen[bytes]) -> None:
     """Close the pipes and collect the child, by force if it does not go."""
     for pipe in (process.stdin, process.stdout):
         if pipe is not None:
@@ -264,17 +262,17 @@ def _end(process: subprocess.Popen[bytes]) -> None:
         process.wait()
 
 
-_SHARED, _VOLUMES = Guard(), Guard()
+_SHARED, _VOLUMES = Sandbox(), Sandbox()
 if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=_SHARED.forget)
-    os.register_at_fork(after_in_child=_VOLUMES.forget)
+    os.register_at_fork(after_in_child=_SHARED.abandon)
+    os.register_at_fork(after_in_child=_VOLUMES.abandon)
 
 
-def shared_guard() -> Guard:
-    """The one guard of this process for files that are read at once."""
+def shared_sandbox() -> Sandbox:
+    """The one sandbox of this process for files that are read at once."""
     return _SHARED
 
 
-def volume_guard() -> Guard:
-    """The one guard of this process for volumes, whose long reading must not keep meshes waiting."""
+def volume_sandbox() -> Sandbox:
+    """The one sandbox of this process for volumes, whose long reading must not keep meshes waiting."""
     return _VOLUMES

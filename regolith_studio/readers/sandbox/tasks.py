@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from regolith_studio.errors import FileError
-from regolith_studio.readers.error_messages import printable, sentence_about
+from regolith_studio.readers.error_messages import message_about, printable
 from regolith_studio.readers.formats import MESH_FORMATS, MeshFormat, ParsedMesh, mesh_suffixes
 from regolith_studio.readers.number_rows import number_rows
 from regolith_studio.readers.position_formats import (
@@ -22,7 +22,7 @@ from regolith_studio.readers.position_formats import (
 from regolith_studio.readers.sandbox.messages import Message
 from regolith_studio.readers.volume_formats import VOLUME_FORMATS, volume_suffixes
 
-LARGEST_COORDINATE = 1e40
+MAX_COORDINATE = 1e40
 """Beyond it the sixth powers in the checks would leave the range of float64."""
 
 
@@ -51,16 +51,16 @@ def parse_mesh(data: bytes, path: Path) -> tuple[ParsedMesh, MeshFormat]:
         With a whole sentence that names the file.
     """
     try:
-        data = without_mark(data)
+        data = without_byte_order_mark(data)
         row, notes = _mesh_format_of(data, path)
         with np.errstate(all="ignore"):
             parsed = row.parse(data, path)
             return _checked_mesh(replace(parsed, notes=notes + parsed.notes)), row
     except FileError as error:
-        raise FileError(sentence_about(path, str(error))) from None
+        raise FileError(message_about(path, str(error))) from None
 
 
-def without_mark(data: bytes) -> bytes:
+def without_byte_order_mark(data: bytes) -> bytes:
     """Text without the byte order mark that some editors put first, and never in UTF-16."""
     if data.startswith(codecs.BOM_UTF8):
         return data[len(codecs.BOM_UTF8) :]
@@ -102,7 +102,7 @@ def _checked_mesh(parsed: ParsedMesh) -> ParsedMesh:
         )
     if faces.min() < 0 or faces.max() >= len(vertices):
         raise FileError(f"has faces that point to vertices beyond its {len(vertices):,}.")
-    good = np.asarray((np.abs(vertices) < LARGEST_COORDINATE).all(axis=1))
+    good = np.asarray((np.abs(vertices) < MAX_COORDINATE).all(axis=1))
     if good.all():
         return parsed
     kept = np.asarray(good[faces].all(axis=1))
@@ -115,7 +115,7 @@ def _checked_mesh(parsed: ParsedMesh) -> ParsedMesh:
     return ParsedMesh(np.where(good[:, None], vertices, 0.0), faces[kept], notes)
 
 
-LARGEST_POSITION = 1e30
+MAX_POSITION = 1e30
 
 
 def read_positions_file(request: dict[str, Any]) -> Message:
@@ -139,9 +139,9 @@ def read_number_rows(request: dict[str, Any]) -> Message:
     data = path.read_bytes()
     try:
         headers = int(request.get("headers", 1))
-        table = number_rows(without_mark(data), headers, numeric_headers=headers)
+        table = number_rows(without_byte_order_mark(data), headers, numeric_headers=headers)
     except FileError as error:
-        raise FileError(sentence_about(path, str(error))) from None
+        raise FileError(message_about(path, str(error))) from None
     first = next((line for line in data.splitlines() if line.strip()[:1].isdigit()), b"")
     return Message(
         {"names": table.names, "commas": b"," in first}, (np.ascontiguousarray(table.numbers, "<f8"),)
@@ -159,12 +159,12 @@ def parse_positions(data: bytes, path: Path) -> tuple[ParsedPositions, PositionF
     try:
         if not data:
             raise FileError("is empty: it has no bytes at all.")
-        data = without_mark(data)
+        data = without_byte_order_mark(data)
         row = _position_format_of(data, path)
         with np.errstate(all="ignore"):
             return _checked_positions(row.parse(data)), row
     except FileError as error:
-        raise FileError(sentence_about(path, str(error))) from None
+        raise FileError(message_about(path, str(error))) from None
 
 
 def _position_format_of(data: bytes, path: Path) -> PositionFormat:
@@ -183,9 +183,9 @@ def _checked_positions(parsed: ParsedPositions) -> ParsedPositions:
     points, diameters = parsed.points, parsed.diameters
     if not len(points):
         raise FileError("holds no particles.")
-    good = np.asarray((np.abs(points) < LARGEST_POSITION).all(axis=1))
+    good = np.asarray((np.abs(points) < MAX_POSITION).all(axis=1))
     if diameters is not None:
-        good &= (diameters > 0.0) & (diameters < LARGEST_POSITION)
+        good &= (diameters > 0.0) & (diameters < MAX_POSITION)
     if not good.any():
         raise FileError("has no particle whose position and size are proper numbers.")
     lost = len(points) - int(np.count_nonzero(good))

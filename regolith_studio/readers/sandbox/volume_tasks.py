@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
-from regolith_studio.readers.error_messages import printable, sentence_about
+from regolith_studio.readers.error_messages import message_about, printable
 from regolith_studio.readers.formats import mesh_suffixes
 from regolith_studio.readers.sandbox.messages import Message
 from regolith_studio.readers.units import UNITS
@@ -16,7 +16,7 @@ from regolith_studio.readers.volume_formats import VOLUME_FORMATS, WITH_AXES, Vo
 from regolith_studio.readers.voxels.header import OpenVolume, Sizes, VoxelHeader, checked_header
 from regolith_studio.readers.voxels.stored import PlainVoxels
 
-SMALLEST_EDGE, LARGEST_EDGE, MOST_SLENDER = 1e-5, 1e6, 1e4
+MIN_VOXEL_EDGE, MAX_VOXEL_EDGE, MAX_EDGE_RATIO = 1e-5, 1e6, 1e4
 """Micrometres that the edge of a voxel can have, from atoms to a metre, and how far two may differ."""
 _HEAD = 1024
 _opened: dict[str, tuple[OpenVolume, VolumeFormat]] = {}
@@ -29,7 +29,7 @@ def prepare_volume(request: dict[str, Any]) -> Message:
     try:
         row, _ = volume_format_of(path)
     except FileError as error:
-        raise FileError(sentence_about(path, str(error))) from None
+        raise FileError(message_about(path, str(error))) from None
     row.prepare()
     return Message({"format": row.key})
 
@@ -40,7 +40,7 @@ def open_volume(request: dict[str, Any]) -> Message:
     try:
         volume, row = _open_one(request)
     except FileError as error:
-        raise FileError(sentence_about(path, str(error))) from None
+        raise FileError(message_about(path, str(error))) from None
     return Message(_as_json(volume, row, volume_format_of(path)[1]))
 
 
@@ -50,13 +50,13 @@ def read_slices(request: dict[str, Any]) -> Message:
     try:
         volume, _ = _open_one(request)
         z0, z1 = int(request["z0"]), int(request["z1"])
-        voxels = checked_slices(volume, z0, z1)
+        voxels = read_checked_slices(volume, z0, z1)
     except FileError as error:
-        raise FileError(sentence_about(path, str(error))) from None
+        raise FileError(message_about(path, str(error))) from None
     return Message({}, (_little(voxels),))
 
 
-def checked_slices(volume: OpenVolume, z0: int, z1: int) -> NDArray[Any]:
+def read_checked_slices(volume: OpenVolume, z0: int, z1: int) -> NDArray[Any]:
     """What the volume gives for the slices, if it is what its header promised.
 
     Raises
@@ -72,7 +72,7 @@ def checked_slices(volume: OpenVolume, z0: int, z1: int) -> NDArray[Any]:
     return voxels
 
 
-def opened_volume(path: Path, request: dict[str, Any]) -> tuple[OpenVolume, VolumeFormat]:
+def open_volume_file(path: Path, request: dict[str, Any]) -> tuple[OpenVolume, VolumeFormat]:
     """An opened volume with a checked header, and the format that it came in.
 
     Raises
@@ -128,13 +128,13 @@ def _open_one(request: dict[str, Any]) -> tuple[OpenVolume, VolumeFormat]:
         for volume, _ in _opened.values():
             volume.close()
         _opened.clear()
-        _opened[key] = opened_volume(Path(request["path"]), request)
+        _opened[key] = open_volume_file(Path(request["path"]), request)
     return _opened[key]
 
 
 def _as_json(volume: OpenVolume, row: VolumeFormat, notes: tuple[str, ...]) -> dict[str, Any]:
     header = volume.header
-    size, doubts = _believable(header)
+    size, doubts = _plausible_size(header)
     return {
         "format": row.key,
         "label": row.label,
@@ -152,15 +152,15 @@ def _as_json(volume: OpenVolume, row: VolumeFormat, notes: tuple[str, ...]) -> d
     }
 
 
-def _believable(header: VoxelHeader) -> tuple[Sizes | None, tuple[str, ...]]:
+def _plausible_size(header: VoxelHeader) -> tuple[Sizes | None, tuple[str, ...]]:
     """The stated edges of a voxel, unless no scan can have them; then a sentence says so."""
     size, unit = header.voxel_size, header.unit
     if size is None:
         return None, ()
     factor = UNITS.get(unit or "", math.nan)
-    slim = max(size) > MOST_SLENDER * min(size)
+    slim = max(size) > MAX_EDGE_RATIO * min(size)
     if not slim and not any(
-        not SMALLEST_EDGE <= edge * factor <= LARGEST_EDGE for edge in size if factor > 0
+        not MIN_VOXEL_EDGE <= edge * factor <= MAX_VOXEL_EDGE for edge in size if factor > 0
     ):
         return size, ()
     shown = " × ".join(f"{edge:.3g}" for edge in size)

@@ -13,14 +13,14 @@ from regolith_studio.errors import FileError
 from regolith_studio.readers.error_messages import printable
 from regolith_studio.readers.volume_formats import VolumeFormat
 from regolith_studio.readers.voxels.hdf5 import (
-    Candidate,
-    candidates_in,
+    Hdf5Volume,
     check_storage,
     element_size,
-    shown_names,
+    find_volumes,
+    format_names,
 )
 from regolith_studio.readers.voxels.header import (
-    KEPT_BYTES,
+    MAX_CACHED_BYTES,
     DatasetEntry,
     VoxelHeader,
     stated_axes,
@@ -28,8 +28,8 @@ from regolith_studio.readers.voxels.header import (
     voxel_type,
 )
 
-LARGEST_CHUNK = 1 << 29
-_CACHE = {"rdcc_nbytes": KEPT_BYTES + (1 << 25), "rdcc_nslots": 1_000_003, "rdcc_w0": 1.0}
+MAX_CHUNK_BYTES = 1 << 29
+_CACHE = {"rdcc_nbytes": MAX_CACHED_BYTES + (1 << 25), "rdcc_nslots": 1_000_003, "rdcc_w0": 1.0}
 """Of unpacked chunks; many slots, since two chunks in one slot expel each other."""
 
 
@@ -37,19 +37,19 @@ class Hdf5Voxels:
     """A dataset of an open ``h5py.File``, read in slices.
 
     `layer` is the depth of a chunk along z. HDF5's cache of unpacked chunks holds a layer of up to
-    `KEPT_BYTES`, so that its chunks are unpacked once even where it is asked for in parts.
+    `MAX_CACHED_BYTES`, so that its chunks are unpacked once even where it is asked for in parts.
     """
 
-    def __init__(self, file: Any, dataset: Any, candidate: Candidate, header: VoxelHeader) -> None:
+    def __init__(self, file: Any, dataset: Any, candidate: Hdf5Volume, header: VoxelHeader) -> None:
         self.header = header
-        self._file, self._dataset, self._candidate = file, dataset, candidate
+        self._file, self._dataset, self._choose = file, dataset, candidate
         axes = candidate.axes
         self.layer = int(dataset.chunks[axes.index("z")]) if dataset.chunks and "z" in axes else 1
 
     def read(self, z0: int, z1: int) -> NDArray[Any]:
         """Slices z0 to z1, shape (z1 - z0, ny, nx)."""
-        axes, every = self._candidate.axes, slice(None)
-        picked = {"z": slice(z0, z1), "y": every, "x": every, "c": self._candidate.channel, "t": 0}
+        axes, every = self._choose.axes, slice(None)
+        picked = {"z": slice(z0, z1), "y": every, "x": every, "c": self._choose.channel, "t": 0}
         try:
             part = self._dataset[tuple(picked[axis] for axis in axes)]
         except (OSError, ValueError, RuntimeError):
@@ -88,12 +88,12 @@ def open_hdf5(path: Path, options: Mapping[str, Any]) -> Hdf5Voxels:
 
 
 def _chosen(file: Any, wanted: Any, axes: str) -> Hdf5Voxels:
-    candidates = candidates_in(file, axes)
+    candidates = find_volumes(file, axes)
     if not candidates:
         raise FileError(
             "holds no volume: none of its arrays has three dimensions of numbers (links are not followed)."
         )
-    candidate = _candidate(candidates, wanted)
+    candidate = _choose(candidates, wanted)
     dataset = file[candidate.path]
     if axes:
         stated_axes(axes, len(candidate.shape))
@@ -116,18 +116,18 @@ def _chosen(file: Any, wanted: Any, axes: str) -> Hdf5Voxels:
     return Hdf5Voxels(file, dataset, candidate, header)
 
 
-def _candidate(candidates: list[Candidate], wanted: Any) -> Candidate:
+def _choose(candidates: list[Hdf5Volume], wanted: Any) -> Hdf5Volume:
     if wanted is None:
         return candidates[0]
     name = str(wanted).strip("/")
     for each in candidates:
         if name in (each.name, each.path):
             return each
-    raise FileError(f"has no volume “{printable(name)[:40]}”; it holds {shown_names(candidates)}.")
+    raise FileError(f"has no volume “{printable(name)[:40]}”; it holds {format_names(candidates)}.")
 
 
 def _check_chunks(dataset: Any) -> None:
-    if dataset.chunks and prod(dataset.chunks) * dataset.dtype.itemsize > LARGEST_CHUNK:
+    if dataset.chunks and prod(dataset.chunks) * dataset.dtype.itemsize > MAX_CHUNK_BYTES:
         raise FileError("is packed in chunks of more than 0.5 GiB; save it with smaller ones.")
 
 

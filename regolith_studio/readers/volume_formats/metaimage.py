@@ -23,7 +23,7 @@ from regolith_studio.readers.voxels.header import (
 )
 from regolith_studio.readers.voxels.stored import DeflatedVoxels, PlainVoxels, beside, start_before_end
 
-LONGEST_HEADER = 1 << 16
+MAX_HEADER_BYTES = 1 << 16
 _TYPES = {
     "MET_CHAR": "i1",
     "MET_UCHAR": "u1",
@@ -50,7 +50,7 @@ def open_metaimage(path: Path, _options: Mapping[str, Any]) -> OpenVolume:
         If the header breaks the rules or the data lie elsewhere.
     """
     with path.open("rb") as file:
-        fields, body = _fields(file.read(LONGEST_HEADER))
+        fields, body = _fields(file.read(MAX_HEADER_BYTES))
     stored = _stored_type(fields)
     sizes = _sizes(fields)
     size, unit = _voxel_size(fields, sizes)

@@ -12,15 +12,15 @@ from numpy.lib import format as npy
 from regolith_studio.errors import FileError
 from regolith_studio.readers.volume_formats import VolumeFormat
 from regolith_studio.readers.voxels.header import VoxelHeader, stated_axes, three_dimensions, voxel_type
-from regolith_studio.readers.voxels.stored import PlainVoxels, TurnedVoxels
+from regolith_studio.readers.voxels.stored import PlainVoxels, TransposedVoxels
 
-LONGEST_HEADER = 10_000
+MAX_HEADER_BYTES = 10_000
 _NONSENSE = (ValueError, TypeError, SyntaxError, KeyError, EOFError, RecursionError, MemoryError, TokenError)
 """What numpy's parser of Python's literals raises."""
 _HEADERS: dict[tuple[int, int], Any] = {(1, 0): npy.read_array_header_1_0, (2, 0): npy.read_array_header_2_0}
 
 
-def open_npy(path: Path, options: Mapping[str, Any]) -> PlainVoxels | TurnedVoxels:
+def open_npy(path: Path, options: Mapping[str, Any]) -> PlainVoxels | TransposedVoxels:
     """A three-dimensional array whose first index counts the slices, or as ``options["axes"]`` says.
 
     Raises
@@ -34,19 +34,19 @@ def open_npy(path: Path, options: Mapping[str, Any]) -> PlainVoxels | TurnedVoxe
             version = npy.read_magic(file)
             if version not in _HEADERS:
                 raise FileError(f"is an NPY file of version {version[0]}.{version[1]}, not 1.0 or 2.0.")
-            shape, fortran, dtype = _HEADERS[version](file, max_header_size=LONGEST_HEADER)
+            shape, fortran, dtype = _HEADERS[version](file, max_header_size=MAX_HEADER_BYTES)
         except _NONSENSE:
             raise FileError("is a broken NPY file: its header makes no sense; save it again.") from None
         offset = file.tell()
     if not options.get("axes"):
         three = three_dimensions(shape)
         return PlainVoxels(path, offset, VoxelHeader(three, voxel_type(dtype)), dtype, bool(fortran))
-    return _turned(path, offset, str(options["axes"]), tuple(map(int, shape)), dtype, bool(fortran))
+    return _transposed(path, offset, str(options["axes"]), tuple(map(int, shape)), dtype, bool(fortran))
 
 
-def _turned(
+def _transposed(
     path: Path, offset: int, axes: str, shape: tuple[int, ...], dtype: np.dtype[Any], fortran: bool
-) -> PlainVoxels | TurnedVoxels:
+) -> PlainVoxels | TransposedVoxels:
     edges = dict(zip(stated_axes(axes, len(shape)), shape, strict=True))
     if any(edge != 1 for axis, edge in edges.items() if axis in "tc"):
         raise FileError("holds several channels or times; save one of them.")
@@ -55,7 +55,7 @@ def _turned(
     header = VoxelHeader(three, voxel_type(dtype))
     if order in ("zyx", "xyz"):
         return PlainVoxels(path, offset, header, dtype, order == "xyz")
-    return TurnedVoxels(path, offset, header, dtype, order)
+    return TransposedVoxels(path, offset, header, dtype, order)
 
 
 FORMAT = VolumeFormat("npy", "an NPY array", (".npy",), lambda head: head.startswith(b"\x93NUMPY"), open_npy)

@@ -24,7 +24,7 @@ from regolith_studio.readers.voxels.header import (
 )
 from regolith_studio.readers.voxels.stored import DeflatedVoxels, PlainVoxels, beside, start_before_end
 
-LONGEST_HEADER = 1 << 16
+MAX_HEADER_BYTES = 1 << 16
 _TYPES = {
     "i1": ("signed char", "int8", "int8_t"),
     "u1": ("uchar", "unsigned char", "uint8", "uint8_t"),
@@ -59,7 +59,7 @@ def open_nrrd(path: Path, _options: Mapping[str, Any]) -> OpenVolume:
         If the header breaks the rules, the encoding is another one, or the data lie elsewhere.
     """
     with path.open("rb") as file:
-        head = file.read(LONGEST_HEADER)
+        head = file.read(MAX_HEADER_BYTES)
     fields, body = _fields(head)
     stored = _stored_type(fields)
     sizes = _whole_numbers(fields, "sizes")
@@ -96,7 +96,7 @@ def _opened(
 def _fields(head: bytes) -> tuple[dict[str, str], int | None]:
     """The fields by name, and where the voxels begin (None for a header without them)."""
     end = re.search(rb"\r?\n\r?\n", head)
-    if end is None and len(head) == LONGEST_HEADER:
+    if end is None and len(head) == MAX_HEADER_BYTES:
         raise FileError("is a broken NRRD: its header does not end.")
     lines = head[: end.start() if end else len(head)].decode("utf-8", "replace").splitlines()
     if not lines or not re.fullmatch(r"NRRD000[1-5]", lines[0]):

@@ -9,7 +9,7 @@ import numpy as np
 
 from regolith_studio.errors import FileError
 from regolith_studio.readers.volume_formats import VolumeFormat
-from regolith_studio.readers.voxels.header import VoxelHeader, shown_shape, three_dimensions, voxel_type
+from regolith_studio.readers.voxels.header import VoxelHeader, format_shape, three_dimensions, voxel_type
 from regolith_studio.readers.voxels.stored import PlainVoxels
 
 SUFFIXES = (".raw", ".vol", ".bin", ".dat")
@@ -34,7 +34,7 @@ def open_raw(path: Path, options: Mapping[str, Any]) -> PlainVoxels:
     needed = offset + math.prod(shape) * stored.itemsize
     if there != needed:
         raise FileError(
-            f"has {there:,} bytes, but {shown_shape((nx, ny, nz))} voxels of {stored.name} after {offset:,} "
+            f"has {there:,} bytes, but {format_shape((nx, ny, nz))} voxels of {stored.name} after {offset:,} "
             f"bytes of header make {needed:,}."
         )
     return PlainVoxels(path, offset, header, stored)

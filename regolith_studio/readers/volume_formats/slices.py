@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
-from regolith_studio.readers.error_messages import shown_name
+from regolith_studio.readers.error_messages import display_name
 from regolith_studio.readers.volume_formats import VolumeFormat
-from regolith_studio.readers.voxels.header import LARGEST_SLICE, VoxelHeader, shown_shape, voxel_type
+from regolith_studio.readers.voxels.header import MAX_SLICE_BYTES, VoxelHeader, format_shape, voxel_type
 from regolith_studio.readers.voxels.tiff import check_page, open_tiff_file, stated_size
 
 SLICE_SUFFIXES = (".tif", ".tiff", ".png", ".bmp")
@@ -34,8 +34,8 @@ class SliceFiles:
             image = _image(path)
             if image.shape != (ny, nx) or image.dtype != self.header.dtype:
                 raise FileError(
-                    f"is no volume: its slice {shown_name(path)} has {shown_shape(image.shape[::-1])} pixels "
-                    f"of {image.dtype}, the first one {nx} × {ny} of {self.header.dtype}."
+                    f"is no volume: its slice {display_name(path)} has {format_shape(image.shape[::-1])} "
+                    f"pixels of {image.dtype}, the first one {nx} × {ny} of {self.header.dtype}."
                 )
             out[place] = image
         return out
@@ -72,13 +72,13 @@ def _image(path: Path) -> NDArray[Any]:
         image = _tiff(path) if path.suffix.lower() in (".tif", ".tiff") else _picture(path)
     except (FileError, MemoryError, OSError) as error:
         if isinstance(error, FileError):
-            raise FileError(f"cannot be read: its slice {shown_name(path)} {error}") from None
+            raise FileError(f"cannot be read: its slice {display_name(path)} {error}") from None
         raise
     except Exception:  # noqa: BLE001 (each codec has errors of its own)
-        raise FileError(f"cannot be read: its slice {shown_name(path)} is damaged.") from None
+        raise FileError(f"cannot be read: its slice {display_name(path)} is damaged.") from None
     image = image.squeeze() if image.ndim > 2 else image
     if image.ndim != 2 or not image.size:
-        raise FileError(f"cannot be read: its slice {shown_name(path)} is no single grey image.")
+        raise FileError(f"cannot be read: its slice {display_name(path)} is no single grey image.")
     return image.astype(voxel_type(image.dtype), copy=False)
 
 
@@ -87,7 +87,7 @@ def _tiff(path: Path) -> NDArray[Any]:
         if len(file.pages) != 1:
             raise FileError(f"has {len(file.pages):,} pages: it is a stack of its own.")
         page: Any = file.pages.first
-        if page.nbytes > LARGEST_SLICE:
+        if page.nbytes > MAX_SLICE_BYTES:
             raise FileError("is larger than 1 GiB.")
         check_page(page, path.stat().st_size, 0)
         decoded: NDArray[Any] = page.asarray(maxworkers=1)
@@ -106,7 +106,7 @@ def _picture(path: Path) -> NDArray[Any]:
         decode = imagecodecs.bmp_decode
     else:
         raise FileError("is neither a PNG nor a BMP image.")
-    if not 0 < edges[0] * edges[1] <= LARGEST_SLICE // 8:
+    if not 0 < edges[0] * edges[1] <= MAX_SLICE_BYTES // 8:
         raise FileError(f"cannot have {edges[0]:,} × {edges[1]:,} pixels.")
     decoded: NDArray[Any] = decode(data)
     return decoded

@@ -13,14 +13,14 @@ from regolith_studio.readers.volume_formats import VolumeFormat
 from regolith_studio.readers.voxels.header import (
     OpenVolume,
     VoxelHeader,
-    shown_shape,
+    format_shape,
     three_dimensions,
     voxel_type,
 )
 from regolith_studio.readers.voxels.stored import PlainVoxels
 from regolith_studio.readers.voxels.tiff import check_page, open_tiff_file, stated_size
 
-MOST_CHANNELS = 8
+MAX_CHANNELS = 8
 _CHANNELS = re.compile(r"<Pixels\b[^>]*\bSize[CT]=\"(?!1\")(\d+)\"")
 
 
@@ -99,7 +99,7 @@ def _stack(path: Path, file: Any) -> OpenVolume:
     pages = list(series.pages)
     if len(pages) != shape[0] or any(each is None for each in pages):
         raise FileError(
-            f"is no stack of slices: its {len(pages):,} pages do not make the shape {shown_shape(shape)}."
+            f"is no stack of slices: its {len(pages):,} pages do not make the shape {format_shape(shape)}."
         )
     return TiffPages(file, pages, header)
 
@@ -116,7 +116,7 @@ def _check_colours(series: Any, page: Any) -> tuple[str, ...]:
     others = [edge for axis, edge in zip(series.axes, series.shape, strict=True) if axis not in "SCYX"]
     notes: tuple[str, ...] = ()
     for axis, edge in zip(series.axes, series.shape, strict=True):
-        if axis == "C" and edge > MOST_CHANNELS and max(others, default=1) == 1:
+        if axis == "C" and edge > MAX_CHANNELS and max(others, default=1) == 1:
             notes = (f"The file calls its {edge} images channels; they were taken for slices.",)
         elif axis in "SC" and edge > 1:
             raise FileError(f"holds {edge} colours or channels; save one of them as greys.")

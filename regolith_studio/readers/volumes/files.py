@@ -5,13 +5,13 @@ import re
 from pathlib import Path
 
 from regolith_studio.errors import FileError
-from regolith_studio.readers.error_messages import shown_name
+from regolith_studio.readers.error_messages import display_name
 from regolith_studio.readers.sandbox.parent import checked_size
 from regolith_studio.readers.volume_formats import VOLUME_FORMATS, volume_suffixes
 
 SLICE_SUFFIXES = (".tif", ".tiff", ".png", ".bmp")
-LEAST_SLICES = 3
-MOST_SLICES = 100_000
+MIN_SLICES = 3
+MAX_SLICES = 100_000
 _NUMBER = re.compile(r"\d+")
 
 
@@ -34,10 +34,10 @@ def volume_files(path: str | Path) -> tuple[Path, ...]:
     if slice_names(path):
         return (path,)
     suffixes = tuple(sorted(volume_suffixes() - set(VOLUME_FORMATS["raw"].suffixes)))
-    found = [file for file in _visible(path) if file.lower().endswith(suffixes)]
+    found = [file for file in _visible_names(path) if file.lower().endswith(suffixes)]
     if not found:
         raise FileError(
-            f"The folder {shown_name(path)} holds no volume; volumes end in {', '.join(suffixes)}."
+            f"The folder {display_name(path)} holds no volume; volumes end in {', '.join(suffixes)}."
         )
     return tuple(path / file for file in sorted(found, key=_natural))
 
@@ -48,13 +48,13 @@ def slice_names(folder: Path) -> tuple[str, ...]:
     Of several series, that with the most slices counts.
     """
     series: dict[tuple[str, ...], list[str]] = {}
-    for name in _visible(folder):
+    for name in _visible_names(folder):
         if name.lower().endswith(SLICE_SUFFIXES):
             series.setdefault(_without_counter(name), []).append(name)
     if not series:
         return ()
     names = max(series.values(), key=len)
-    if not LEAST_SLICES <= len(names) <= MOST_SLICES:
+    if not MIN_SLICES <= len(names) <= MAX_SLICES:
         return ()
     return tuple(sorted(names, key=_natural))
 
@@ -74,7 +74,7 @@ def slices_stamp(folder: Path, names: tuple[str, ...]) -> tuple[int, list[int]]:
     return total, [total, newest, len(names)]
 
 
-def _visible(folder: Path) -> list[str]:
+def _visible_names(folder: Path) -> list[str]:
     return [entry.name for entry in os.scandir(folder) if not entry.name.startswith(".") and entry.is_file()]
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.errors import InputError
-from regolith_studio.readers.error_messages import shown_name
+from regolith_studio.readers.error_messages import display_name
 from regolith_studio.readers.sandbox.parent import checked_size
 from regolith_studio.readers.units import unit_factor
 from regolith_studio.readers.voxels.header import DatasetEntry, Kind, Shape, Sizes
@@ -146,12 +146,12 @@ def voxel_size_in_micrometres(
     sizes, its_unit = stated
     if sizes is None:
         raise InputError(
-            f"{shown_name(path)} does not say how large a voxel is; give the size in micrometres."
+            f"{display_name(path)} does not say how large a voxel is; give the size in micrometres."
         )
     if unit is None and its_unit is None:
         shown = " × ".join(f"{edge:g}" for edge in sizes)
         raise InputError(
-            f"{shown_name(path)} says that a voxel is {shown}, but not in which unit; give the unit."
+            f"{display_name(path)} says that a voxel is {shown}, but not in which unit; give the unit."
         )
     factor = unit_factor(unit or str(its_unit))
     return sizes[0] * factor, sizes[1] * factor, sizes[2] * factor
@@ -164,7 +164,7 @@ _TYPE = re.compile(
 )
 _BIG = re.compile(r"(?<![a-z])(?:be|big(?:[-_ ]?endian)?|msb)(?![a-z])", re.IGNORECASE)
 _BY_SIZE = {1: "uint8", 2: "uint16", 4: "float32", 8: "float64"}
-_LONGEST_HEADER = 1 << 16
+_MAX_HEADER = 1 << 16
 
 
 def layout_from_name(path: Path) -> RawLayout | None:
@@ -192,7 +192,7 @@ def layout_from_name(path: Path) -> RawLayout | None:
     if dtype is None:
         return None
     offset = size - voxels * np.dtype(dtype).itemsize
-    if not 0 <= offset <= _LONGEST_HEADER:
+    if not 0 <= offset <= _MAX_HEADER:
         return None
     return RawLayout(shape, dtype, "big" if _BIG.search(path.stem) else "little", offset)
 
@@ -209,11 +209,11 @@ def _type_in(text: str) -> str | None:
     return {"u": "uint", "i": "int", "f": "float"}.get(word[0], "uint") + number
 
 
-LEAST_EQUAL_NEIGHBOURS = 0.7
+MIN_EQUAL_NEIGHBOURS = 0.7
 """Share of neighbours with the same value, outside the background; noisy greys reach 0.2."""
-MOST_PIECES = 3.0
+MAX_PIECES = 3.0
 """Pieces that a label has in a slice, on average; a phase or a mask has one for each grain."""
-MOST_CLASSES = 8
+MAX_CLASSES = 8
 """Classes of a segmentation that numbers all of them, as ilastik's simple one does."""
 
 
@@ -233,13 +233,13 @@ def kind_of(slices: NDArray[Any]) -> Kind:
         return "grey"
     if (slices.dtype.kind in "if" and slices.min() < 0) or not slices.any():
         return "grey"
-    if slices.all() and len(np.unique(slices)) <= MOST_CLASSES:
+    if slices.all() and len(np.unique(slices)) <= MAX_CLASSES:
         return "grey"
     left, right = slices[:, :, :-1], slices[:, :, 1:]
     inside = (left != 0) & (right != 0)
-    if not inside.any() or (left == right)[inside].mean() < LEAST_EQUAL_NEIGHBOURS:
+    if not inside.any() or (left == right)[inside].mean() < MIN_EQUAL_NEIGHBOURS:
         return "grey"
-    return "labels" if _pieces_a_label(slices) <= MOST_PIECES else "grey"
+    return "labels" if _pieces_a_label(slices) <= MAX_PIECES else "grey"
 
 
 def _whole(slices: NDArray[Any]) -> bool:

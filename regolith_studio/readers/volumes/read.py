@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError, InputError
 from regolith_studio.imaging.volume import Volume, VolumeKind
-from regolith_studio.readers.error_messages import printable, sentence_about
-from regolith_studio.readers.sandbox.parent import Guard
+from regolith_studio.readers.error_messages import message_about, printable
+from regolith_studio.readers.sandbox.parent import Sandbox
 from regolith_studio.readers.volumes.files import volume_files
 from regolith_studio.readers.volumes.header import (
     RawLayout,
@@ -21,13 +21,13 @@ from regolith_studio.readers.volumes.header import (
     kind_of,
     voxel_size_in_micrometres,
 )
-from regolith_studio.readers.volumes.slabs import OpenedFile, Progress, opened_file
+from regolith_studio.readers.volumes.slabs import SlabReader, SliceListener, open_slab_reader
 from regolith_studio.readers.voxels.header import DatasetEntry, Shape, Sizes
 
 __all__ = [
     "Bounds",
     "RawLayout",
-    "SlabSource",
+    "VolumeFile",
     "VolumeHeader",
     "datasets_in",
     "describe_volume",
@@ -40,13 +40,13 @@ __all__ = [
 Bounds = tuple[tuple[int, int], tuple[int, int], tuple[int, int]]
 """First voxel and the one after the last, along x, y and z."""
 
-SHARE_OF_MEMORY = 0.5
+MAX_MEMORY_SHARE = 0.5
 """A volume that takes more of the machine's memory is read in slabs only."""
 _SAMPLES, _SAMPLE_BYTES = (0.5, 0.3, 0.7), 32 * 1024**2
 
 
 @dataclass(frozen=True)
-class SlabSource:
+class VolumeFile:
     """A volume of any size, read a few slices at a time; indexed [x, y, z] as `Volume` is.
 
     Parameters
@@ -71,7 +71,7 @@ class SlabSource:
     kind: VolumeKind
     name: str
     notes: tuple[str, ...]
-    _file: OpenedFile
+    _file: SlabReader
 
     def read(self, z0: int, z1: int) -> NDArray[Any]:
         """Slices z0 to z1, shape (nx, ny, z1 - z0), in Fortran's order.
@@ -90,7 +90,7 @@ class SlabSource:
 
     def mapped(self) -> NDArray[Any] | None:
         """The voxels where they lie in the file, shape (nx, ny, nz), or ``None`` where they are packed."""
-        plain = self._file.straight
+        plain = self._file.plain
         if plain is None or plain.slices_last or plain.stored != self.dtype:
             return None
         return np.memmap(plain.path, plain.stored, "r", plain.offset, self.shape[::-1]).T
@@ -111,7 +111,7 @@ def describe_volume(
     dataset: str | None = None,
     axes: str | None = None,
     raw: RawLayout | None = None,
-    guard: Guard | None = None,
+    sandbox: Sandbox | None = None,
 ) -> VolumeHeader:
     """What a volume's file says about itself; at most a few slices are decoded.
 
@@ -126,7 +126,7 @@ def describe_volume(
         (``zyx``, slices first, is taken then) or says it wrongly.
     raw
         What a raw file does not say itself.
-    guard
+    sandbox
         The child process that parses the file; by default the one of this process for volumes.
 
     Raises
@@ -134,7 +134,7 @@ def describe_volume(
     FileError
         With one sentence if the file cannot be read.
     """
-    file = opened_file(Path(path), dataset, raw, guard, axes)
+    file = open_slab_reader(Path(path), dataset, raw, sandbox, axes)
     said = file.header
     nz, ny, nx = said.shape
     return VolumeHeader(
@@ -162,14 +162,14 @@ def read_volume(
     kind: VolumeKind | None = None,
     bounds: Bounds | None = None,
     raw: RawLayout | None = None,
-    guard: Guard | None = None,
-    on_progress: Progress | None = None,
+    sandbox: Sandbox | None = None,
+    on_progress: SliceListener | None = None,
 ) -> Volume:
     """The voxels of a volume, or of a box in it, in memory.
 
     Parameters
     ----------
-    path, dataset, axes, raw, guard
+    path, dataset, axes, raw, sandbox
         As for `describe_volume`.
     voxel_size
         One edge, or three along x, y and z, in `unit` (micrometres without one); by default what
@@ -190,7 +190,7 @@ def read_volume(
     InputError
         If nobody says how large a voxel is, or the box lies outside the volume.
     """
-    file = opened_file(Path(path), dataset, raw, guard, axes)
+    file = open_slab_reader(Path(path), dataset, raw, sandbox, axes)
     edges = voxel_size_in_micrometres(file.path, (file.header.voxel_size, file.header.unit), voxel_size, unit)
     box = _checked_bounds(file, bounds)
     _check_memory(file, box)
@@ -210,21 +210,21 @@ def open_slabs(
     unit: str | None = None,
     kind: VolumeKind | None = None,
     raw: RawLayout | None = None,
-    guard: Guard | None = None,
-) -> SlabSource:
+    sandbox: Sandbox | None = None,
+) -> VolumeFile:
     """A volume that is read slab by slab and so may be larger than the memory.
 
     Parameters and errors are those of `read_volume`.
     """
-    file = opened_file(Path(path), dataset, raw, guard, axes)
+    file = open_slab_reader(Path(path), dataset, raw, sandbox, axes)
     edges = voxel_size_in_micrometres(file.path, (file.header.voxel_size, file.header.unit), voxel_size, unit)
     nz, ny, nx = file.header.shape
     kind = kind or file.header.kind or _guessed(file)
     dtype = np.dtype(np.int64) if kind == "labels" and file.header.dtype.kind == "f" else file.header.dtype
-    return SlabSource((nx, ny, nz), dtype, edges, kind, _name_of(file), file.header.notes, file)
+    return VolumeFile((nx, ny, nz), dtype, edges, kind, _name_of(file), file.header.notes, file)
 
 
-def datasets_in(path: str | Path, *, guard: Guard | None = None) -> tuple[DatasetEntry, ...]:
+def datasets_in(path: str | Path, *, sandbox: Sandbox | None = None) -> tuple[DatasetEntry, ...]:
     """The volumes in a file that can hold several (HDF5); empty for the other formats.
 
     Raises
@@ -232,7 +232,7 @@ def datasets_in(path: str | Path, *, guard: Guard | None = None) -> tuple[Datase
     FileError
         With one sentence if the file cannot be read.
     """
-    return opened_file(Path(path), guard=guard).header.datasets
+    return open_slab_reader(Path(path), sandbox=sandbox).header.datasets
 
 
 def guess_kind(volume: Volume | NDArray[Any]) -> VolumeKind:
@@ -242,7 +242,7 @@ def guess_kind(volume: Volume | NDArray[Any]) -> VolumeKind:
     return kind_of(np.ascontiguousarray(array[:, :, places].T))
 
 
-def _guessed(file: OpenedFile) -> VolumeKind:
+def _guessed(file: SlabReader) -> VolumeKind:
     """The kind, judged by slices from the middle, or from what comes first where that is quicker."""
     depth, slice_bytes = file.header.shape[0], file.header.slice_bytes
     if file.in_order:
@@ -252,7 +252,7 @@ def _guessed(file: OpenedFile) -> VolumeKind:
     return kind_of(np.concatenate([file.read(place, place + 1) for place in places]))
 
 
-def _checked_bounds(file: OpenedFile, bounds: Bounds | None) -> Bounds:
+def _checked_bounds(file: SlabReader, bounds: Bounds | None) -> Bounds:
     """The box in the order of the file: slices, rows, columns."""
     if bounds is None:
         nz, ny, nx = file.header.shape
@@ -263,15 +263,15 @@ def _checked_bounds(file: OpenedFile, bounds: Bounds | None) -> Bounds:
     return bounds[2], bounds[1], bounds[0]
 
 
-def _check_memory(file: OpenedFile, box: Bounds) -> None:
+def _check_memory(file: SlabReader, box: Bounds) -> None:
     voxels = 1
     for first, last in box:
         voxels *= last - first
     size = voxels * file.header.dtype.itemsize
-    limit = _memory() * SHARE_OF_MEMORY
+    limit = _memory() * MAX_MEMORY_SHARE
     if size > limit:
         raise FileError(
-            sentence_about(
+            message_about(
                 file.path,
                 f"has {size / 1024**3:.3g} GiB of voxels, more than half of this machine's memory; "
                 "choose a part of it, or have it read in slabs.",
@@ -286,7 +286,7 @@ def _memory() -> float:
         return 8.0 * 1024**3
 
 
-def _read_box(file: OpenedFile, box: Bounds, on_progress: Progress | None) -> NDArray[Any]:
+def _read_box(file: SlabReader, box: Bounds, on_progress: SliceListener | None) -> NDArray[Any]:
     (z0, z1), (y0, y1), (x0, x1) = box
     out = np.empty((z1 - z0, y1 - y0, x1 - x0), file.header.dtype)
     for start, end in file.pieces(z0, z1):
@@ -299,10 +299,10 @@ def _read_box(file: OpenedFile, box: Bounds, on_progress: Progress | None) -> ND
 def _whole_numbers(path: Path, array: NDArray[Any]) -> NDArray[Any]:
     """Labels that a file holds as floats."""
     if not np.isfinite(array).all() or (array != np.floor(array)).any():
-        raise FileError(sentence_about(path, "holds numbers with fractions; labels are whole numbers."))
+        raise FileError(message_about(path, "holds numbers with fractions; labels are whole numbers."))
     return array.astype(np.int64)
 
 
-def _name_of(file: OpenedFile) -> str:
+def _name_of(file: SlabReader) -> str:
     dataset = file.header.dataset
     return printable(f"{file.path.name}/{dataset}" if dataset else file.path.name)

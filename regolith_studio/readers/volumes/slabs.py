@@ -1,4 +1,4 @@
-"""A volume slab by slab, each read by the guarded child (or straight from a file of plain voxels)."""
+"""A volume slab by slab, each read by the guarded child (or plain from a file of plain voxels)."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -9,38 +9,38 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError, reason_of
-from regolith_studio.readers.error_messages import sentence_about
+from regolith_studio.readers.error_messages import message_about
 from regolith_studio.readers.sandbox.parent import (
     BASE_SECONDS,
     START_SECONDS,
-    WORKING_SECONDS,
-    Guard,
+    WORK_SECONDS,
+    Sandbox,
     checked_size,
-    volume_guard,
+    volume_sandbox,
 )
 from regolith_studio.readers.volumes.files import slice_names, slices_stamp
 from regolith_studio.readers.volumes.header import RawLayout
-from regolith_studio.readers.voxels.header import KEPT_BYTES, DatasetEntry, VoxelHeader
+from regolith_studio.readers.voxels.header import MAX_CACHED_BYTES, DatasetEntry, VoxelHeader
 from regolith_studio.readers.voxels.stored import PlainVoxels, plain_voxels
 
-SLAB = 64 * 1024**2
+SLAB_BYTES = 64 * 1024**2
 """Bytes that the child hands over at a time, or one slice where that has more."""
-LARGEST_LAYER = 256 * 1024**2
+MAX_LAYER_BYTES = 256 * 1024**2
 """Bytes that may be handed over at once where a file is packed in chunks of so many slices."""
 BYTES_OPENED_A_SECOND, BYTES_READ_A_SECOND, BYTES_SKIPPED_A_SECOND = 5e6, 1e7, 3e7
 SECONDS_A_SLICE = 2e-3
-DEFLATE_AT_BEST = 1032
+MAX_DEFLATE_RATIO = 1032
 """Bytes that a packed byte can stand for; what unpacks to more is no work, since it is empty."""
-PATIENCE = 6.0
+WALL_TIME_FACTOR = 6.0
 """How much longer than its work a task may take on a busy machine."""
-LEAST_MEMORY = 512 * 1024**2
+MIN_MEMORY = 512 * 1024**2
 
-Progress = Callable[[int, int], None]
+SliceListener = Callable[[int, int], None]
 """Told how many slices are read, of how many."""
 
 
 @dataclass(frozen=True)
-class OpenedFile:
+class SlabReader:
     """A volume whose header has been read, slices first; nothing of it is in memory.
 
     Parameters
@@ -53,10 +53,10 @@ class OpenedFile:
         Key of the format.
     in_order, layer
         Whether the file is best read from its beginning on, and how many slices at a time.
-    guard
+    sandbox
         Whose child reads it; by default the one for volumes of the process that asks, so that opened
         files can go to the workers of a pool.
-    straight
+    plain
         The voxels themselves, where they lie in the file as they are and need no child.
     """
 
@@ -66,14 +66,14 @@ class OpenedFile:
     format: str
     in_order: bool
     layer: int
-    guard: Guard | None = None
-    straight: PlainVoxels | None = None
+    sandbox: Sandbox | None = None
+    plain: PlainVoxels | None = None
 
     def pieces(self, z0: int, z1: int) -> Iterator[tuple[int, int]]:
-        """Ranges of slices that make at most `SLAB` bytes each, ending where layers of chunks do."""
+        """Ranges of slices that make at most `SLAB_BYTES` bytes each, ending where layers of chunks do."""
         layer, slice_bytes = self.layer, self.header.slice_bytes
-        step = max(1, SLAB // slice_bytes)
-        if 1 < layer <= LARGEST_LAYER // slice_bytes:
+        step = max(1, SLAB_BYTES // slice_bytes)
+        if 1 < layer <= MAX_LAYER_BYTES // slice_bytes:
             step = max(layer, step - step % layer)
         start = z0
         while start < z1:
@@ -102,38 +102,44 @@ class OpenedFile:
         return out
 
     def _piece(self, z0: int, z1: int) -> NDArray[Any]:
-        if self.straight is not None:
+        if self.plain is not None:
             try:
-                return self.straight.read(z0, z1)
+                return self.plain.read(z0, z1)
             except (OSError, FileError) as error:
                 reason = (
                     str(error) if isinstance(error, FileError) else f"cannot be read: {reason_of(error)}."
                 )
-                raise FileError(sentence_about(self.path, reason)) from None
+                raise FileError(message_about(self.path, reason)) from None
         size = (z1 - z0) * self.header.slice_bytes
-        work = WORKING_SECONDS + size / BYTES_READ_A_SECOND + (z1 - z0) * SECONDS_A_SLICE
+        work = WORK_SECONDS + size / BYTES_READ_A_SECOND + (z1 - z0) * SECONDS_A_SLICE
         if self.in_order:
             work += z0 * self.header.slice_bytes / BYTES_SKIPPED_A_SECOND
         layers = self._layer_bytes(z0, z1)
         file_bytes: int = self.request["stamp"][0]
-        work += min(layers, file_bytes * DEFLATE_AT_BEST) / BYTES_SKIPPED_A_SECOND
-        request = {**self.request, "memory": LEAST_MEMORY + 6 * size + min(layers, KEPT_BYTES)}
-        message = (self.guard or volume_guard()).ask(
-            "volume-slices", self.path, max(BASE_SECONDS, PATIENCE * work), work, z0=z0, z1=z1, **request
+        work += min(layers, file_bytes * MAX_DEFLATE_RATIO) / BYTES_SKIPPED_A_SECOND
+        request = {**self.request, "memory": MIN_MEMORY + 6 * size + min(layers, MAX_CACHED_BYTES)}
+        message = (self.sandbox or volume_sandbox()).request_within(
+            "volume-slices",
+            self.path,
+            max(BASE_SECONDS, WALL_TIME_FACTOR * work),
+            work,
+            z0=z0,
+            z1=z1,
+            **request,
         )
         voxels = message.arrays[0]
         if voxels.shape != (z1 - z0, *self.header.shape[1:]) or voxels.dtype != self.header.dtype:
-            raise FileError(sentence_about(self.path, "changed while it was read."))
+            raise FileError(message_about(self.path, "changed while it was read."))
         return voxels
 
 
-def opened_file(
+def open_slab_reader(
     path: Path,
     dataset: str | None = None,
     raw: RawLayout | None = None,
-    guard: Guard | None = None,
+    sandbox: Sandbox | None = None,
     axes: str | None = None,
-) -> OpenedFile:
+) -> SlabReader:
     """A volume's header, read and checked by the child.
 
     Raises
@@ -141,7 +147,7 @@ def opened_file(
     FileError
         With one sentence if it is no volume, is damaged, or holds several and none was named.
     """
-    reader = guard or volume_guard()
+    reader = sandbox or volume_sandbox()
     names = slice_names(path) if path.is_dir() else ()
     if path.is_dir():
         size, stamp = slices_stamp(path, names)
@@ -155,16 +161,16 @@ def opened_file(
         "names": list(names),
         "axes": axes,
     }
-    reader.ask("volume-prepare", path, START_SECONDS)
-    work = WORKING_SECONDS + size / BYTES_OPENED_A_SECOND
-    answer = reader.ask(
-        "volume-open", path, max(BASE_SECONDS, PATIENCE * work), work, memory=LEAST_MEMORY, **request
+    reader.request_within("volume-prepare", path, START_SECONDS)
+    work = WORK_SECONDS + size / BYTES_OPENED_A_SECOND
+    answer = reader.request_within(
+        "volume-open", path, max(BASE_SECONDS, WALL_TIME_FACTOR * work), work, memory=MIN_MEMORY, **request
     ).header
     header = _header_from(answer)
-    straight = answer["plain"] and plain_voxels(answer["plain"], header.shape, header.dtype)
-    return OpenedFile(
-        path, request, header, str(answer["format"]), bool(answer["in_order"]), int(answer["layer"]), guard,
-        straight or None,
+    plain = answer["plain"] and plain_voxels(answer["plain"], header.shape, header.dtype)
+    return SlabReader(
+        path, request, header, str(answer["format"]), bool(answer["in_order"]), int(answer["layer"]), sandbox,
+        plain or None,
     )  # fmt: skip
 
 

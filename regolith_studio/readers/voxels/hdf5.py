@@ -11,17 +11,17 @@ import numpy as np
 from regolith_studio.errors import FileError
 from regolith_studio.readers.error_messages import printable
 from regolith_studio.readers.units import UNITS, unit_named
-from regolith_studio.readers.voxels.header import LONGEST_EDGE, VOXEL_TYPES, Sizes, sizes_or_none
+from regolith_studio.readers.voxels.header import MAX_EDGE, VOXEL_TYPES, Sizes, sizes_or_none
 
-MOST_OBJECTS = 10_000
-MOST_CHANNELS = 32
-LONGEST_ATTRIBUTE = 1 << 16
+MAX_OBJECTS = 10_000
+MAX_CHANNELS = 32
+MAX_ATTRIBUTE = 1 << 16
 _GUESSED = {3: "zyx", 4: "zyxc", 5: "tzyxc"}
 _ILASTIK = "exported_data"
 
 
 @dataclass(frozen=True)
-class Candidate:
+class Hdf5Volume:
     """A volume in a file: a dataset, or one channel of it.
 
     Parameters
@@ -50,7 +50,7 @@ class Candidate:
         return nz, ny, nx
 
 
-def candidates_in(file: Any, axes: str = "") -> list[Candidate]:
+def find_volumes(file: Any, axes: str = "") -> list[Hdf5Volume]:
     """All volumes of an open ``h5py.File``, ilastik's own name first, then the largest.
 
     Parameters
@@ -63,7 +63,7 @@ def candidates_in(file: Any, axes: str = "") -> list[Candidate]:
     FileError
         If the file holds more objects than any volume file does.
     """
-    found = [candidate for path, dataset in _datasets(file) for candidate in _candidates(path, dataset, axes)]
+    found = [candidate for path, dataset in _datasets(file) for candidate in _volumes_of(path, dataset, axes)]
     return sorted(found, key=lambda each: (each.path != _ILASTIK, -prod(each.shape), each.path, each.channel))
 
 
@@ -81,12 +81,12 @@ def check_storage(dataset: Any) -> None:
         raise FileError("maps these voxels from other files, which is not followed; copy them into one file.")
 
 
-def element_size(dataset: Any, candidate: Candidate) -> Sizes | None:
+def element_size(dataset: Any, candidate: Hdf5Volume) -> Sizes | None:
     """Voxel edges along x, y and z in micrometres, by Fiji's ``element_size_um`` or by ilastik's tags."""
     return _listed_size(dataset, candidate) or _tagged_size(dataset)
 
 
-def _listed_size(dataset: Any, candidate: Candidate) -> Sizes | None:
+def _listed_size(dataset: Any, candidate: Hdf5Volume) -> Sizes | None:
     """The attribute ``element_size_um``, slices first."""
     values = _attribute(dataset, "element_size_um")
     if values is None:
@@ -129,9 +129,9 @@ def _datasets(file: Any) -> list[tuple[str, Any]]:
         path, group = waiting.pop()
         for name in group:
             count += 1
-            if count > MOST_OBJECTS:
+            if count > MAX_OBJECTS:
                 raise FileError(
-                    f"holds more than {MOST_OBJECTS:,} objects: it is damaged or no file of volumes."
+                    f"holds more than {MAX_OBJECTS:,} objects: it is damaged or no file of volumes."
                 )
             if not isinstance(group.get(name, getlink=True), h5py.HardLink):
                 continue
@@ -148,9 +148,9 @@ def _datasets(file: Any) -> list[tuple[str, Any]]:
     return found
 
 
-def _candidates(path: str, dataset: Any, stated: str) -> list[Candidate]:
+def _volumes_of(path: str, dataset: Any, stated: str) -> list[Hdf5Volume]:
     shape = dataset.shape
-    if not shape or min(shape) < 1 or max(shape) > LONGEST_EDGE or not _is_number(dataset):
+    if not shape or min(shape) < 1 or max(shape) > MAX_EDGE or not _is_number(dataset):
         return []
     axes = stated.lower() if _fits(stated, len(shape)) else _axes(dataset, len(shape))
     if axes is None:
@@ -163,10 +163,10 @@ def _candidates(path: str, dataset: Any, stated: str) -> list[Candidate]:
     ):
         return []
     channels = edges.get("c", 1)
-    if channels > MOST_CHANNELS or (len(shape) - (channels > 1) < 3 and "z" not in axes):
+    if channels > MAX_CHANNELS or (len(shape) - (channels > 1) < 3 and "z" not in axes):
         return []
     names = [path] if channels == 1 else [f"{path}[{channel}]" for channel in range(channels)]
-    return [Candidate(name, path, k, axes, tuple(shape), dataset.dtype.name) for k, name in enumerate(names)]
+    return [Hdf5Volume(name, path, k, axes, tuple(shape), dataset.dtype.name) for k, name in enumerate(names)]
 
 
 def _fits(stated: str, dimensions: int) -> bool:
@@ -229,12 +229,12 @@ def _attribute(dataset: Any, name: str) -> Any:
     if name not in dataset.attrs:
         return None
     stored = dataset.attrs.get_id(name)
-    if stored.get_storage_size() > LONGEST_ATTRIBUTE:
+    if stored.get_storage_size() > MAX_ATTRIBUTE:
         return None
     return dataset.attrs[name]
 
 
-def shown_names(candidates: list[Candidate]) -> str:
+def format_names(candidates: list[Hdf5Volume]) -> str:
     """The first few names for a sentence."""
     names = ", ".join(printable(each.name)[:40] for each in candidates[:4])
     return f"{names}, …" if len(candidates) > 4 else names

@@ -18,11 +18,11 @@ Sizes = tuple[float, float, float]
 Kind = Literal["labels", "grey"]
 
 VOXEL_TYPES = frozenset(("b1", "u1", "u2", "u4", "u8", "i1", "i2", "i4", "i8", "f2", "f4", "f8"))
-LONGEST_EDGE = 1 << 20
-LARGEST_SLICE = 1 << 30
+MAX_EDGE = 1 << 20
+MAX_SLICE_BYTES = 1 << 30
 """Bytes of the largest slice that is read; a detector of 16,384 pixels' width gives half of that."""
 MIRRORED = "The axes of the volume are left-handed: particles come in as their mirror images."
-KEPT_BYTES = 1 << 29
+MAX_CACHED_BYTES = 1 << 29
 """Bytes of a layer of HDF5 chunks that stay unpacked while its slices are asked for."""
 
 
@@ -104,15 +104,15 @@ def three_dimensions(shape: tuple[int, ...], named: str = "shape") -> Shape:
     """
     edges = [int(edge) for edge in shape]
     if any(edge < 1 for edge in edges):
-        raise FileError(f"holds no voxels: its {named} is {shown_shape(shape)}.")
+        raise FileError(f"holds no voxels: its {named} is {format_shape(shape)}.")
     while len(edges) > 3 and 1 in edges:
         edges.remove(1)
     if len(edges) != 3:
         raise FileError(
-            f"is no volume: its {named} is {shown_shape(shape)}, and three dimensions are needed."
+            f"is no volume: its {named} is {format_shape(shape)}, and three dimensions are needed."
         )
-    if max(edges) > LONGEST_EDGE:
-        raise FileError(f"is damaged: no volume has the {named} {shown_shape(shape)}.")
+    if max(edges) > MAX_EDGE:
+        raise FileError(f"is damaged: no volume has the {named} {format_shape(shape)}.")
     return edges[0], edges[1], edges[2]
 
 
@@ -161,7 +161,7 @@ def checked_header(header: VoxelHeader) -> VoxelHeader:
     FileError
         If a single slice is too large.
     """
-    if header.slice_bytes > LARGEST_SLICE:
+    if header.slice_bytes > MAX_SLICE_BYTES:
         size = header.slice_bytes / 1024**3
         shown = f"{size:,.0f}" if size >= 100 else f"{size:.3g}"
         raise FileError(f"has slices of {shown} GiB; at most 1 GiB is read at a time.")
@@ -176,7 +176,7 @@ def sizes_or_none(values: tuple[float, ...] | list[float]) -> Sizes | None:
     return None
 
 
-def shown_shape(shape: tuple[int, ...]) -> str:
+def format_shape(shape: tuple[int, ...]) -> str:
     """``512 × 512 × 100``, cut short where it is long."""
     edges = [f"{edge}" for edge in shape[:6]]
     return " × ".join(edges + (["…"] if len(shape) > 6 else [])) or "that of a single number"

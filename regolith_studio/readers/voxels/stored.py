@@ -94,7 +94,7 @@ class PlainVoxels:
 
 
 @dataclass(frozen=True)
-class TurnedVoxels:
+class TransposedVoxels:
     """Plain voxels in another order than slices, rows, columns or its reverse.
 
     Parameters
@@ -275,7 +275,7 @@ class DeflatedVoxels:
             self._stream = None
 
 
-LONGEST_NAME = 255
+MAX_NAME_LENGTH = 255
 """Bytes of a file's name that file systems allow."""
 
 
@@ -304,7 +304,7 @@ def _is_bare(name: str) -> bool:
     """Whether this can be the name of a file in any folder, and of nothing else."""
     if not name or name in (".", "..") or "\0" in name or "\\" in name:
         return False
-    return len(name.encode("utf-8", "replace")) <= LONGEST_NAME and Path(name).name == name
+    return len(name.encode("utf-8", "replace")) <= MAX_NAME_LENGTH and Path(name).name == name
 
 
 def start_before_end(path: Path, header: VoxelHeader, stored: np.dtype[np.generic]) -> int:

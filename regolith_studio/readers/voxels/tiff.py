@@ -14,7 +14,7 @@ from regolith_studio.readers.voxels.header import Sizes, sizes_or_none
 Stated = tuple[Sizes | None, str | None, tuple[str, ...]]
 
 _PHYSICAL = re.compile(r"\bPhysicalSize([XYZ])(Unit)?=\"([^\"]{1,40})\"")
-_LONGEST_DESCRIPTION = 100_000
+_MAX_DESCRIPTION = 100_000
 _INCH, _CENTIMETRE = 25.4, 10.0
 """Millimetres."""
 _PRINTERS = (72, 96, 100, 150, 180, 200, 240, 300, 360, 400, 600, 720, 1200, 2400)
@@ -87,7 +87,7 @@ def check_page(page: Any, size: int, number: int) -> None:
     Raises
     ------
     FileError
-        If not, naming the page by its `number`, counted from 0.
+        If not, naming the page by its `number`, plural from 0.
     """
     for place, count in zip(page.dataoffsets, page.databytecounts, strict=False):
         if place + count > size:
@@ -107,7 +107,7 @@ def stated_size(file: Any) -> Stated:
         An open ``tifffile.TiffFile``.
     """
     page = file.pages.first
-    description = str(page.description or "")[:_LONGEST_DESCRIPTION]
+    description = str(page.description or "")[:_MAX_DESCRIPTION]
     if file.is_imagej:
         return _imagej(file.imagej_metadata or {}, page)
     if "<OME" in description:

@@ -17,14 +17,14 @@ import pytest
 from regolith_studio.errors import FileError
 from regolith_studio.readers.particles import read_mesh
 from regolith_studio.readers.sandbox.messages import Message, receive, send
-from regolith_studio.readers.sandbox.parent import Guard, shared_guard
+from regolith_studio.readers.sandbox.parent import Sandbox, shared_sandbox
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 
 
 @pytest.fixture
-def guard():
-    made = Guard(seconds=5.0)
+def sandbox():
+    made = Sandbox(seconds=5.0)
     yield made
     made.close()
 
@@ -36,74 +36,74 @@ def stl(tmp_path, cube):
     return path
 
 
-def child_of(guard):
-    """The process id of the guard's child."""
-    return guard._process.pid
+def child_of(sandbox):
+    """The process id of the sandbox's child."""
+    return sandbox._process.pid
 
 
-def test_that_the_child_is_kept_from_one_request_to_the_next(guard, stl):
-    guard.request("mesh", stl)
-    first = child_of(guard)
-    guard.request("mesh", stl)
-    assert child_of(guard) == first
+def test_that_the_child_is_kept_from_one_request_to_the_next(sandbox, stl):
+    sandbox.request("mesh", stl)
+    first = child_of(sandbox)
+    sandbox.request("mesh", stl)
+    assert child_of(sandbox) == first
 
 
-def test_that_a_refused_file_leaves_the_child_alive(guard, stl, tmp_path):
-    guard.request("mesh", stl)
-    first = child_of(guard)
+def test_that_a_refused_file_leaves_the_child_alive(sandbox, stl, tmp_path):
+    sandbox.request("mesh", stl)
+    first = child_of(sandbox)
     (tmp_path / "bad.stl").write_bytes(b"bad")
     with pytest.raises(FileError, match=r"^bad\.stl is too short"):
-        guard.request("mesh", tmp_path / "bad.stl")
-    assert child_of(guard) == first
+        sandbox.request("mesh", tmp_path / "bad.stl")
+    assert child_of(sandbox) == first
 
 
-def test_that_a_child_that_was_killed_is_replaced(guard, stl):
-    guard.request("mesh", stl)
-    first = psutil.Process(child_of(guard))
+def test_that_a_child_that_was_killed_is_replaced(sandbox, stl):
+    sandbox.request("mesh", stl)
+    first = psutil.Process(child_of(sandbox))
     first.kill()
     time.sleep(0.1)
-    assert guard.request("mesh", stl).arrays[1].shape == (12, 3)
+    assert sandbox.request("mesh", stl).arrays[1].shape == (12, 3)
     assert not psutil.pid_exists(first.pid)
 
 
-def test_that_a_file_that_kills_its_reader_is_refused_and_the_next_one_read(guard, stl):
-    guard.warm_up()
-    threading.Timer(0.3, psutil.Process(child_of(guard)).kill).start()
+def test_that_a_file_that_kills_its_reader_is_refused_and_the_next_one_read(sandbox, stl):
+    sandbox.start()
+    threading.Timer(0.3, psutil.Process(child_of(sandbox)).kill).start()
     with pytest.raises(FileError, match=r"cube\.stl is damaged: it ended the process"):
-        guard.request("sleep", stl)
-    assert guard.request("mesh", stl).arrays[1].shape == (12, 3)
+        sandbox.request("sleep", stl)
+    assert sandbox.request("mesh", stl).arrays[1].shape == (12, 3)
 
 
 def test_that_a_file_that_takes_too_long_is_given_up(stl):
-    guard = Guard(seconds=0.3)
+    sandbox = Sandbox(seconds=0.3)
     with pytest.raises(FileError, match=r"cube\.stl was given up after 0\.3 s"):
-        guard.request("sleep", stl)
-    assert guard.request("mesh", stl).arrays[1].shape == (12, 3)
-    guard.close()
+        sandbox.request("sleep", stl)
+    assert sandbox.request("mesh", stl).arrays[1].shape == (12, 3)
+    sandbox.close()
 
 
 @pytest.mark.skipif(not hasattr(signal, "SIGPROF"), reason="this system does not count a process's work")
 def test_that_a_file_that_keeps_the_processor_busy_is_given_up_long_before_it_is_late(stl):
-    guard = Guard(seconds=60.0)
+    sandbox = Sandbox(seconds=60.0)
     with pytest.raises(FileError, match=r"cube\.stl was given up after 1\.5 s of work"):
-        guard.request("spin", stl)
-    assert guard.request("mesh", stl).arrays[1].shape == (12, 3)
-    guard.close()
+        sandbox.request("spin", stl)
+    assert sandbox.request("mesh", stl).arrays[1].shape == (12, 3)
+    sandbox.close()
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="only Linux limits the address space")
 def test_that_a_file_that_needs_too_much_memory_is_refused(tmp_path, stl):
-    guard = Guard(memory=700 * 1024**2)
+    sandbox = Sandbox(memory=700 * 1024**2)
     large = tmp_path / "large.obj"
     large.write_bytes(b"v 0 0 0\n" * 6_000_000)
     with pytest.raises(FileError, match=r"large\.obj needs more than the 0\.684 GiB of memory"):
-        guard.request("mesh", large)
-    assert guard.request("mesh", stl).arrays[1].shape == (12, 3)
-    guard.close()
+        sandbox.request("mesh", large)
+    assert sandbox.request("mesh", stl).arrays[1].shape == (12, 3)
+    sandbox.close()
 
 
 @pytest.mark.parametrize("kind", ["absent", "folder", "pipe", "unreadable name"])
-def test_that_what_is_no_file_is_refused_without_being_opened(kind, tmp_path, guard):
+def test_that_what_is_no_file_is_refused_without_being_opened(kind, tmp_path, sandbox):
     path = tmp_path / "thing.stl"
     if kind == "folder":
         path.mkdir()
@@ -112,37 +112,37 @@ def test_that_what_is_no_file_is_refused_without_being_opened(kind, tmp_path, gu
     elif kind == "unreadable name":
         path = Path("a\0b.stl")
     with pytest.raises(FileError):
-        guard.request("mesh", path)
-    assert guard._process is None
+        sandbox.request("mesh", path)
+    assert sandbox._process is None
 
 
-def test_that_a_file_above_two_gibibytes_is_refused_before_it_is_read(tmp_path, guard):
+def test_that_a_file_above_two_gibibytes_is_refused_before_it_is_read(tmp_path, sandbox):
     path = tmp_path / "huge.stl"
     with path.open("wb") as file:
         file.truncate(2 * 1024**3 + 1)
     with pytest.raises(FileError, match=r"huge\.stl has 2\.0 GiB; at most 2 GiB are read\."):
-        guard.request("mesh", path)
+        sandbox.request("mesh", path)
 
 
-def test_that_names_with_any_letters_are_read(tmp_path, cube, guard):
+def test_that_names_with_any_letters_are_read(tmp_path, cube, sandbox):
     for name in ("Körnchen №1.stl", "a b\tc.stl", "-rf.stl", "\udcff.stl"):
         path = tmp_path / name
         path.write_bytes(cube.binary_stl())
-        assert guard.request("mesh", path).arrays[1].shape == (12, 3)
+        assert sandbox.request("mesh", path).arrays[1].shape == (12, 3)
 
 
 def test_that_closing_ends_the_child_at_once(stl):
-    guard = Guard()
-    guard.request("mesh", stl)
-    pid = child_of(guard)
-    guard.close()
+    sandbox = Sandbox()
+    sandbox.request("mesh", stl)
+    pid = child_of(sandbox)
+    sandbox.close()
     assert not psutil.pid_exists(pid)
 
 
-def test_that_threads_can_share_the_child(guard, stl):
+def test_that_threads_can_share_the_child(sandbox, stl):
     shapes = []
     threads = [
-        threading.Thread(target=lambda: shapes.append(guard.request("mesh", stl).arrays[1].shape))
+        threading.Thread(target=lambda: shapes.append(sandbox.request("mesh", stl).arrays[1].shape))
         for _ in range(8)
     ]
     for thread in threads:
@@ -155,30 +155,30 @@ def test_that_threads_can_share_the_child(guard, stl):
 @pytest.mark.parametrize("start", ["spawn", "fork"])
 def test_that_workers_of_a_process_pool_have_children_of_their_own(start, stl):
     read_mesh(stl)
-    own = child_of(shared_guard())
+    own = child_of(shared_sandbox())
     if start == "fork" and not hasattr(os, "fork"):
         pytest.skip("this system does not fork")
     with ProcessPoolExecutor(1, mp_context=get_context(start)) as pool:
         volumes = [particle.mesh.volume for particle in pool.map(read_mesh, [stl] * 2)]
     assert volumes == pytest.approx([1.0] * 2)
-    assert child_of(shared_guard()) == own
+    assert child_of(shared_sandbox()) == own
     assert read_mesh(stl).mesh.volume == pytest.approx(1.0)
 
 
 SCRIPT = """
 import os, sys, threading, time
 from pathlib import Path
-from regolith_studio.readers.sandbox.parent import Guard, shared_guard
-guard = GUARD
-guard.request("mesh", Path(sys.argv[1]))
-print(guard._process.pid, flush=True)
+from regolith_studio.readers.sandbox.parent import Sandbox, shared_sandbox
+sandbox = GUARD
+sandbox.request("mesh", Path(sys.argv[1]))
+print(sandbox._process.pid, flush=True)
 ENDING
 """
 
 
-def _left_behind(ending, stl, guard="shared_guard()"):
+def _left_behind(ending, stl, sandbox="shared_sandbox()"):
     """Run a script that reads and then ends in some way; the id of its child."""
-    script = SCRIPT.replace("ENDING", ending).replace("GUARD", guard)
+    script = SCRIPT.replace("ENDING", ending).replace("GUARD", sandbox)
     done = subprocess.run(
         [sys.executable, "-W", "error", "-c", script, str(stl)],
         capture_output=True,
@@ -205,8 +205,10 @@ def test_that_the_child_goes_when_its_parent_goes(ending, stl):
 
 
 def test_that_a_hanging_child_ends_itself_after_its_parent_has_gone(stl):
-    hang = "threading.Thread(target=lambda: guard.request('sleep', Path(sys.argv[1])), daemon=True).start()\n"
-    _wait_until_gone(_left_behind(hang + "time.sleep(0.3); os._exit(0)", stl, "Guard(seconds=0.5)"))
+    hang = (
+        "threading.Thread(target=lambda: sandbox.request('sleep', Path(sys.argv[1])), daemon=True).start()\n"
+    )
+    _wait_until_gone(_left_behind(hang + "time.sleep(0.3); os._exit(0)", stl, "Sandbox(seconds=0.5)"))
 
 
 def _wait_until_gone(pid):
@@ -227,9 +229,9 @@ def test_that_the_child_imports_nothing_heavier_than_numpy():
 def test_that_modules_in_the_working_folder_are_not_run(tmp_path, stl, monkeypatch):
     (tmp_path / "numpy.py").write_text("raise SystemExit('taken over')")
     monkeypatch.chdir(tmp_path)
-    guard = Guard()
-    assert guard.request("mesh", stl).arrays[1].shape == (12, 3)
-    guard.close()
+    sandbox = Sandbox()
+    assert sandbox.request("mesh", stl).arrays[1].shape == (12, 3)
+    sandbox.close()
 
 
 class Pipe:
@@ -271,19 +273,19 @@ def test_that_what_is_no_message_does_not_pass_for_one(data):
         receive(pipe)
 
 
-def test_that_the_successor_of_a_child_that_a_file_has_ended_starts_at_once(guard, stl):
-    guard.request("mesh", stl)
-    first = child_of(guard)
+def test_that_the_successor_of_a_child_that_a_file_has_ended_starts_at_once(sandbox, stl):
+    sandbox.request("mesh", stl)
+    first = child_of(sandbox)
     with pytest.raises(FileError, match="was given up"):
-        guard.ask("spin", stl, seconds=5.0, work=0.2)
-    second = child_of(guard)
+        sandbox.request_within("spin", stl, seconds=5.0, work=0.2)
+    second = child_of(sandbox)
     assert second != first
     assert psutil.pid_exists(second)
-    guard.request("mesh", stl)
-    assert child_of(guard) == second
+    sandbox.request("mesh", stl)
+    assert child_of(sandbox) == second
 
 
-def test_that_a_guard_that_is_closed_has_no_successor(guard, stl):
-    guard.request("mesh", stl)
-    guard.close()
-    assert guard._process is None
+def test_that_a_sandbox_that_is_closed_has_no_successor(sandbox, stl):
+    sandbox.request("mesh", stl)
+    sandbox.close()
+    assert sandbox._process is None
