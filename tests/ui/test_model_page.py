@@ -21,7 +21,7 @@ from regolith_studio.studies.population import KEYS
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.model import PAGE
-from regolith_studio.ui.pages.model.distributions import distance_words
+from regolith_studio.ui.pages.model.distributions import distance_text
 from regolith_studio.ui.pages.model.evaluation_panel import EvaluationPanel
 from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.plots.spectrum_editor import SpectrumEditor
@@ -301,9 +301,9 @@ def test_that_the_outcome_of_a_judgement_is_told_in_german(opened, speaking):
 
 def test_that_the_means_of_distributions_have_units_and_the_same_digits():
     halves = np.full(2, 0.5)
-    words = distance_words(
+    words = distance_text(
         Distribution(np.array([40.0, 42.56]), halves), Distribution(np.array([40.0, 41.8]), halves), "µm"
     )
     assert words.endswith("means 41.28 µm measured, 40.90 µm drawn")
     ratios = Distribution(np.array([0.25, 0.75]), halves)
-    assert distance_words(ratios, ratios).endswith("means 0.5000 measured, 0.5000 drawn")
+    assert distance_text(ratios, ratios).endswith("means 0.5000 measured, 0.5000 drawn")

@@ -23,7 +23,7 @@ from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.repose import PAGE
-from regolith_studio.ui.pages.repose.section_plot import grain_words
+from regolith_studio.ui.pages.repose.section_plot import particle_text
 from regolith_studio.ui.widgets.forms import ParameterForm
 from regolith_studio.ui.widgets.toast import Toast
 from regolith_studio.ui.wiring import Wiring
@@ -84,8 +84,8 @@ def test_that_a_dataset_is_previewed_with_the_consequences(page, dataset, wait):
     page.setup.set_dataset(dataset)
     wait(lambda: page.player.pile is not None)
     assert len(page.player.pile) == 300
-    assert "300 particles" in page.setup.told.text()
-    assert "on one core" in page.setup.told.text()
+    assert "300 particles" in page.setup.consequences.text()
+    assert "on one core" in page.setup.consequences.text()
     picture = page.player.frame.view.picture()
     assert picture.std() > 5.0
     page.setup.test.setValue(LiftingCylinderTest(diameter=0.004))
@@ -156,7 +156,7 @@ def test_that_a_section_tells_surface_models_and_grains_under_the_mouse(page, tm
     middle = pile.points[:, :2] - np.median(pile.points[:, :2], axis=0)
     deep = np.argmin(np.hypot(middle[:, 0], pile.points[:, 2] - 0.3 * section.profile.top))
     x, high = middle[deep, 0], pile.points[deep, 2]
-    assert grain_words(
+    assert particle_text(
         Discs(middle[deep : deep + 1, 0], pile.points[deep : deep + 1, 2], np.array([1e-3])), x, high
     ) == (f"grain 1: 2 mm at {1e3 * x:.3g}, {1e3 * high:.3g} mm")
     assert plot.value_at(plot.canvas.getViewBox().mapViewToScene(QPointF(1e3 * x, 1e3 * high))).startswith(
@@ -273,7 +273,7 @@ def test_that_a_study_grows_is_stopped_and_goes_on(page, dataset, wait):
     panel.restore({"key": "static_friction", "values": "0.2, 0.8", "repeats": 1})
     page.start_study()
     wait(lambda: panel.table.rowCount() == 2)
-    wait(lambda: "tables and figure" in panel.said.text())
+    wait(lambda: "tables and figure" in panel.status.text())
     assert [panel.table.item(row, 0).text() for row in (0, 1)] == ["0.2", "0.8"]
     folder = page._folder / "studies" / f"static_friction-{dataset.name}"
     assert (folder / "repose_study.csv").exists()
@@ -281,7 +281,7 @@ def test_that_a_study_grows_is_stopped_and_goes_on(page, dataset, wait):
     before = {path: path.stat().st_mtime_ns for path in folder.glob("*/repose.json")}
     assert len(before) == 2
     page.start_study()
-    wait(lambda: "tables and figure" in panel.said.text())
+    wait(lambda: "tables and figure" in panel.status.text())
     assert {path: path.stat().st_mtime_ns for path in before} == before
     panel.table.selectRow(1)
     wait(lambda: page.player.slider.maximum() >= 4)

@@ -102,9 +102,9 @@ def test_that_errors_against_faces_are_drawn_told_and_saved(window, wait, settle
     panel = page.variations["faces"]
     panel.values.setText("8, 12, 30")
     QTest.keyClick(panel.values, Qt.Key.Key_Return)
-    wait(lambda: "faces" in page.desk.found and not window.session.tasks, SECONDS)
+    wait(lambda: "faces" in page.sweeps.results and not window.session.tasks, SECONDS)
     settled(window)
-    study = page.desk.found["faces"]
+    study = page.sweeps.results["faces"]
     volume = panel.part.series[0]
     assert volume.x == (8.0, 12.0, 30.0)
     assert volume.y == pytest.approx(100 * study.rmsre[:, 0])
@@ -142,10 +142,10 @@ def test_that_a_variation_can_be_stopped_and_another_is_refused_with_a_reason(wi
     page.variations["tradeoff"].frame.start.click()
     assert "Quadric decimation has no loss" in window.toast.sentence.text()
     page.variations["faces"].values.setText("12, many")
-    page.desk.start("faces")
+    page.sweeps.start("faces")
     assert "numbers with commas" in window.toast.sentence.text()
     page.variations["faces"].values.setText("12, 20")
-    page.desk.start("faces")
+    page.sweeps.start("faces")
     task = window.session.tasks[-1]
     page.variations["faces"].frame.cancelRequested.emit(task.id)
     settled(window)
@@ -160,9 +160,11 @@ def test_that_trade_and_sensitivity_follow_the_method(window, wait, settled):
     assert trade.values.isVisibleTo(trade)
     trade.values.setText("0, 2")
     change.values.setText("3")
-    page.desk.start("tradeoff")
-    page.desk.start("sensitivity")
-    wait(lambda: set(page.desk.found) == {"tradeoff", "sensitivity"} and not window.session.tasks, SECONDS)
+    page.sweeps.start("tradeoff")
+    page.sweeps.start("sensitivity")
+    wait(
+        lambda: set(page.sweeps.results) == {"tradeoff", "sensitivity"} and not window.session.tasks, SECONDS
+    )
     settled(window)
     assert [series.label for series in trade.part.series] == ["Overlap × 0", "Overlap × 2", "Overlap only"]
     table = change.part.table
@@ -173,7 +175,7 @@ def test_that_trade_and_sensitivity_follow_the_method(window, wait, settled):
     assert not trade.values.isVisibleTo(trade)
     window.session.adopt([window.session.particles[0].particle])
     settled(window)
-    assert not page.desk.found
+    assert not page.sweeps.results
     assert table.rowCount() == 0
 
 

@@ -1,4 +1,4 @@
-"""The controls at the left of the page: representatives, sizes, folder, and what a recipe says of them."""
+"""The controls at the left of the page: representatives, sizes, folder, and what a recipe holds of them."""
 
 import re
 from collections.abc import Mapping
@@ -18,10 +18,12 @@ from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
 from regolith_studio.ui.widgets.labels import heading, remark
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
 
-MOST = 200
+MAX_REPRESENTATIVES = 200
 POPULATION_LINES, SIZES_LINES, ASKED_LINES, STATE_LINES = (1, 2), (1, 3), (3, 3), (2, 3)
-"""Of texts between the controls, that are seen without scrolling: in low windows, and in high ones."""
-COUNT = NumberSpec("N", mark("Number of representatives"), 1, MOST, tip=mark("The paper has 10."))
+"""Visible lines of the texts between the controls, in low and in high windows."""
+COUNT = NumberSpec(
+    "N", mark("Number of representatives"), 1, MAX_REPRESENTATIVES, tip=mark("The paper has 10.")
+)
 WEIGHTINGS = {
     "number": mark("Each particle counts the same"),
     "volume": mark("Particles count by their volume"),
@@ -81,22 +83,22 @@ class RepresentativesPanel(QWidget):
         self.start.clicked.connect(self.findRequested)
 
     def order(self) -> RepresentativesRequest:
-        """What is asked for."""
+        """The requested number and weighting."""
         return RepresentativesRequest.of(int(self.count.value()), self.weighting.currentData())
 
-    def wish(self, sizes: str, name: str) -> Representatives:
-        """What a recipe says of them and of their dataset."""
+    def recipe_part(self, sizes: str, name: str) -> Representatives:
+        """The fields of a recipe for representatives and dataset."""
         return Representatives(**asdict(self.order()), sizes=sizes, name=name)
 
     def show_population(self, n_particles: int) -> None:
-        """Say how many particles there are to choose from."""
+        """Set the number of open particles, the upper limit of representatives."""
         self.population.setText(
             tr_count("1 particle is open.", "{count:,} particles are open.", n_particles)
             if n_particles
             else tr("No particles are open: open files, the sample, or draw some on the page Shape model.")
         )
         self.start.setEnabled(n_particles > 1)
-        top = max(1, min(MOST, n_particles or MOST))
+        top = max(1, min(MAX_REPRESENTATIVES, n_particles or MAX_REPRESENTATIVES))
         self.count.slider.setMaximum(top)
         self.count.field.setMaximum(top)
         self.count.setValue(min(self._wanted, top))
@@ -106,12 +108,12 @@ class RepresentativesPanel(QWidget):
         return {"count": int(self.count.value()), "weighting": self.weighting.currentData()}
 
     def setValue(self, value: Mapping[str, Any]) -> None:
-        """Show other choices; announces nothing.
+        """Show other choices without emitting a signal.
 
-        A number that the open particles do not allow is remembered until there are more; 0 lets each stand
-        for itself.
+        A number above that of the open particles is remembered until there are more; 0 makes each
+        particle its own representative.
         """
-        self._wanted = int(value.get("count", 10)) or MOST
+        self._wanted = int(value.get("count", 10)) or MAX_REPRESENTATIVES
         self.count.setValue(self._wanted)
         with QSignalBlocker(self.weighting):
             self.weighting.setCurrentIndex(max(0, self.weighting.findData(value.get("weighting"))))
@@ -143,7 +145,7 @@ class SizesPanel(QWidget):
         for widget in (heading(tr("2  Sizes")), self.kind, self.numbers, texts):
             layout.addWidget(widget)
         self.kind.currentIndexChanged.connect(lambda _: self._show_kind())
-        self.numbers.textEdited.connect(lambda _: self._tell())
+        self.numbers.textEdited.connect(lambda _: self._emit_sizes())
         self._show_kind()
 
     def text(self) -> str:
@@ -152,7 +154,7 @@ class SizesPanel(QWidget):
         return f"{key}:{self.numbers.text().strip()}" if SIZES[key][1] else str(key)
 
     def set_text(self, text: str) -> None:
-        """Show another distribution; what is unknown is left out."""
+        """Show another distribution; an unknown one is ignored."""
         key = next((key for key in SIZES if text == key or text.startswith(f"{key}:")), "")
         if not key:
             return
@@ -161,10 +163,10 @@ class SizesPanel(QWidget):
         self._show_kind()
         if SIZES[key][1]:
             self.numbers.setText(text.removeprefix(f"{key}:"))
-        self._tell()
+        self._emit_sizes()
 
     def sizing(self) -> SizeRule | None:
-        """From measured sizes to those that are wanted; ``None`` while the numbers make no sense."""
+        """The mapping of measured to requested sizes; ``None`` while the text is invalid."""
         try:
             found = parse_sizes(self.text())
         except InputError as error:
@@ -174,7 +176,7 @@ class SizesPanel(QWidget):
         return found
 
     def show_problem(self, sentence: str) -> None:
-        """Say what is wrong with the numbers."""
+        """Show why the numbers are invalid."""
         self.problem.setText(sentence)
         self.problem.setVisible(bool(sentence))
 
@@ -186,15 +188,15 @@ class SizesPanel(QWidget):
         self.numbers.setPlaceholderText("" if example else tr("needs no numbers"))
         self.hint.setText(tr(HINTS.get(key, "")))
         self.hint.setVisible(key in HINTS)
-        self._tell()
+        self._emit_sizes()
 
-    def _tell(self) -> None:
+    def _emit_sizes(self) -> None:
         self.sizing()
         self.sizesChanged.emit()
 
 
 class FolderPanel(QWidget):
-    """Name of the dataset, and where it is."""
+    """Name of the dataset, its shapes, and the buttons that build or open one."""
 
     buildRequested = Signal()  # noqa: N815
     openRequested = Signal()  # noqa: N815
@@ -227,33 +229,33 @@ class FolderPanel(QWidget):
         self.show_dataset("")
 
     def folder_name(self) -> str:
-        """Of the folder: the dataset's name without what a file system may not like."""
+        """Folder name: the dataset's name with only letters, digits, dots and dashes."""
         return re.sub(r"[^\w.-]+", "_", self.name.text()).strip("._") or "dataset"
 
     def show_dataset(self, words: str) -> None:
-        """Say which dataset is there."""
+        """Describe the current dataset."""
         self.state.setText(words or tr("No dataset yet."))
 
 
 @dataclass(frozen=True)
 class DatasetControls:
-    """All panels at the left of the page, set from a recipe and read for one."""
+    """The panels at the left of the page, set from a recipe and converted to one."""
 
     representatives: RepresentativesPanel
     sizes: SizesPanel
     folder: FolderPanel
     targets: ExportPanel
 
-    def take(self, opened: DatasetRequest) -> None:
-        """Set them as a recipe says."""
-        if wish := opened.representatives:
-            self.representatives.setValue(wish.model_dump())
-            self.sizes.set_text(wish.sizes)
-            self.folder.name.setText(wish.name or self.folder.name.text())
+    def show_recipe(self, opened: DatasetRequest) -> None:
+        """Show the values of a recipe."""
+        if recipe := opened.representatives:
+            self.representatives.setValue(recipe.model_dump())
+            self.sizes.set_text(recipe.sizes)
+            self.folder.name.setText(recipe.name or self.folder.name.text())
         if opened.exports:
-            self.targets.take(opened.exports)
+            self.targets.show_recipe(opened.exports)
 
-    def standing(self) -> DatasetRequest:
-        """What a recipe would say."""
+    def request(self) -> DatasetRequest:
+        """The values as a recipe holds them."""
         name = self.folder.name.text().strip()
-        return DatasetRequest(self.representatives.wish(self.sizes.text(), name), self.targets.wish())
+        return DatasetRequest(self.representatives.recipe_part(self.sizes.text(), name), self.targets.recipe_part())

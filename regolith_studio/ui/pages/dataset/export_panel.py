@@ -1,4 +1,4 @@
-"""To which programs, with what settings; what is lost on the way; and what has been written."""
+"""Export to DEM programs: formats and settings, what formats lose, and the list of written exports."""
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
@@ -93,11 +93,11 @@ class ExportPanel(QWidget):
         self.setValue({"targets": FIRST})
 
     def chosen(self) -> tuple[str, ...]:
-        """Keys of the formats that are ticked."""
+        """Keys of the selected formats."""
         return tuple(key for key, box in self.boxes.items() if box.isChecked())
 
     def options(self) -> ExportOptions:
-        """What the exporters are told."""
+        """Options of the exporters."""
         return ExportOptions(
             coarse_graining_factor=float(self.coarse_graining.value()),
             n_particles=int(self.particles.value()),
@@ -107,11 +107,11 @@ class ExportPanel(QWidget):
         )
 
     def consent(self) -> bool:
-        """Whether shapes may be changed."""
+        """Whether the user allows formats that change shapes."""
         return self.lossy.isChecked()
 
     def set_ready(self, ready: bool) -> None:
-        """Whether there is a dataset to export."""
+        """Set whether there is a dataset to export."""
         self._ready = ready
         self._show()
 
@@ -125,8 +125,8 @@ class ExportPanel(QWidget):
             **{part: getattr(self, part).changes() for part in PARTS},
         }
 
-    def wish(self) -> Exports | None:
-        """What a recipe says of them; ``None`` where they could not be exported."""
+    def recipe_part(self) -> Exports | None:
+        """The fields of a recipe; ``None`` if the export is not possible."""
         if not self.chosen() or not self._allowed():
             return None
         return Exports(
@@ -154,11 +154,11 @@ class ExportPanel(QWidget):
                 getattr(self, part).restore(changes)
         self._show()
 
-    def take(self, wish: Exports) -> None:
-        """Show what a recipe says of them."""
-        every = tuple(EXPORTERS) if "all" in wish.targets else wish.targets
-        chosen = {"targets": every, "coarse_graining": wish.coarse_graining, "particles": wish.particles}
-        self.setValue(chosen | {"lossy": wish.lossy, PARTS[0]: wish.settings})
+    def show_recipe(self, recipe: Exports) -> None:
+        """Show the values of a recipe."""
+        every = tuple(EXPORTERS) if "all" in recipe.targets else recipe.targets
+        chosen = {"targets": every, "coarse_graining": recipe.coarse_graining, "particles": recipe.particles}
+        self.setValue(chosen | {"lossy": recipe.lossy, PARTS[0]: recipe.settings})
 
     def _box(self, key: str) -> QCheckBox:
         exporter = EXPORTERS[key]
@@ -174,7 +174,7 @@ class ExportPanel(QWidget):
         return box
 
     def _allowed(self) -> bool:
-        """Whether no ticked format changes shapes, or that is accepted."""
+        """Whether no selected format changes shapes, or the user allows it."""
         return self.consent() or not any(EXPORTERS[key].alters for key in self.chosen())
 
     def _show(self) -> None:
@@ -201,7 +201,7 @@ def _column(parts: Sequence[QWidget]) -> QWidget:
 
 
 class LossesLabel(QScrollArea):
-    """What the ticked formats do not carry."""
+    """Describes what the selected formats lose."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -217,7 +217,7 @@ class LossesLabel(QScrollArea):
             ground.setAutoFillBackground(False)  # that of the tab is seen
 
     def show_formats(self, keys: Sequence[str]) -> None:
-        """Say what these lose."""
+        """Describe other formats."""
         lines = []
         for key in keys:
             each = EXPORTERS[key]
@@ -253,11 +253,11 @@ class ExportsList(QWidget):
 
     @property
     def exports(self) -> tuple[ExportResult, ...]:
-        """What is listed."""
+        """The listed exports."""
         return self._exports
 
     def show_exports(self, exports: Sequence[ExportResult]) -> None:
-        """List these instead."""
+        """List other exports."""
         self._exports = tuple(exports)
         while (item := self._rows.takeAt(0)) is not None:
             if (widget := item.widget()) is not None:

@@ -1,4 +1,4 @@
-"""The representatives as small pictures with their weights, drawn one by one while nothing else is to do."""
+"""Thumbnails of the representatives with their weights, drawn while the event loop is idle."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,12 +13,12 @@ from regolith_studio.ui.widgets.labels import heading
 from regolith_studio.ui.widgets.thumbnails import Painting, paint_thumbnail
 
 SIZE, CELL = 92, QSize(128, 136)
-"""Of a picture, and of a picture with its words, in pixels."""
+"""Size of a thumbnail, and of a cell with its caption, in pixels."""
 
 
 @dataclass(frozen=True)
 class GalleryItem:
-    """One picture: a solid, two words below it, and what the mouse tells."""
+    """A mesh with caption and tool tip; `coarsened` selects the colour."""
 
     mesh: Mesh
     caption: str
@@ -27,7 +27,7 @@ class GalleryItem:
 
 
 class RepresentativesGallery(QWidget):
-    """Shows as many as there are."""
+    """A list of thumbnails, or a placeholder."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -63,11 +63,11 @@ class RepresentativesGallery(QWidget):
 
     @property
     def shown(self) -> tuple[GalleryItem, ...]:
-        """What is shown, in order."""
+        """The items, in order."""
         return self._shown
 
     def show_shapes(self, title: str, shown: Sequence[GalleryItem]) -> None:
-        """Show these instead."""
+        """Show other items."""
         self.title.setText(title)
         self._shown = tuple(shown)
         self.list.clear()
@@ -87,7 +87,7 @@ class RepresentativesGallery(QWidget):
         self._redraw()
 
     def release(self) -> None:
-        """Draw no more."""
+        """Stop drawing."""
         self._timer.stop()
         self._painting = None
 

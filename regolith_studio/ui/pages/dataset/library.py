@@ -1,4 +1,4 @@
-"""The library: datasets below a folder with their pictures, and what came from each."""
+"""The library: datasets below a folder with thumbnails, and their exports and simulations."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -37,7 +37,7 @@ ROLE = Qt.ItemDataRole.UserRole
 
 
 class LibraryPanel(QWidget):
-    """Lists a folder that is remembered between sittings; a double click opens a dataset."""
+    """Lists a folder, which is remembered between sessions; a double click opens a dataset."""
 
     openRequested = Signal(object)  # noqa: N815
 
@@ -52,8 +52,8 @@ class LibraryPanel(QWidget):
         self.words = QLineEdit(placeholderText=tr("Filter"), clearButtonEnabled=True)
         self.tree, self.facts = QTreeWidget(), remark(tr(EMPTY))
         self.use, self.look = QPushButton(tr("Use this dataset")), QPushButton(tr("Open folder"))
-        self._dress()
-        self._place_parts()
+        self._configure()
+        self._arrange()
         self.choose.clicked.connect(self.ask)
         self.again.clicked.connect(self.refresh)
         self.words.textChanged.connect(lambda _: self._show())
@@ -65,7 +65,7 @@ class LibraryPanel(QWidget):
 
     @property
     def entries(self) -> tuple[CatalogEntry, ...]:
-        """What is listed, by path."""
+        """The listed entries, sorted by path."""
         return self._entries
 
     def ask(self) -> None:
@@ -76,12 +76,12 @@ class LibraryPanel(QWidget):
             self.show_folder(Path(name))
 
     def show_folder(self, root: Path) -> None:
-        """List another folder."""
+        """List another folder and remember it."""
         self._context.remember("library", str(root))
         self.refresh()
 
     def refresh(self) -> None:
-        """Look into the folder again."""
+        """List the folder again."""
         root = self._context.recall("library")
         if root and Path(root).is_dir():
             self.place.setText(str(root))
@@ -90,19 +90,19 @@ class LibraryPanel(QWidget):
             self._context.start(tr("Looking for datasets"), job, self._take, lane=LANE)
 
     def suggest(self, root: Path) -> None:
-        """List a folder where none was ever chosen; else what it holds now."""
+        """List this folder if none has been chosen yet; else update the list."""
         if self._context.recall("library"):
             self.refresh()
         else:
             self.show_folder(root)
 
     def _results(self) -> Path:
-        """Where the page of the angle of repose keeps its runs."""
+        """The folder of runs of the page Angle of repose."""
         usual = user_data_path("regolith-studio") / "repose"
         return self._context.session.runs_folder or usual
 
     def selected(self) -> CatalogEntry | None:
-        """The entry of the chosen row."""
+        """The entry of the selected row."""
         item = self.tree.currentItem()
         entry = item.data(0, ROLE) if item is not None else None
         return entry if isinstance(entry, CatalogEntry) else None
@@ -167,7 +167,7 @@ class LibraryPanel(QWidget):
         if entry is not None:
             QDesktopServices.openUrl(QUrl.fromLocalFile(str(entry.folder)))
 
-    def _dress(self) -> None:
+    def _configure(self) -> None:
         for name in ("choose", "again", "words", "tree", "use", "look"):
             getattr(self, name).setObjectName(f"library_{name}")
         self.words.setAccessibleName(tr("Filter of the library"))
@@ -181,7 +181,7 @@ class LibraryPanel(QWidget):
         self.facts.setAlignment(Qt.AlignmentFlag.AlignTop)
         self.facts.setContentsMargins(8, 4, 8, 4)
 
-    def _place_parts(self) -> None:
+    def _arrange(self) -> None:
         top = QHBoxLayout()
         top.addWidget(self.choose)
         top.addWidget(self.again)

@@ -46,20 +46,20 @@ from regolith_studio.ui.pages.dataset.plots import QualityPlot, SizesPlot
 from regolith_studio.ui.pages.dataset.view_data import (
     SHAPE_FIELDS,
     chosen_particles,
-    request_of,
+    coarsening_text,
+    dataset_title,
     shapes,
-    title_of,
 )
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr, tr_count
 
 FIND, BUILD, EXPORT = "find", "build", "export"
-MOST_MEASURED = 200
-"""Particles whose sizes are drawn before any are chosen: their volumes are measured in the window."""
+MAX_MEASURED = 200
+"""Number of particles up to which measured sizes are drawn: volumes are computed in the GUI thread."""
 
 
 class DatasetPage(PageWidget):
-    """Asks jobs for representatives, datasets and exports, and shows them."""
+    """Starts jobs for representatives, datasets and exports, and shows their results."""
 
     def __init__(self, context: PageContext) -> None:
         super().__init__()
@@ -140,7 +140,7 @@ class DatasetPage(PageWidget):
         )
 
     def build_dataset(self) -> None:
-        """Ask for a place and build the dataset in a new folder there."""
+        """Ask for a folder and build the dataset in a new folder below it."""
         if self._chosen is None:
             self._context.toast.problem(tr("There are no representatives yet: press Find first."))
             return
@@ -149,7 +149,7 @@ class DatasetPage(PageWidget):
             return
         folder = Path(name) / self.folder.folder_name()
         replaced = folder.is_dir() and any(folder.iterdir())
-        if replaced and not self._asked(
+        if replaced and not self._confirm(
             tr("There is a folder {folder} already. Replace the dataset in it?", folder=folder)
         ):
             return
@@ -201,15 +201,15 @@ class DatasetPage(PageWidget):
         self._shapes.setCurrentWidget(self.gallery)
 
     def validate(self) -> None:
-        """Check every file of the dataset."""
+        """Validate every file of the dataset."""
         if self._folder is None:
             self._context.toast.problem(tr("There is no dataset to check: build or open one first."))
             return
         job = Job(validate_dataset_folder, (self._folder,))
-        self._context.start(tr("Checking the dataset"), job, self._tell_problems, lane="validate")
+        self._context.start(tr("Checking the dataset"), job, self._report_problems, lane="validate")
 
     def export(self) -> None:
-        """Ask for a place and export the dataset there."""
+        """Ask for a folder and export the dataset there."""
         if self._folder is None:
             self._context.toast.problem(tr("There is no dataset to export: build or open one first."))
             return
@@ -218,7 +218,7 @@ class DatasetPage(PageWidget):
             self.export_to(Path(name))
 
     def export_to(self, folder: Path) -> None:
-        """Write the ticked formats, each into a folder of its own below `folder`."""
+        """Write the selected formats, each into its own folder below `folder`."""
         if self._folder is None:
             return
         self._exports = []
@@ -240,7 +240,7 @@ class DatasetPage(PageWidget):
     def _place_before(self) -> str:
         return str(self._context.recall("place", str(Path.home())))
 
-    def _asked(self, question: str) -> bool:
+    def _confirm(self, question: str) -> bool:
         answer = QMessageBox.question(self, tr("Replace the dataset"), question)
         return answer == QMessageBox.StandardButton.Yes
 
@@ -269,7 +269,7 @@ class DatasetPage(PageWidget):
         self._choose(int(self.representatives.count.value()))
 
     def _choose(self, count: int) -> None:
-        """Show the choice of another number: at once if the curve has made it."""
+        """Show another number of representatives; compute the choice unless the survey has it."""
         self.quality.set_marker(float(count))
         if self._survey is None:
             return
@@ -292,7 +292,7 @@ class DatasetPage(PageWidget):
         self.gallery.show_shapes(title if shown else tr("Representatives"), shown)
         self.folder.build.setEnabled(bool(shown))
         self._show_sizes()
-        self._leave_wish()
+        self._update_request()
 
     def _show_sizes(self) -> None:
         classes = self._classes()
@@ -309,7 +309,7 @@ class DatasetPage(PageWidget):
             return [ShapeClass(one.weight, one.sizes, one.n_members) for one in self._dataset.representatives]
         if self._chosen is not None:
             return self._chosen.representatives.classes
-        if len(self._particles) > MOST_MEASURED:
+        if len(self._particles) > MAX_MEASURED:
             return []
         return [singleton_class(particle) for particle in self._particles if particle.mesh.volume > 0.0]
 
@@ -320,7 +320,7 @@ class DatasetPage(PageWidget):
         )
         self.library.suggest(built.folder.parent)
 
-    def _look_again(self) -> None:
+    def _refresh_library(self) -> None:
         if self.library.entries:
             self.library.refresh()
 
@@ -330,13 +330,13 @@ class DatasetPage(PageWidget):
     def _take_dataset(self, folder: Path, dataset: Dataset) -> None:
         self._folder, self._dataset = folder, dataset
         self._context.session.dataset_folder = folder
-        title = title_of(dataset)
+        title = dataset_title(dataset)
         self.gallery.show_shapes(title, shapes(dataset))
         self.folder.show_dataset(f"{title}\n{folder}")
         self.distribution.show_classes(self._classes())
         self.targets.set_ready(True)
 
-    def _tell_problems(self, problems: Sequence[str]) -> None:
+    def _report_problems(self, problems: Sequence[str]) -> None:
         if problems:
             self._context.toast.problem(
                 tr("The dataset is not sound: {problem}", problem=problems[0]), "\n".join(problems)
@@ -353,24 +353,24 @@ class DatasetPage(PageWidget):
         self._exports = list(done)
         self.exports.show_exports(done)
         self._context.toast.note(tr_count("1 format is written.", "{count} formats are written.", len(done)))
-        self._look_again()
+        self._refresh_library()
 
     # --- parts ---------------------------------------------------------------------------------
 
     def _show_choices(self) -> None:
-        self.folder.shapes.setText(request_of(self._context.session.choices))
+        self.folder.shapes.setText(coarsening_text(self._context.session.choices))
 
     def _take_opened(self) -> None:
-        """Set the controls as the recipe says that was opened, once."""
+        """Show the values of an opened recipe, once."""
         opened = self._context.session.opened_request
         if opened is not None and opened is not self._opened:
             self._opened = opened
-            self._controls.take(opened)
+            self._controls.show_recipe(opened)
 
-    def _leave_wish(self) -> None:
-        """Leave what a recipe would say of the dataset; nothing before representatives are chosen."""
+    def _update_request(self) -> None:
+        """Set the session's request of a dataset; ``None`` before representatives are chosen."""
         is_complete = self._chosen is not None and self.sizes.sizing() is not None
-        self._context.session.dataset_request = self._controls.standing() if is_complete else None
+        self._context.session.dataset_request = self._controls.request() if is_complete else None
 
     def _show_losses(self) -> None:
         self.losses.show_formats(self.targets.chosen())
@@ -387,17 +387,17 @@ class DatasetPage(PageWidget):
         self.library.openRequested.connect(self._use)
         self.targets.exportRequested.connect(self.export)
         self.targets.chosenChanged.connect(self._show_losses)
-        for told in (self.targets.chosenChanged, self.targets.optionsChanged, self.sizes.sizesChanged):
-            told.connect(self._leave_wish)
-        self.folder.name.textChanged.connect(lambda _: self._leave_wish())
+        for signal in (self.targets.chosenChanged, self.targets.optionsChanged, self.sizes.sizesChanged):
+            signal.connect(self._update_request)
+        self.folder.name.textChanged.connect(lambda _: self._update_request())
 
     def _place(self) -> None:
         left = scrolled_column((self.representatives, self.sizes, self.folder, self.targets))
         upper = equal_parts(Qt.Orientation.Horizontal, (self.quality, self.distribution))
         upper.setObjectName("dataset_upper")
-        told = [(self.losses, tr("What formats lose")), (self.exports, tr("Exported"))]
-        seen = [(self.gallery, tr("Representatives")), (self.library, tr("Library"))]
-        self._lower, self._shapes = tabs("dataset_lower", told), tabs("dataset_shapes", seen)
+        lower = [(self.losses, tr("What formats lose")), (self.exports, tr("Exported"))]
+        shapes = [(self.gallery, tr("Representatives")), (self.library, tr("Library"))]
+        self._lower, self._shapes = tabs("dataset_lower", lower), tabs("dataset_shapes", shapes)
         middle = stacked((upper, self._shapes, self._lower), (330, 330, 150), stretch=1)
         middle.setObjectName("dataset_middle")
         whole = side_by_side((left, padded(middle, 0, 4, 4, 4)), (320, 1200), stretch=1)

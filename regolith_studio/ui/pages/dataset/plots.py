@@ -1,4 +1,4 @@
-"""Error over the number of representatives, and the distribution of sizes."""
+"""Plots of the error against the number of representatives, and of the size distributions."""
 
 from collections.abc import Sequence
 
@@ -19,13 +19,13 @@ NAMES = {
 }
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8c6d00")
 WEIGHTINGS = (mark("number"), mark("volume"))
-"""What distributions count by."""
-MOST_CLASSES = 12
-"""Classes whose own distributions are drawn; of more only the mixture."""
+"""Weightings of distributions."""
+MAX_CLASSES = 12
+"""Number of classes up to which each distribution is drawn; beyond it only the mixture."""
 
 
 class QualityPlot(CurvePlot):
-    """Wasserstein distance per descriptor, their mean, and the noise of the population."""
+    """Wasserstein distance per descriptor, their mean, and the sampling noise of the population."""
 
     def __init__(self) -> None:
         self._points: tuple[QualityPoint, ...] = ()
@@ -40,16 +40,16 @@ class QualityPlot(CurvePlot):
 
     @property
     def points(self) -> tuple[QualityPoint, ...]:
-        """What is drawn."""
+        """The data that are drawn."""
         return self._points
 
     def show_points(self, points: Sequence[QualityPoint]) -> None:
-        """Points so far."""
+        """Draw the points that are computed so far."""
         self._points, self._noise = tuple(points), None
         self._draw()
 
     def show_curve(self, curve: QualityCurve | None) -> None:
-        """The whole curve, or nothing."""
+        """Draw the whole curve, or nothing."""
         self._points = curve.points if curve else ()
         self._noise = curve.noise_mean if curve else None
         enough = curve.sufficient_count if curve else None
@@ -75,7 +75,7 @@ class QualityPlot(CurvePlot):
                 tr("mean"),
                 self.theme.text,
                 counts,
-                tuple(map(_drawn, (point.mean for point in self._points))),
+                tuple(map(_positive, (point.mean for point in self._points))),
             )
         )
         if self._noise is not None and counts:
@@ -86,16 +86,16 @@ class QualityPlot(CurvePlot):
         self.set_curves(curves)
 
     def _column(self, key: str) -> tuple[float, ...]:
-        return tuple(_drawn(point.errors.get(key, np.nan)) for point in self._points)
+        return tuple(_positive(point.errors.get(key, np.nan)) for point in self._points)
 
 
-def _drawn(error: float) -> float:
-    """No point where every particle stands for itself: a logarithm has no zero."""
+def _positive(error: float) -> float:
+    """NaN instead of zero, which a logarithmic axis cannot show."""
     return float(error) if error > 1e-6 else float("nan")
 
 
 class SizesPlot(CurvePlot):
-    """Cumulative distribution of the mixture, and of each class where they are few."""
+    """Cumulative distribution of the mixture and, up to :data:`MAX_CLASSES`, of each class."""
 
     def __init__(self) -> None:
         self._classes: tuple[ShapeClass, ...] = ()
@@ -108,11 +108,11 @@ class SizesPlot(CurvePlot):
 
     @property
     def classes(self) -> tuple[ShapeClass, ...]:
-        """What is drawn."""
+        """The data that are drawn."""
         return self._classes
 
     def show_classes(self, classes: Sequence[ShapeClass]) -> None:
-        """Show these distributions; none for the sentence."""
+        """Draw other distributions; none for the placeholder."""
         self._classes = tuple(classes)
         self._draw()
 
@@ -132,7 +132,7 @@ class SizesPlot(CurvePlot):
         at = np.linspace(max(0.0, low - 0.05 * (high - low) - 1e-3 * low), high * 1.03, 400)
         rows = np.array([one.sizes.cdf(at) for one in self._classes])
         curves = []
-        if len(self._classes) <= MOST_CLASSES:
+        if len(self._classes) <= MAX_CLASSES:
             curves = [PlotCurve("", self.theme.border, tuple(at), tuple(100 * row)) for row in rows]
         mixture = 100 * (weights @ rows) / weights.sum()
         kinds = {one.sizes.weighting for one in self._classes}

@@ -1,4 +1,4 @@
-"""Representatives and shapes as small pictures with their words, those with the largest share first."""
+"""Captions and tool tips of representatives and of the shapes of a dataset, sorted by share."""
 
 from collections.abc import Sequence
 
@@ -13,7 +13,7 @@ from regolith_studio.ui.translation import tr, tr_count
 
 
 def chosen_particles(particles: Sequence[Particle], chosen: ChosenParticles) -> list[GalleryItem]:
-    """The particles that stand for all."""
+    """Gallery items of the representatives."""
     classes = chosen.representatives.classes
     total = sum(one.weight for one in classes)
     shown = []
@@ -32,7 +32,7 @@ def chosen_particles(particles: Sequence[Particle], chosen: ChosenParticles) -> 
 
 
 def shapes(dataset: Dataset) -> list[GalleryItem]:
-    """The polyhedra of a dataset."""
+    """Gallery items of the polyhedra of a dataset."""
     shown = []
     for one, weight in zip(dataset.representatives, dataset.weights, strict=True):
         solid = one.shape
@@ -48,8 +48,8 @@ def shapes(dataset: Dataset) -> list[GalleryItem]:
     return _by_share(shown)
 
 
-def title_of(dataset: Dataset) -> str:
-    """Name, number of shapes, and what they count."""
+def dataset_title(dataset: Dataset) -> str:
+    """Name, number of shapes and weighting of a dataset."""
     counts = tr(str(dataset.weighting))
     return tr(
         "{name}: {count} shapes, by {weighting}", name=dataset.name, count=len(dataset), weighting=counts
@@ -57,11 +57,11 @@ def title_of(dataset: Dataset) -> str:
 
 
 SHAPE_FIELDS = ("method", "stop_at", "n_facets", "n_triangles", "largest_error")
-"""Choices that :func:`request_of` names."""
+"""Choices that :func:`coarsening_text` names."""
 
 
-def request_of(choices: Choices) -> str:
-    """How the shapes will be made."""
+def coarsening_text(choices: Choices) -> str:
+    """Description of how the shapes will be coarsened."""
     known = METHODS.get(choices.method)
     return tr(
         "Each with {fineness}; method: {method}; chosen on the page Explore.",

@@ -1,4 +1,4 @@
-"""Particles on the left, three views and plots in the middle, controls on the right."""
+"""Page "Explore": particle list, three views with plots below, and controls."""
 
 from collections.abc import Callable, Mapping
 from functools import partial
@@ -21,19 +21,19 @@ from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.triptych import Triptych
 
 LIST_WIDTH = 40
-"""Of the list of particles at first, in digits."""
+"""Initial width of the particle list in digits."""
 LIST_ROOM, NAMES_WIDTH = 320, 22
-"""Pixels that it takes at most; digits that it takes at least, which is more with large letters."""
+"""Maximum width of the particle list in pixels, and its minimum in digits."""
 CONTROLS_LETTERS = 32
-"""Of what is on the right, in digits, where that is more than usual."""
+"""Minimum width of the controls in digits."""
 LOW = 620
-"""Pixels of height below which the views keep the larger share."""
+"""Height in pixels below which the views get the larger share."""
 PLOTS_HEIGHT, PLOTS_LINES = 300, 15
-"""What plots begin with: pixels, or lines of large letters."""
+"""Initial height of the plots in pixels, and its minimum in lines of text."""
 
 
 class ExplorePage(PageWidget):
-    """Places panels and views, and lets the session fill them."""
+    """Places panels and views and connects them with the session."""
 
     def __init__(self, context: PageContext) -> None:
         super().__init__()

@@ -1,4 +1,4 @@
-"""The views as files: what is seen, the figure of the three views, a turntable, all degrees of the fit."""
+"""Saving the views: screenshot, figure of the three views, turntable, animation of the fit."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -23,15 +23,15 @@ from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.views.triptych import Triptych
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
 
-LARGEST_SCALE = 6
-SEEN, FIGURE = "seen", "figure"
+MAX_SCALE = 6
+SCREENSHOT, FIGURE = "screenshot", "figure"
 KINDS = {
-    SEEN: mark("The views as they are seen"),
+    SCREENSHOT: mark("The views as they are seen"),
     FIGURE: mark("A figure on white, 1860 × 560 times the scale"),
 }
-MOVING = ("GIF (*.gif)", "WebP (*.webp)", mark("Sequence of PNG files (*.png)"))
-ENDINGS = (".gif", ".webp", ".png")
-TOLD = {
+ANIMATION_FILTERS = ("GIF (*.gif)", "WebP (*.webp)", mark("Sequence of PNG files (*.png)"))
+SUFFIXES = (".gif", ".webp", ".png")
+SAVED = {
     "figure": mark("The picture is in {path}."),
     "turntable": mark("The turntable is in {path}."),
     "animation": mark("The animation is in {path}."),
@@ -39,14 +39,14 @@ TOLD = {
 
 
 class PictureExport(QObject):
-    """Asks for a file and draws into it.
+    """Asks for a file and saves views or an animation.
 
     Parameters
     ----------
     context
         Of the page.
     triptych
-        Whose camera is taken over.
+        The views.
     """
 
     def __init__(self, context: PageContext, triptych: Triptych, parent: QWidget) -> None:
@@ -60,64 +60,64 @@ class PictureExport(QObject):
         if entry is None or results.surface is None or results.coarsened is None:
             self._context.toast.problem(tr("Wait until the three views are drawn."))
             return
-        asked = PictureDialog(self._window)
-        accepted = asked.exec() == QDialog.DialogCode.Accepted
-        kind, scale, transparent = asked.value()
-        asked.deleteLater()
+        dialog = PictureDialog(self._window)
+        accepted = dialog.exec() == QDialog.DialogCode.Accepted
+        kind, scale, transparent = dialog.value()
+        dialog.deleteLater()
         kinds = tr("PictureExport (*.png)")
         name = self._ask(tr("Save picture"), f"{entry.id}.png", kinds) if accepted else ""
         if not name:
             return
         path = Path(name).with_suffix(".png")
-        if kind == SEEN:
+        if kind == SCREENSHOT:
             self._write(self._triptych.snapshot(scale, transparent), path)
             return
         titles = view_titles(results.surface_l_max, results.coarsened)
         pose = self._triptych.views["particle"].pose
         surfaces = (entry.particle.mesh, results.surface, results.coarsened)
         job = Job(draw_figure, (*surfaces, titles, path, scale, pose, transparent))
-        self._context.start(tr("Drawing the figure"), job, self._told("figure", path))
+        self._context.start(tr("Drawing the figure"), job, self._saved_note("figure", path))
 
     def save_turntable(self) -> None:
-        """Ask for a file and write the bodies turning once, in the background."""
+        """Ask for a file and save an animation of one rotation, in the background."""
         entry = self._context.session.selected
         if entry is None or not self._triptych.shapes:
             self._context.toast.problem(tr("Wait until the views are drawn."))
             return
-        name, ending = self._ask_moving(tr("Save turntable"), f"{entry.id}-turning")
+        name, suffix = self._ask_animation(tr("Save turntable"), f"{entry.id}-turning")
         if name:
-            path = Path(name).with_suffix(ending)
+            path = Path(name).with_suffix(suffix)
             job = Job(turn, (self._triptych.shapes, self._triptych.views["particle"].pose, path))
             title = tr("Drawing the turntable")
-            self._context.start(title, job, self._told("turntable", path), lane="turntable")
+            self._context.start(title, job, self._saved_note("turntable", path), lane="turntable")
 
     def save_animation(self) -> None:
-        """Ask for a file and write the fit growing from degree 0 to 30, in the background."""
+        """Ask for a file and save an animation of the fit from degree 0 on, in the background."""
         fit, entry = self._context.session.results.fit, self._context.session.selected
         if entry is None or fit is None:
             self._context.toast.problem(tr("Wait until the particle is fitted."))
             return
-        name, ending = self._ask_moving(tr("Save animation"), entry.id)
+        name, suffix = self._ask_animation(tr("Save animation"), entry.id)
         if name:
-            path = Path(name).with_suffix(ending)
+            path = Path(name).with_suffix(suffix)
             job = Job(animate, (entry.particle.mesh, fit, tuple(range(fit.l_max + 1)), path))
             title = tr("Drawing the animation")
-            self._context.start(title, job, self._told("animation", path), lane="animation")
+            self._context.start(title, job, self._saved_note("animation", path), lane="animation")
 
-    def _told(self, what: str, path: Path) -> Callable[[object], None]:
+    def _saved_note(self, what: str, path: Path) -> Callable[[object], None]:
         first = path.with_name(f"{path.stem}-000.png") if path.suffix == ".png" and what != "figure" else path
-        return lambda _: self._context.toast.note(tr(TOLD[what], path=first))
+        return lambda _: self._context.toast.note(tr(SAVED[what], path=first))
 
     def _write(self, picture: QImage, path: Path) -> None:
         if picture.save(str(path)):
-            self._context.toast.note(tr(TOLD["figure"], path=path))
+            self._context.toast.note(tr(SAVED["figure"], path=path))
         else:
             self._context.toast.problem(tr("The picture {path} cannot be written.", path=path))
 
-    def _ask_moving(self, title: str, name: str) -> tuple[str, str]:
-        kinds = [tr(kind) for kind in MOVING]
-        chosen = self._ask(title, f"{name}{ENDINGS[0]}", ";;".join(kinds))
-        return chosen, _ending(chosen, kinds.index(self._kind) if self._kind in kinds else 0)
+    def _ask_animation(self, title: str, name: str) -> tuple[str, str]:
+        kinds = [tr(kind) for kind in ANIMATION_FILTERS]
+        chosen = self._ask(title, f"{name}{SUFFIXES[0]}", ";;".join(kinds))
+        return chosen, _suffix(chosen, kinds.index(self._kind) if self._kind in kinds else 0)
 
     def _ask(self, title: str, name: str, kinds: str) -> str:
         start = str(Path(str(self._context.recall("pictures", Path.home()))) / name)
@@ -127,14 +127,14 @@ class PictureExport(QObject):
         return chosen
 
 
-def _ending(name: str, kind: int) -> str:
-    """What was typed, if it is not the ending that was suggested, else the kind that was chosen."""
+def _suffix(name: str, kind: int) -> str:
+    """The suffix that was typed or, if it is the suggested one, that of the selected filter."""
     typed = Path(name).suffix.lower()
-    return typed if typed in ENDINGS[1:] else ENDINGS[kind]
+    return typed if typed in SUFFIXES[1:] else SUFFIXES[kind]
 
 
 class PictureDialog(QDialog):
-    """Asks what is drawn, how large, and whether the background is left out."""
+    """Asks for the kind of picture, its scale, and whether the background is transparent."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -145,7 +145,7 @@ class PictureDialog(QDialog):
         self.scale = QSpinBox()
         self.scale.setObjectName("picture_scale")
         self.scale.setAccessibleName(tr("Scale of the picture"))
-        self.scale.setRange(1, LARGEST_SCALE)
+        self.scale.setRange(1, MAX_SCALE)
         self.scale.setValue(2)
         self.transparent = QCheckBox(tr("Transparent background"))
         self.transparent.setObjectName("picture_transparent")

@@ -1,4 +1,4 @@
-"""The plots below the views: errors and descriptors on the left, loss and spectrum on the right."""
+"""The plots below the views in two groups of tabs: errors and descriptors, loss and spectrum."""
 
 from PySide6.QtCore import QEvent, Qt
 from PySide6.QtGui import QResizeEvent
@@ -17,11 +17,11 @@ from regolith_studio.ui.views.triptych import Triptych
 from regolith_studio.ui.wiring import Wiring
 
 LETTERS = 48
-"""Width of two plots side by side, in digits; where there is less, all stand behind each other."""
+"""Width in digits below which both groups become one."""
 
 
 class PlotArea(QSplitter):
-    """Two groups of pages side by side, or one where there is no room for two."""
+    """Two groups of tabs side by side, or one group in narrow windows."""
 
     def __init__(self, triptych: Triptych) -> None:
         super().__init__(Qt.Orientation.Horizontal)
@@ -52,7 +52,7 @@ class PlotArea(QSplitter):
             self._group()
 
     def _group(self) -> None:
-        """Beside each other where there is room for two plots with their legends."""
+        """Show two groups if there is room for two plots with legends, else one."""
         narrow = self.width() < LETTERS * self.fontMetrics().horizontalAdvance("0")
         if narrow == self.right.isHidden():
             return
@@ -71,7 +71,7 @@ class PlotArea(QSplitter):
             panel.set_theme(theme)
 
     def show_section(self, shown: bool) -> None:
-        """Bring the drawing of the section to the front, or what was there before."""
+        """Show the tab of the cross-section, or the previous one."""
         if shown:
             self._before = self.left.currentIndex()
             self.left.setCurrentWidget(self.section)
@@ -79,7 +79,7 @@ class PlotArea(QSplitter):
             self.left.setCurrentIndex(self._before)
 
     def wire(self, session: Session, wiring: Wiring) -> None:
-        """Show what the session computes, from now on."""
+        """Connect the plots with the results of the session."""
 
         def errors() -> None:
             self.error_bars.show_results(session.results, session.choices)

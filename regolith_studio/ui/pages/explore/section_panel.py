@@ -1,4 +1,4 @@
-"""The cross-section as a drawing: outlines of particle, fit and polyhedron over each other, with areas."""
+"""Plot of a cross-section: outlines of particle, fit and polyhedron with their areas."""
 
 import numpy as np
 from PySide6.QtWidgets import QCheckBox, QHBoxLayout, QVBoxLayout, QWidget
@@ -16,7 +16,7 @@ from regolith_studio.ui.widgets.number_text import grouped_number
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 
 AXES = {"x": ("y", "z"), "y": ("x", "z"), "z": ("x", "y")}
-"""What runs to the right and up in a drawing, by the direction of the cut."""
+"""Names of the horizontal and vertical axis, by direction of the section."""
 PLACE = NumberSpec(
     "",
     mark("Place of the section"),
@@ -29,7 +29,7 @@ PLACE = NumberSpec(
 
 
 class SectionPanel(QWidget):
-    """Direction and place of the plane above, the outlines below."""
+    """Controls of the section plane, and the outlines below."""
 
     def __init__(self, triptych: Triptych) -> None:
         super().__init__()
@@ -60,7 +60,7 @@ class SectionPanel(QWidget):
         self.refresh()
 
     def refresh(self) -> None:
-        """Show plane and cuts as they are."""
+        """Show the present plane and sections."""
         sections = self._sections
         for part in (self.direction, self.flipped, self.place):
             part.setEnabled(sections.shown)
@@ -82,7 +82,7 @@ class SectionPanel(QWidget):
         for name in NAMES:
             if name in cuts:
                 x, y = _outline(cuts[name])
-                label = f"{tr(LABELS[name])} {_area_words(cuts[name].area, whole, name)}"
+                label = f"{tr(LABELS[name])} {_area_text(cuts[name].area, whole, name)}"
                 curves.append(PlotCurve(label, getattr(self._theme, name), tuple(x), tuple(y)))
         self.plot.set_curves(curves)
 
@@ -104,7 +104,7 @@ class SectionPanel(QWidget):
 
 
 def _outline(cut: CrossSection) -> tuple[FloatArray, FloatArray]:
-    """The loops one after the other, with a gap between them."""
+    """Coordinates of all loops, separated by NaN."""
     flat, gap = cut.flat(), np.full((1, 2), np.nan)
     pieces = [part for loop in cut.loops() for part in (flat[loop], gap)][:-1]
     if not pieces:
@@ -114,12 +114,12 @@ def _outline(cut: CrossSection) -> tuple[FloatArray, FloatArray]:
 
 
 def _mirrored(cut: CrossSection, direction: str) -> bool:
-    """Whether the axis of the drawing that runs to the right is the negative of its name."""
+    """Whether the horizontal axis points in the negative direction."""
     if direction not in AXES:
         return False
     return bool(cut.normal["xyz".index(direction)] * (-1.0 if direction == "y" else 1.0) < 0.0)
 
 
-def _area_words(area: float, whole: float, name: str) -> str:
+def _area_text(area: float, whole: float, name: str) -> str:
     words = f"{grouped_number(area)} µm²"
     return words if name == PARTICLE or not whole else f"{words} ({area / whole - 1:+.1%})"

@@ -1,4 +1,4 @@
-"""Lesson one: the paper's annealing, one proposal after the other, and the exact method beside it."""
+"""Lesson one: simulated annealing step by step, compared with the exact method."""
 
 from functools import partial
 from typing import Any
@@ -27,15 +27,15 @@ from regolith_studio.ui.widgets.plots.bars import BarPlot, BarSeries
 from regolith_studio.ui.widgets.plots.base import Plot
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 
-SEEN_THROUGH = 0.6
-"""Opacity of a polyhedron with the edges of another one about it."""
+TRANSLUCENT = 0.6
+"""Opacity of a polyhedron that is shown with the edges of another one."""
 WAIT = mark("The particle is annealed …")
 PLOT_LINES = 11
-"""Height of a plot in lines, at least: legend, curves and axis."""
+"""Minimum height of a plot in lines of text."""
 
 
 class AnnealingView(QWidget):
-    """Two polyhedra, the sentence and the formulas of a step, three plots.
+    """Two polyhedra, text and formulas of a step, and three plots.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ class AnnealingView(QWidget):
         self._arrange()
 
     def show_lesson(self, lesson: AnnealingLesson) -> None:
-        """Begin a lesson, or show the exact method that has been found for the one that is shown."""
+        """Show a lesson; if it is the present one, show the result of the exact method."""
         fresh = self._lesson is None or self._lesson.steps is not lesson.steps
         self._lesson = lesson
         if fresh:
@@ -86,12 +86,12 @@ class AnnealingView(QWidget):
         self._show_step(self.playback.step)
 
     def wait(self, sentence: str = WAIT) -> None:
-        """Say what is being done, or why nothing is."""
+        """Show a status text."""
         self.sentence.setText(tr(sentence))
 
     @property
     def step(self) -> AnnealingStep | None:
-        """The step that is seen."""
+        """The current step."""
         return self._lesson.steps[self.playback.step] if self._lesson is not None else None
 
     def set_theme(self, theme: Theme) -> None:
@@ -107,13 +107,13 @@ class AnnealingView(QWidget):
             self._show_step(self.playback.step)
 
     def release(self) -> None:
-        """Stop, and give the graphics memory back."""
+        """Stop, and release graphics memory."""
         self.playback.pause()
         for frame in self.frames.values():
             frame.view.release()
 
     def colour_of(self, step: AnnealingStep) -> str:
-        """Refused moves are orange-red, accepted ones green, lucky ones blue."""
+        """Colour of a step: rejected moves orange-red, improvements green, uphill moves blue."""
         theme = self._theme
         return {texts.REFUSED: theme.bad, texts.ACCEPTED: theme.good, texts.LUCKY: theme.fit}.get(
             texts.mood_of(step), theme.muted
@@ -159,7 +159,7 @@ class AnnealingView(QWidget):
         )
         actor = plotter.actors[surfaces.SURFACE]
         actor.prop.culling = "back"
-        actor.prop.opacity = 1.0 if other is None else SEEN_THROUGH
+        actor.prop.opacity = 1.0 if other is None else TRANSLUCENT
 
     def _show_exact(self) -> None:
         lesson, frame = self._lesson, self.frames["exact"]
@@ -266,13 +266,13 @@ class AnnealingView(QWidget):
             self._make_room()
 
     def _make_room(self) -> None:
-        """For legend, curves and axis of each plot, in letters of the present size; the page is scrolled."""
+        """Set the minimum height of the plots from the font; the page is scrolled."""
         for plot in self._plots:
             plot.setMinimumHeight(PLOT_LINES * plot.fontMetrics().height())
 
     def _arrange(self) -> None:
-        said = QWidget()
-        column = QVBoxLayout(said)
+        texts = QWidget()
+        column = QVBoxLayout(texts)
         column.setContentsMargins(10, 6, 6, 6)
         column.setSpacing(10)
         column.addWidget(self.sentence)
@@ -281,7 +281,7 @@ class AnnealingView(QWidget):
         column.addWidget(QLabel(tr("Exact method:")))
         column.addWidget(self.exact_formula)
         column.addStretch(1)
-        above = side_by_side([*self.frames.values(), said], [500, 500, 560], stretch=2)
+        above = side_by_side([*self.frames.values(), texts], [500, 500, 560], stretch=2)
         below = side_by_side([self.loss, self.chance, self.terms], [560, 420, 560], stretch=0)
         for row in (above, below):
             for place in range(row.count()):

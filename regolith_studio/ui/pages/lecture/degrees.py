@@ -23,7 +23,7 @@ WAIT = mark("The particle is fitted …")
 
 
 class DegreesView(QWidget):
-    """Particle and fit, the sentence and the series at a degree, the errors up to it.
+    """Particle and fit, text and series at a degree, and the errors up to it.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ class DegreesView(QWidget):
         self._arrange()
 
     def show_particle(self, mesh: Mesh, name: str) -> None:
-        """Begin with a particle; its steps follow."""
+        """Show a particle; its steps follow."""
         self._particle, self._steps = mesh, ()
         self.playback.pause()
         self.playback.set_count(0)
@@ -67,7 +67,7 @@ class DegreesView(QWidget):
         self.link.frame(mesh.vertices)
 
     def show_steps(self, steps: tuple[DegreeStep, ...]) -> None:
-        """The degrees that are known by now."""
+        """Show the degrees that are computed so far."""
         first = not self._steps
         self._steps = steps
         self.playback.extend(len(steps))
@@ -85,7 +85,7 @@ class DegreesView(QWidget):
         self.errors.set_theme(theme)
 
     def release(self) -> None:
-        """Stop, and give the graphics memory back."""
+        """Stop, and release graphics memory."""
         self.playback.pause()
         for frame in self.frames.values():
             frame.view.release()
@@ -129,14 +129,14 @@ class DegreesView(QWidget):
         self.errors.canvas.setXRange(0, max(len(self._steps) - 1, 1), padding=0.02)
 
     def _arrange(self) -> None:
-        said = QWidget()
-        column = QVBoxLayout(said)
+        texts = QWidget()
+        column = QVBoxLayout(texts)
         column.setContentsMargins(10, 6, 6, 6)
         column.setSpacing(10)
         column.addWidget(self.sentence)
         column.addWidget(self.formula)
         column.addWidget(self.errors, 1)
-        parts = side_by_side([*self.frames.values(), said], [500, 500, 560], stretch=2)
+        parts = side_by_side([*self.frames.values(), texts], [500, 500, 560], stretch=2)
         parts.setObjectName("lecture_degrees_columns")
         for place in range(parts.count()):
             parts.setStretchFactor(place, 1)

@@ -1,4 +1,4 @@
-"""Lesson three: a random field on the sphere, its spectrum to drag, and the particle that it makes."""
+"""Lesson three: a random field on the sphere, its editable spectrum, and the resulting particle."""
 
 import numpy as np
 from PySide6.QtCore import Signal
@@ -26,7 +26,7 @@ DEGREE = 10
 
 
 class FieldView(QWidget):
-    """Sphere and particle in the same colours, the spectrum with bars to drag.
+    """Sphere and particle coloured by the field, and the spectrum editor.
 
     Parameters
     ----------
@@ -71,19 +71,19 @@ class FieldView(QWidget):
         self.another.clicked.connect(self.draw_another)
 
     def take_material(self) -> None:
-        """Begin with the spectrum of the chosen material."""
+        """Show the spectrum of the selected material."""
         card = materials()[self.material.value()]
         self.spectrum.setValue(np.array(card.relative_amplitudes[: min(DEGREE, card.l_max)]))
         self.redraw(again=True)
 
     def draw_another(self) -> None:
-        """Other random numbers."""
+        """Use the next seed."""
         self.seed += 1
         self.redraw(again=True)
         self.seedChanged.emit(self.seed)
 
     def redraw(self, again: bool = False) -> None:
-        """Draw field and particle of the present spectrum; frame the particle, if it is another one."""
+        """Draw field and particle of the present spectrum; fit the view if it is another particle."""
         amplitudes = self.spectrum.value()
         self.reset.setEnabled(self.spectrum.is_changed())
         if not len(amplitudes):
@@ -108,7 +108,7 @@ class FieldView(QWidget):
             self._show(self.drawn, False)
 
     def release(self) -> None:
-        """Give the graphics memory back."""
+        """Release graphics memory."""
         for frame in self.frames.values():
             frame.view.release()
 
@@ -139,15 +139,15 @@ class FieldView(QWidget):
             self.link.frame(drawn.mesh.vertices)
 
     def _arrange(self) -> None:
-        said = QWidget()
-        column = QVBoxLayout(said)
+        texts = QWidget()
+        column = QVBoxLayout(texts)
         column.setContentsMargins(10, 6, 6, 6)
         column.setSpacing(10)
         column.addWidget(ComboBoxRow(self.material, (self.reset, self.another), spacing=10))
         column.addWidget(self.sentence)
         column.addWidget(self.formula)
         column.addWidget(self.spectrum, 1)
-        parts = side_by_side([*self.frames.values(), said], [500, 500, 560], stretch=2)
+        parts = side_by_side([*self.frames.values(), texts], [500, 500, 560], stretch=2)
         parts.setObjectName("lecture_field_columns")
         for place in range(parts.count()):
             parts.setStretchFactor(place, 1)

@@ -1,4 +1,4 @@
-"""Three lessons as tabs, in large letters; jobs compute them, the page plays them."""
+"""Page "Lecture": three lessons as tabs in a large font, computed by jobs."""
 
 from collections.abc import Callable, Mapping
 from functools import partial
@@ -21,13 +21,13 @@ from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
 
 LETTERS = 1.35
-"""Size of the letters against those of the other pages, at first."""
+"""Initial font size relative to the other pages."""
 SMALLEST, LARGEST, STEP = 0.8, 2.4, 1.12
 LESSONS = ("annealing", "degrees", "field")
 
 
 class LecturePage(PageWidget):
-    """Chooses particle and lesson, and asks for what the lesson shows."""
+    """Selects particle and lesson, and starts the job of the lesson."""
 
     def __init__(self, context: PageContext) -> None:
         super().__init__()
@@ -106,11 +106,11 @@ class LecturePage(PageWidget):
 
     @property
     def lesson(self) -> str:
-        """The lesson that is seen."""
+        """The current lesson."""
         return LESSONS[self.tabs.currentIndex()]
 
     def draw_another(self) -> None:
-        """Other random numbers for the lesson that is seen."""
+        """Use the next seed in the current lesson."""
         if self.lesson == "field":
             self.field.draw_another()
         elif self.lesson == "degrees":
@@ -120,16 +120,16 @@ class LecturePage(PageWidget):
             before = self._made_for.get("annealing")
             self._fill()
             if self._made_for.get("annealing") == before:
-                self._tell_absence()
+                self._show_absence()
 
     def scale_letters(self, factor: float) -> None:
-        """Larger or smaller letters; remembered."""
+        """Change the font size, which is remembered."""
         self._letters = min(max(self._letters * factor, SMALLEST), LARGEST)
         self._context.remember("letters", self._letters)
         self._show_letters()
 
     def toggle_full_screen(self) -> None:
-        """The window on the whole screen, or as it was."""
+        """Toggle full screen."""
         window = self.window()
         if window.isFullScreen():
             window.showNormal()
@@ -139,7 +139,7 @@ class LecturePage(PageWidget):
     # --- filling -------------------------------------------------------------------------------
 
     def _fill(self) -> None:
-        """Ask for what the lesson that is seen shows, unless it shows that already."""
+        """Start the job of the current lesson unless its results are shown already."""
         entry = self._session.selected
         self.another.setVisible(self.lesson == "annealing")
         self.request.setVisible(self.lesson == "annealing")
@@ -236,16 +236,16 @@ class LecturePage(PageWidget):
         if playback.has_steps:
             action(playback)
         else:
-            self._tell_absence()
+            self._show_absence()
 
-    def _tell_absence(self) -> None:
-        """Say why there is no lesson."""
+    def _show_absence(self) -> None:
+        """Show why there is no lesson."""
         opened = self._session.selected is not None
         words = tr("The lesson is still being computed.") if opened else tr("Open a particle first.")
         self._context.toast.note(words)
 
     def _show_letters(self) -> None:
-        """By style sheets: fonts of widgets are overruled by that of the program."""
+        """Set the font by a style sheet, because the application's overrides fonts of widgets."""
         size = self._size()
         for part in (self.annealing, self.degrees, self.field, self.tabs.tabBar(), *self._head):
             part.setStyleSheet(f"* {{ font-size: {size:.1f}pt; }}")
@@ -254,7 +254,7 @@ class LecturePage(PageWidget):
         self.set_theme(current_theme())
 
     def _size(self) -> float:
-        """Of letters in points. What is large in the whole window is not enlarged twice: plots need room."""
+        """Font size in points; a larger font of the whole window is not enlarged again."""
         return QGuiApplication.font().pointSizeF() * self._letters / min(letters_share(), LETTERS)
 
     def _place(self) -> None:

@@ -1,4 +1,4 @@
-"""Play, pause, one step, speed: the same row under every lesson."""
+"""Playback controls of a lesson: play, pause, single steps, speed."""
 
 from PySide6.QtCore import QEvent, QSignalBlocker, Qt, QTimer, Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QSlider, QWidget
@@ -19,12 +19,12 @@ USUAL_SPEED = 2.0
 
 
 class PlaybackBar(QWidget):
-    """Chooses one of some steps, by hand or by itself.
+    """Selects one of several steps, manually or by a timer.
 
     Parameters
     ----------
     name
-        Begins the object names.
+        Prefix of the object names.
     noun
         What one step is called, such as ``step``.
     """
@@ -66,40 +66,40 @@ class PlaybackBar(QWidget):
 
     @property
     def step(self) -> int:
-        """The step that is chosen."""
+        """The current step."""
         return self.slider.value()
 
     @property
     def playing(self) -> bool:
-        """Whether it goes on by itself."""
+        """Whether the timer is running."""
         return self._timer.isActive()
 
     @property
     def has_steps(self) -> bool:
-        """Whether there is anything to play."""
+        """Whether there are several steps."""
         return self.slider.maximum() > 0
 
     def set_count(self, count: int, at: int = 0) -> None:
-        """There are so many steps; one of them is chosen, which is not announced."""
+        """Set the number of steps and the current one without emitting a signal."""
         with QSignalBlocker(self.slider):
             self.slider.setRange(0, max(0, count - 1))
             self.slider.setValue(at)
         for part in (self.first, self.back, self.play, self.forward, self.slider):
             part.setEnabled(count > 1)
-        self._keep_room()
-        self._tell()
+        self._reserve_width()
+        self._show_position()
 
     def extend(self, count: int) -> None:
-        """There are more steps now; the same one stays chosen."""
+        """Set a larger number of steps; the current one stays."""
         self.set_count(count, self.step)
 
     def go(self, step: int) -> None:
-        """Choose a step, and pause."""
+        """Go to a step and pause."""
         self.pause()
         self.slider.setValue(step)
 
     def toggle(self) -> None:
-        """Play on, from the beginning if the end is reached, or pause."""
+        """Play, from the beginning if the end is reached, or pause."""
         if self.playing:
             self.pause()
         elif self.has_steps:
@@ -109,7 +109,7 @@ class PlaybackBar(QWidget):
             self._timer.start(self._interval())
 
     def pause(self) -> None:
-        """Stand still."""
+        """Stop the timer."""
         self._timer.stop()
         self.play.setText(tr("Play"))
 
@@ -123,16 +123,16 @@ class PlaybackBar(QWidget):
             self.slider.setValue(self.step + 1)
 
     def _changed(self, step: int) -> None:
-        self._tell()
+        self._show_position()
         self.stepChanged.emit(step)
 
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
         if event.type() in (QEvent.Type.FontChange, QEvent.Type.StyleChange):
-            self._keep_room()
+            self._reserve_width()
 
-    def _keep_room(self) -> None:
-        """The slider stays where it is when the number of the step has more digits, and while it plays."""
+    def _reserve_width(self) -> None:
+        """Reserve width for the longest texts, so that the slider does not move."""
         last = self.slider.maximum()
         widest = self._words("0" * len(str(last)))
         self.clock.setMinimumWidth(self.clock.fontMetrics().horizontalAdvance(widest) + 4)
@@ -140,7 +140,7 @@ class PlaybackBar(QWidget):
         longest = max(metrics.horizontalAdvance(text) for text in (tr("Play"), tr("Pause")))
         self.play.setMinimumWidth(self.play.sizeHint().width() - metrics.horizontalAdvance(now) + longest)
 
-    def _tell(self) -> None:
+    def _show_position(self) -> None:
         self.clock.setText(self._words(self.step))
 
     def _words(self, at: object) -> str:

@@ -1,4 +1,4 @@
-"""What a lesson says: sentences and formulas with their numbers filled in. Pure."""
+"""Texts and formulas of the lessons with their numbers filled in."""
 
 from collections.abc import Sequence
 
@@ -12,7 +12,7 @@ from regolith_studio.ui.translation import tr
 TERMS = (JACCARD, *LOSS_KEYS)
 REFUSED, ACCEPTED, LUCKY, START = "refused", "accepted", "lucky", "start"
 DEGREE = "l<sub>max</sub>"
-"""As rich text."""
+"""The mood as rich text."""
 A_LINE = 4
 """Terms of the loss on one line."""
 GENERAL_LOSS = r"$L=\alpha_J\,J+\sum_i\alpha_i\,\varepsilon_i$"
@@ -20,7 +20,7 @@ GENERAL_SERIES = r"$r(\theta,\varphi)=\sum_{l=0}^{l_{max}}\,\sum_{m=-l}^{l}c_{lm
 
 
 def in_a_sentence(label: str) -> str:
-    """A label in the middle of a sentence: small in English, as it is in languages whose nouns are not."""
+    """A label within a sentence: lower case in English, unchanged in other languages."""
     shown = tr(label)
     return shown.lower() if shown == label else shown
 
@@ -78,7 +78,7 @@ def proposal_line(step: AnnealingStep, lesson: AnnealingLesson) -> str:
 
 
 def decision_line(step: AnnealingStep) -> str:
-    """The comparison that decides."""
+    """The acceptance criterion with its numbers."""
     move = step.move
     if move is None:
         return r"$\Delta L<0\;$ or $\;u<T(k)\quad\Rightarrow\quad$ " + tr("accept")
@@ -93,7 +93,7 @@ def decision_line(step: AnnealingStep) -> str:
 
 
 def mood_of(step: AnnealingStep) -> str:
-    """How a step ended: one of the moods of this module."""
+    """Outcome of a step, one of the constants of this module."""
     if step.move is None:
         return START
     if not step.move.accepted:
@@ -102,7 +102,7 @@ def mood_of(step: AnnealingStep) -> str:
 
 
 def sentence_of(step: AnnealingStep, lesson: AnnealingLesson) -> str:
-    """What happened, in words."""
+    """Description of a step."""
     move = step.move
     if move is None:
         return tr(
@@ -158,7 +158,7 @@ def degree_lines(step: DegreeStep) -> tuple[str, ...]:
 
 
 def degree_sentence(step: DegreeStep) -> str:
-    """What the fit keeps at a degree, in words."""
+    """Description of the fit at a degree."""
     if step.mesh is None:
         return tr(
             "At {symbol} = {degree} the series has a negative radius somewhere: it is no surface.",

@@ -1,4 +1,4 @@
-"""What is drawn from, by which model, and how many."""
+"""Controls: source, shape model with its settings, and number and sizes of the drawn particles."""
 
 import dataclasses
 from collections.abc import Mapping
@@ -36,11 +36,11 @@ L_MAX = NumberSpec(
     30,
     tip=mark("The paper's virtual particles have 10."),
 )
-MOST_DRAWN = 1_000_000
+MAX_DRAWN = 1_000_000
 
 
 class SourceControls(QWidget):
-    """Chooses a sample or material, the model and its settings."""
+    """Selects a sample or material, the model and its settings."""
 
     sourceChanged = Signal(str)  # noqa: N815
     openRequested = Signal()  # noqa: N815
@@ -56,7 +56,7 @@ class SourceControls(QWidget):
         self.summary, self.findings = remark(), remark()
         self.forms = {key: SettingsForm(_without_degree(model.Settings)) for key, model in MODELS.items()}
         self._forms = QStackedWidget()
-        self._dress()
+        self._configure()
         self._place()
         self.source.currentIndexChanged.connect(lambda _: self.sourceChanged.emit(self.source.currentData()))
         self.model.currentIndexChanged.connect(lambda _: self._show_model())
@@ -65,7 +65,7 @@ class SourceControls(QWidget):
         self._show_model()
 
     def set_sources(self, sources: Mapping[str, str]) -> None:
-        """What can be chosen, by key; the choice stays if it is still there."""
+        """Set the sources by key; the selection stays if possible."""
         chosen = self.source.currentData()
         with QSignalBlocker(self.source):
             self.source.clear()
@@ -76,18 +76,18 @@ class SourceControls(QWidget):
             self.sourceChanged.emit(self.source.currentData())
 
     def choose_source(self, key: str) -> None:
-        """Choose another source."""
+        """Select another source."""
         self.source.setCurrentIndex(max(0, self.source.findData(key)))
 
-    def show_kind(self, brings_model: str, longest: int, words: str) -> None:
-        """Say what the source is.
+    def show_kind(self, brings_model: str, max_degree: int, words: str) -> None:
+        """Describe the source.
 
         Parameters
         ----------
         brings_model
             Key of the model that a card or file brings; empty for a sample, to which any can be fitted.
-        longest
-            Highest degree that it has.
+        max_degree
+            Highest degree of the source.
         words
             A sentence.
         """
@@ -99,11 +99,11 @@ class SourceControls(QWidget):
             self.model.setCurrentIndex(self.model.findData(brings_model))
         self.fit.setText(tr("Use the model") if brings_model else tr("Fit the model"))
         self.l_max.setEnabled(brings_model in ("", CARD_MODEL))
-        self.l_max.slider.setMaximum(longest)
-        self.l_max.field.setMaximum(longest)
+        self.l_max.slider.setMaximum(max_degree)
+        self.l_max.field.setMaximum(max_degree)
 
     def value(self) -> dict[str, Any]:
-        """Source, model, degree, half, and the settings of each model that are not at their default."""
+        """Source, model, degree, half, and the modified settings of each model."""
         return {
             "source": self.source.currentData(),
             "model": self.model.currentData(),
@@ -113,7 +113,7 @@ class SourceControls(QWidget):
         }
 
     def setValue(self, value: Mapping[str, Any]) -> None:
-        """Show other choices; names that are not known are left out."""
+        """Show other choices; unknown names are ignored."""
         if (at := self.source.findData(value.get("source"))) >= 0:
             self.source.setCurrentIndex(at)
         if (at := self.model.findData(value.get("model"))) >= 0:
@@ -130,7 +130,7 @@ class SourceControls(QWidget):
         for each, form in self.forms.items():
             form.setVisible(each == key)
 
-    def _dress(self) -> None:
+    def _configure(self) -> None:
         for key, model in MODELS.items():
             self.model.addItem(tr(model.label), key)
             self._forms.addWidget(self.forms[key])
@@ -169,7 +169,7 @@ class SourceControls(QWidget):
 
 
 class DrawControls(QWidget):
-    """How many particles are drawn, of which sizes."""
+    """Number, seed and sizes of the drawn particles."""
 
     drawRequested = Signal()  # noqa: N815
     adoptRequested = Signal()  # noqa: N815
@@ -185,7 +185,7 @@ class DrawControls(QWidget):
         self.findings = remark()
         self.names = QLineEdit()
         self._names_label = QLabel(tr("Parts"))
-        self._dress()
+        self._configure()
         self._place()
         self.names.editingFinished.connect(self._rename)
         self.limited.toggled.connect(self._limit)
@@ -196,7 +196,7 @@ class DrawControls(QWidget):
         self.show_names(())
 
     def show_names(self, names: tuple[str, ...]) -> None:
-        """Names of the parts of a mixture, or none for other models."""
+        """Set the names of the components of a mixture; none for other models."""
         self.names.setVisible(bool(names))
         self._names_label.setVisible(bool(names))
         self.names.setText(", ".join(names))
@@ -206,7 +206,7 @@ class DrawControls(QWidget):
         self.namesChanged.emit(names)
 
     def set_ready(self, *, model: bool, drawn: bool) -> None:
-        """Whether there is a model to draw from, and whether particles have been drawn."""
+        """Set whether there is a model, and whether particles have been drawn."""
         self.draw.setEnabled(model)
         self.adopt.setEnabled(drawn)
 
@@ -216,7 +216,7 @@ class DrawControls(QWidget):
         return {"n": self.number.value(), "seed": self.seed.value(), "size_range": bounds}
 
     def setValue(self, value: Mapping[str, Any]) -> None:
-        """Show other numbers."""
+        """Show other values."""
         self.number.setValue(int(value.get("n", 100)))
         self.seed.setValue(int(value.get("seed", 0)))
         bounds = value.get("size_range")
@@ -226,7 +226,7 @@ class DrawControls(QWidget):
             self.largest.setValue(float(bounds[1]))
 
     def suggest(self, smallest: float, largest: float) -> None:
-        """Fill in the sizes of the sample while they do not count."""
+        """Show the sizes of the sample while the fields are disabled."""
         if not self.limited.isChecked():
             self.smallest.setValue(smallest)
             self.largest.setValue(largest)
@@ -235,8 +235,8 @@ class DrawControls(QWidget):
         self.smallest.setEnabled(limited)
         self.largest.setEnabled(limited)
 
-    def _dress(self) -> None:
-        self.number.setRange(1, MOST_DRAWN)
+    def _configure(self) -> None:
+        self.number.setRange(1, MAX_DRAWN)
         self.number.setValue(100)
         self.number.setGroupSeparatorShown(True)
         self.seed.setRange(0, 2**31 - 1)
@@ -285,12 +285,12 @@ class DrawControls(QWidget):
 
 
 def order_from(source: Mapping[str, Any], drawing: Mapping[str, Any], brings_model: str) -> GenerationRequest:
-    """The order that the controls stand for.
+    """The request with the values of the controls.
 
     Raises
     ------
     InputError
-        If a value cannot be used.
+        If a value is invalid.
     """
     bounds = drawing["size_range"]
     if bounds is not None and not bounds[0] < bounds[1]:

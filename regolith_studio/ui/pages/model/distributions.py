@@ -1,4 +1,4 @@
-"""Distributions of a descriptor: drawn particles over measured ones."""
+"""Distributions of a descriptor, of drawn and of measured particles."""
 
 import numpy as np
 from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
@@ -24,7 +24,7 @@ _UNITS = {0: "", 1: "µm", 2: "µm²", 3: "µm³"}
 
 
 class DistributionsPanel(QWidget):
-    """The share of particles at or below each value, as two stairs."""
+    """Cumulative distributions as step functions."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -50,7 +50,7 @@ class DistributionsPanel(QWidget):
         self._show()
 
     def show_compared(self, compared: DistributionComparison | None) -> None:
-        """Draw these distributions, or none."""
+        """Draw other distributions, or none."""
         self._compared = compared if compared is not None and len(compared.drawn) else None
         self._show()
 
@@ -69,16 +69,16 @@ class DistributionsPanel(QWidget):
             return
         measured, drawn = self._compared.distributions(self.key.value(), self.weighting.value())
         theme = self.plot.theme
-        curves = [_stairs(tr("{count:,} drawn", count=len(drawn.values)), theme.fit, drawn)]
+        curves = [_step_curve(tr("{count:,} drawn", count=len(drawn.values)), theme.fit, drawn)]
         if measured is not None:
             label = tr("{count:,} measured", count=len(measured.values))
-            curves.insert(0, _stairs(label, theme.particle, measured))
+            curves.insert(0, _step_curve(label, theme.particle, measured))
         self.plot.set_curves(curves)
-        self.words.setText(distance_words(measured, drawn, unit))
+        self.words.setText(distance_text(measured, drawn, unit))
 
 
-def distance_words(measured: Distribution | None, drawn: Distribution, unit: str = "") -> str:
-    """How far apart two distributions are, of values in `unit`."""
+def distance_text(measured: Distribution | None, drawn: Distribution, unit: str = "") -> str:
+    """Distances and means of two distributions as text, with values in `unit`."""
     if measured is None:
         return tr("The source holds no measured particles.")
     places = np.union1d(measured.values, drawn.values)
@@ -94,7 +94,7 @@ def distance_words(measured: Distribution | None, drawn: Distribution, unit: str
     )
 
 
-def _stairs(label: str, colour: str, spread: Distribution) -> PlotCurve:
+def _step_curve(label: str, colour: str, spread: Distribution) -> PlotCurve:
     x = np.repeat(spread.values, 2)
     y = np.concatenate([[0.0], np.repeat(np.cumsum(spread.weights), 2)[:-1]])
     return PlotCurve(label, colour, tuple(x), tuple(100.0 * y))

@@ -1,4 +1,4 @@
-"""How near the drawn particles are to the measured ones: the ranking and the figures of a study."""
+"""Evaluation of shape models against measured particles: ranking, figures and tables of a study."""
 
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -70,21 +70,21 @@ TIPS = (
     mark("Draws thrown away"),
 )
 NUMBERS = Qt.AlignmentFlag.AlignCenter
-LEGIBLE = 0.55
-"""Scale of the figures below which their panels are scrolled instead of shrunk."""
+MIN_FIGURE_SCALE = 0.55
+"""Scale below which figures are scrolled instead of shrunk."""
 MIN_PICTURE_HEIGHT = 80
 """Pixels."""
 
 
 class PictureLabel(QWidget):
-    """Displays PNG data scaled to the available size, or a placeholder text.
+    """Shows PNG data scaled to the available size, or a placeholder text.
 
     Parameters
     ----------
     placeholder
-        The sentence.
+        Text without picture.
     min_scale
-        Share of its own height below which a picture is not shrunk; for labels in a scroll area.
+        Minimum height as a share of the picture's height, for labels in a scroll area.
     """
 
     def __init__(self, placeholder: str, min_scale: float = 0.0) -> None:
@@ -97,7 +97,7 @@ class PictureLabel(QWidget):
         self.setMinimumSize(120, MIN_PICTURE_HEIGHT)
 
     def set_picture(self, content: bytes | None) -> None:
-        """Show this PNG instead, or the sentence."""
+        """Show another PNG, or the placeholder."""
         self._picture = QPixmap()
         if content:
             self._picture.loadFromData(content)
@@ -105,7 +105,7 @@ class PictureLabel(QWidget):
         self.update()
 
     def is_empty(self) -> bool:
-        """Whether the sentence is shown."""
+        """Whether the placeholder is shown."""
         return self._picture.isNull()
 
     def sizeHint(self) -> QSize:
@@ -127,7 +127,7 @@ class PictureLabel(QWidget):
 
 
 class EvaluationPanel(QWidget):
-    """Starts a study, and shows what came of it so far."""
+    """Starts a study and shows its results so far."""
 
     startRequested = Signal()  # noqa: N815
     cancelRequested = Signal(int)  # noqa: N815
@@ -139,7 +139,7 @@ class EvaluationPanel(QWidget):
         self.splits, self.repeats = QSpinBox(), QSpinBox()
         self.ranking = QTableWidget(0, len(HEADERS))
         self.notes = remark()
-        self.pictures = {name: PictureLabel(tr(WAITING), LEGIBLE) for name in FIGURES}
+        self.pictures = {name: PictureLabel(tr(WAITING), MIN_FIGURE_SCALE) for name in FIGURES}
         self.places = {name: _scrolled(label) for name, label in self.pictures.items()}
         self.tabs = tabs("model_figures", [(self._ranked(), tr("Ranking"))])
         self.tables = {
@@ -164,18 +164,18 @@ class EvaluationPanel(QWidget):
         self.set_ready("")
 
     def set_ready(self, why_not: str) -> None:
-        """Whether there are measured particles to judge by; a sentence says why not."""
+        """Enable the start, or show why there are no measured particles."""
         self.frame.start.setText(tr("Judge"))
         self.frame.start.setEnabled(not why_not)
         self.frame.set_remark(why_not)
 
     def show_task(self, task: Task | None) -> None:
-        """Show how far a study is, that it is being stopped, or that none runs."""
+        """Show the progress of a study, that it is being stopped, or that none is running."""
         self.frame.show_task(task)
         self._show_stopping(task is not None and task.id == self._stopped)
 
     def _stop(self, number: int) -> None:
-        """Answer at once: processes that have just been started may take a few seconds to end."""
+        """Show the request at once, as starting processes take seconds to end."""
         self._stopped = number
         self._show_stopping(True)
         self.cancelRequested.emit(number)
@@ -185,7 +185,7 @@ class EvaluationPanel(QWidget):
         self.frame.stop.setText(tr("Stopping …") if stopping else self._stop_words)
 
     def value(self) -> dict[str, Any]:
-        """All models or only the chosen one, splits, and drawings from each fit."""
+        """All models or only the selected one, number of splits, and draws from each fit."""
         return {
             "all_models": self.all_models.isChecked(),
             "splits": self.splits.value(),
@@ -199,7 +199,7 @@ class EvaluationPanel(QWidget):
         self.repeats.setValue(int(value.get("repeats", 1)))
 
     def show_judged(self, judged: ModelEvaluationResult | None) -> None:
-        """Show a study, finished or not, or nothing."""
+        """Show a study, complete or not, or nothing."""
         for name, label in self.pictures.items():
             label.set_picture(judged.pictures.get(name) if judged else None)
             at = self.tabs.indexOf(self.places[name])

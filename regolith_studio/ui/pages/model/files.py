@@ -1,4 +1,4 @@
-"""Asking where to write a model or a card, and writing it."""
+"""Saving a model or a material card."""
 
 import re
 from pathlib import Path
@@ -17,7 +17,7 @@ from regolith_studio.ui.widgets.toast import Toast
 MODELS, CARDS = mark("Models (*.json)"), mark("Cards (*.json)")
 
 
-def ask_model(parent: QWidget, toast: Toast, model: FittedModel, source: ShapeSource) -> None:
+def save_model(parent: QWidget, toast: Toast, model: FittedModel, source: ShapeSource) -> None:
     """Ask for a name and write ``<name>.json`` and ``<name>.npz``."""
     name, _ = QFileDialog.getSaveFileName(parent, tr("Save the model"), "model.json", tr(MODELS))
     if not name:
@@ -31,7 +31,7 @@ def ask_model(parent: QWidget, toast: Toast, model: FittedModel, source: ShapeSo
     toast.note(tr("Saved {first} and {second}.", first=paths[0].name, second=paths[1].name))
 
 
-def ask_card(parent: QWidget, toast: Toast, sample: Sample, source: ShapeSource) -> None:
+def save_card(parent: QWidget, toast: Toast, sample: Sample, source: ShapeSource) -> None:
     """Ask for a name and write the card of a sample; the file's name becomes that of the material."""
     name, _ = QFileDialog.getSaveFileName(parent, tr("Save a material card"), "material.json", tr(CARDS))
     if not name:

@@ -1,4 +1,4 @@
-"""Controls on the left; spectrum and drawn particle above, gallery and evaluation below."""
+"""Page "Shape model": controls, spectrum with a drawn particle, gallery and evaluation."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -33,7 +33,7 @@ from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.model.controls import DrawControls, SourceControls, order_from
 from regolith_studio.ui.pages.model.distributions import DistributionsPanel
 from regolith_studio.ui.pages.model.evaluation_panel import EvaluationPanel
-from regolith_studio.ui.pages.model.files import ask_card, ask_model
+from regolith_studio.ui.pages.model.files import save_card, save_model
 from regolith_studio.ui.pages.model.source_box import SourceBox, usual_sizes
 from regolith_studio.ui.pages.model.views import LiveShape, ShapeGallery
 from regolith_studio.ui.theme import Theme, current_theme
@@ -44,13 +44,13 @@ from regolith_studio.ui.widgets.labels import rich_symbol
 SOURCE_FILTER = mark("Fits, models and material cards (*.json *.npz);;All files (*)")
 DRAWN = mark("A drawn particle")
 POPULATION_LEVEL = 4
-MOST_ADOPTED = 2000
-"""Particles that are opened at most: each becomes a mesh in memory."""
+MAX_ADOPTED = 2000
+"""Maximum number of drawn particles that are opened, as each becomes a mesh in memory."""
 JUDGE = "judge"
 
 
 class ModelPage(PageWidget):
-    """Asks jobs for models, particles and evaluations, and shows them."""
+    """Starts jobs for models, particles and evaluations, and shows their results."""
 
     def __init__(self, context: PageContext) -> None:
         super().__init__()
@@ -119,20 +119,20 @@ class ModelPage(PageWidget):
     # --- commands ------------------------------------------------------------------------------
 
     def open_source(self) -> None:
-        """Ask for a fit, model or card and choose it."""
+        """Ask for a fit, model or card and select it."""
         name, _ = QFileDialog.getOpenFileName(self, tr("Open a fit, model or card"), "", tr(SOURCE_FILTER))
         if name:
             self.add_source(Path(name))
 
     def add_source(self, path: Path) -> None:
-        """Choose a fit, model or card in a file."""
+        """Select a fit, model or card in a file."""
         self._try(lambda: self._add(read_shape_source(str(path))))
 
     def open_path(self, path: Path) -> None:
         self.add_source(path)
 
     def fit_model(self) -> None:
-        """Fit the chosen model to the chosen sample, or take what the source brings."""
+        """Fit the selected model to the selected sample, or take the model of the source."""
         self._try(self._fit)
 
     def draw(self) -> None:
@@ -140,30 +140,30 @@ class ModelPage(PageWidget):
         self._try(self._draw)
 
     def another(self) -> None:
-        """Show another particle of the model."""
+        """Show another particle of the model, with the next seed."""
         if self._model is None:
             self._context.toast.problem(tr("There is no model to draw from: fit one first."))
             return
         self._live_seed += 1
-        self._ask_live(again=True)
+        self._request_live(again=True)
 
     def judge(self) -> None:
-        """Judge the chosen model, or all."""
+        """Evaluate the selected model, or all."""
         self._try(self._judge)
 
     def adopt(self) -> None:
-        """Open the drawn particles: they replace those that are open, and are coarsened and exported."""
+        """Replace the open particles by the drawn ones."""
         if self._drawn is None or self._fitted is None:
             self._context.toast.problem(tr("There are no drawn particles yet: draw some first."))
             return
         draws = self._drawn.draws
-        if len(draws) > MOST_ADOPTED:
+        if len(draws) > MAX_ADOPTED:
             self._context.toast.problem(
                 tr(
                     "{count:,} particles are too many to open; at most {most:,}. For more use: "
                     "regolith-studio generate.",
                     count=len(draws),
-                    most=MOST_ADOPTED,
+                    most=MAX_ADOPTED,
                 )
             )
             return
@@ -178,7 +178,7 @@ class ModelPage(PageWidget):
         if self._model is None or self._fitted is None:
             self._context.toast.problem(tr("There is no model to save: fit one first."))
             return
-        ask_model(self, self._context.toast, self._model, self._fitted.source)
+        save_model(self, self._context.toast, self._model, self._fitted.source)
 
     def save_card(self) -> None:
         """Ask for a file and write a card of the sample."""
@@ -186,7 +186,7 @@ class ModelPage(PageWidget):
         if sample is None or self._fitted is None:
             self._context.toast.problem(tr("A card is made of a fitted sample: fit a model to one first."))
             return
-        ask_card(self, self._context.toast, sample, self._fitted.source)
+        save_card(self, self._context.toast, sample, self._fitted.source)
 
     # --- work ----------------------------------------------------------------------------------
 
@@ -229,7 +229,7 @@ class ModelPage(PageWidget):
         self.live.spectrum.setValue(relative_amplitudes(model), editable=can_be_edited(model))
         self._live_seed = 0
         if fitted.first is None:
-            self._ask_live()  # and say why there is none
+            self._request_live()  # which shows why there is none
         else:
             self._show_live(fitted, fitted.first, again=True)
         self.gallery.show_shapes(fitted.examples, ())
@@ -258,7 +258,7 @@ class ModelPage(PageWidget):
         self._context.start(tr("Comparing distributions"), job, show, lane="compare")
         self._show_state()
 
-    def _ask_live(self, again: bool = False) -> None:
+    def _request_live(self, again: bool = False) -> None:
         """Draw the particle of the present model and seed."""
         fitted = self._fitted
         if self._model is None or fitted is None:
@@ -279,7 +279,7 @@ class ModelPage(PageWidget):
         if self._fitted is not None and can_be_edited(self._fitted.model):
             changed = self.live.spectrum.is_changed()
             self._model = with_amplitudes(self._fitted.model, amplitudes) if changed else self._fitted.model
-            self._ask_live()
+            self._request_live()
 
     def _rename(self, names: tuple[str, ...]) -> None:
         model: Any = self._model
@@ -304,7 +304,7 @@ class ModelPage(PageWidget):
 
     def _show_source(self) -> None:
         kind = self._sources.kind(self.source.value()["source"])
-        self.source.show_kind(kind.brings_model, kind.longest, kind.words)
+        self.source.show_kind(kind.brings_model, kind.max_degree, kind.words)
         self._show_state()
 
     def _show_state(self) -> None:

@@ -1,4 +1,4 @@
-"""What the page can draw from: the open particles, the shipped materials, files that were opened."""
+"""Sources of a shape model: the open particles, shipped materials, opened files."""
 
 from dataclasses import dataclass
 from math import exp
@@ -15,25 +15,25 @@ from regolith_studio.ui.translation import tr
 from regolith_studio.ui.translation.sentences import retold
 
 OPEN_PARTICLES = "open"
-"""Key of the particles that are open in the window."""
+"""Key of the open particles."""
 
 
 @dataclass(frozen=True)
 class SourceKind:
-    """What the controls have to know of a source.
+    """Description of a source for the controls.
 
     Parameters
     ----------
     brings_model
         Key of the model that comes with it; empty for measured particles.
-    longest
+    max_degree
         Highest degree.
     words
         One sentence.
     """
 
     brings_model: str
-    longest: int
+    max_degree: int
     words: str
 
 
@@ -45,21 +45,21 @@ class SourceBox:
         self._files: dict[str, ShapeSource] = {}
 
     def add(self, source: ShapeSource) -> str:
-        """Keep what a file held; returns its key."""
+        """Add the content of a file; returns its key."""
         known = {each.sha256: key for key, each in self._files.items()}
         key = known.get(source.sha256, f"file:{len(self._files) + 1}")
         self._files[key] = source
         return key
 
     def labels(self) -> dict[str, str]:
-        """What to show for each key."""
+        """Label of each key."""
         count = len(self._session.particles)
         found = {OPEN_PARTICLES: tr("Open particles ({count})", count=count)}
         found |= {key: source.name for key, source in self._files.items()}
         return found | {name: tr(card.label) for name, card in materials().items()}
 
     def kind(self, key: str) -> SourceKind:
-        """What a source is."""
+        """The source of a key."""
         if key == OPEN_PARTICLES:
             return SourceKind("", FIT_DEGREE, tr("They are expanded in spherical harmonics first."))
         content = self._files[key].content if key in self._files else materials()[key]
@@ -74,7 +74,7 @@ class SourceBox:
                 return SourceKind(content.key, content.l_max, words)
 
     def origin(self, key: str) -> ModelOrigin:
-        """What a job is given.
+        """The source as a job takes it.
 
         Raises
         ------
@@ -90,13 +90,13 @@ class SourceBox:
 
 
 def _inside(label: str) -> str:
-    """A label inside a sentence: English ones begin small there, other languages know better."""
+    """A label within a sentence: lower case in English, unchanged in other languages."""
     words = tr(label)
     return label.lower() if words == label else words
 
 
 def usual_sizes(source: ShapeSource) -> tuple[float, float] | None:
-    """Smallest and largest equivalent radius of the particles, or two deviations about a card's median."""
+    """Range of equivalent radii: of the particles, or two standard deviations about a card's median."""
     match source.content:
         case Sample():
             radii = source.content.equivalent_radii

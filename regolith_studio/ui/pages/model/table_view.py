@@ -1,4 +1,4 @@
-"""A table of a study, to be read."""
+"""A read-only table of a study."""
 
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QTableWidget, QTableWidgetItem
@@ -24,12 +24,12 @@ WORDS = {
     "kolmogorov_smirnov_in_floors": mark("KS / floor"),
     "energy_distance": mark("Energy distance"),
 }
-"""Short headers; the long ones stand in their tips."""
+"""Short headers; tool tips have the long ones."""
 OTHER_WORDS = (
     *(mark("Model"), mark("Weighting"), mark("Descriptor"), mark("First"), mark("Second")),
     *(mark("Target"), mark("Value"), mark("Wanted"), mark("Reached")),
 )
-"""Headers that are the names of their columns."""
+"""Headers that equal the names of their columns, marked for translation."""
 TIPS = (
     *(mark("model"), mark("weighting"), mark("descriptor"), mark("first"), mark("second")),
     *(mark("target"), mark("value"), mark("wanted"), mark("reached")),
@@ -39,11 +39,11 @@ TIPS = (
     *(mark("kolmogorov smirnov floor"), mark("wasserstein in floors")),
     *(mark("kolmogorov smirnov in floors"), mark("energy distance")),
 )
-"""Names of all columns."""
+"""Names of all columns, marked for translation."""
 
 
 class StudyTableView(QTableWidget):
-    """Shows a :class:`~regolith_studio.io.tables.Table`; keys of models and descriptors become words."""
+    """Shows a :class:`~regolith_studio.io.tables.Table` with labels for keys of models and descriptors."""
 
     def __init__(self, name: str, spoken: str) -> None:
         super().__init__()

@@ -1,4 +1,4 @@
-"""The drawn particle that follows the spectrum, and the gallery of drawn against measured particles."""
+"""The particle drawn from the edited spectrum, and a gallery of measured and drawn particles."""
 
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout, QWidget
@@ -17,7 +17,7 @@ NO_MODEL = mark("The spectrum appears when a model is fitted.")
 
 
 class LiveShape(QWidget):
-    """Spectrum on the left, one drawn particle in a view on the right."""
+    """Spectrum editor and a view of one drawn particle."""
 
     def __init__(self, view: SceneView) -> None:
         super().__init__()
@@ -43,14 +43,14 @@ class LiveShape(QWidget):
         self.show_mesh(None)
 
     def show_mesh(self, mesh: Mesh | None, detail: str = "", again: bool = False) -> None:
-        """Show one drawn particle.
+        """Show a drawn particle.
 
         Parameters
         ----------
         detail
-            The quiet line above it.
+            Second line of the view's title.
         again
-            Frame it anew: it is another particle, not the same one changed.
+            Whether to fit the view, because it is another particle.
         """
         self.another.setEnabled(mesh is not None)
         self.reset.setEnabled(self.spectrum.is_changed())
@@ -74,7 +74,7 @@ class LiveShape(QWidget):
 
 
 class ShapeGallery(QWidget):
-    """Measured particles above, drawn ones below."""
+    """Measured particles above drawn ones."""
 
     def __init__(self, view: SceneView) -> None:
         super().__init__()
@@ -86,7 +86,7 @@ class ShapeGallery(QWidget):
         self.show_shapes((), ())
 
     def show_shapes(self, measured: tuple[Mesh, ...], drawn: tuple[Mesh, ...]) -> None:
-        """Show both rows to one scale."""
+        """Show both rows at the same scale."""
         words = {
             (True, True): tr("measured above, drawn below"),
             (True, False): tr("measured; draw particles to compare"),

@@ -1,4 +1,4 @@
-"""The table of engines: what each represents, and what not."""
+"""Table of the DEM engines and their capabilities."""
 
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QTableWidget, QTableWidgetItem
@@ -8,7 +8,7 @@ from regolith_studio.ui.translation import tr
 
 
 class EnginePanel(QTableWidget):
-    """One column an engine, one row a property."""
+    """A column per engine, a row per property."""
 
     def __init__(self) -> None:
         rows = engine_rows()

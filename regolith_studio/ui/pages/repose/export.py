@@ -1,4 +1,4 @@
-"""Files of the page: Fig. 9 and JSON out, positions of other programs in."""
+"""Writing Fig. 9 with the measurement, and reading positions of other programs."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Set-up on the left; particles above; sections, runs and engines below."""
+"""Page "Angle of repose": set-up, player, sections, runs, study and engines."""
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -32,19 +32,19 @@ from regolith_studio.ui.pages.repose.section_plot import SectionPlot
 from regolith_studio.ui.pages.repose.setup import SetupPanel
 from regolith_studio.ui.pages.repose.study import StudyPanel
 from regolith_studio.ui.pages.repose.study_controller import ReposeStudyController
-from regolith_studio.ui.pages.repose.texts import angle_in_words, checks_in_words, duration
+from regolith_studio.ui.pages.repose.texts import angle_text, checks_text, duration_text
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import remark
 
 PREVIEW_DELAY = 250
-"""Milliseconds after the last change until the preview is drawn anew."""
-MOST_PREVIEWED = 20_000
+"""Milliseconds from the last change to the preview."""
+MAX_PREVIEWED = 20_000
 RUN, PREVIEW, MEASURE, BUILD = "run", "preview", "measure", "build"
 
 
 class ReposePage(PageWidget):
-    """Knows which pile is on screen; leaves the work to jobs."""
+    """Places the panels and starts the jobs; keeps the current pile and its measurement."""
 
     def __init__(self, context: PageContext) -> None:
         super().__init__()
@@ -70,7 +70,7 @@ class ReposePage(PageWidget):
         self._place()
         self._connect()
         self._context.wiring.refresh("dataset_folder", self._take_dataset)
-        self.setup.tell([tr("Open a dataset, or make one from the open particles.")])
+        self.setup.show_consequences([tr("Open a dataset, or make one from the open particles.")])
         self._list_runs()
 
     # --- the page of the window ----------------------------------------------------------------
@@ -84,7 +84,7 @@ class ReposePage(PageWidget):
             "open_dataset": self.open_dataset,
             "run_test": self.run_test,
             "start_study": self.start_study,
-            "play": lambda: self.player.play_or_tell(self._context.toast.problem),
+            "play": lambda: self.player.play_or_report(self._context.toast.problem),
             "open_positions": self.open_positions,
             "export_run": self.export_run,
             "choose_folder": self.choose_folder,
@@ -121,7 +121,7 @@ class ReposePage(PageWidget):
             self.setup.set_dataset(Path(name))
 
     def make_dataset(self) -> None:
-        """Coarsen the open particles as the choices say, into the folder of runs."""
+        """Build a dataset of the open particles in the folder of runs."""
         session = self._context.session
         particles = [entry.particle for entry in session.particles]
         if not particles:
@@ -135,7 +135,7 @@ class ReposePage(PageWidget):
         )
 
     def run_test(self) -> None:
-        """Simulate what the panel says."""
+        """Simulate the case of the set-up panel."""
         dataset = self.setup.dataset
         if dataset is None:
             self._context.toast.problem(tr("There is no dataset yet: open one, or make one first."))
@@ -160,11 +160,11 @@ class ReposePage(PageWidget):
         )
 
     def start_study(self) -> None:
-        """Run what the panel of studies says, or go on with it."""
+        """Start or resume the study."""
         self.studies.start(self._folder)
 
     def open_positions(self) -> None:
-        """Measure the pile of another program, from a file of positions."""
+        """Measure the pile of another program from a file of positions."""
         pile = read_other(self, self._context.toast)
         if pile is not None:
             ball = (self.player_ball(),)
@@ -182,19 +182,19 @@ class ReposePage(PageWidget):
         export_measurement(self, self._context.toast, self._pile, self._measured)
 
     def choose_folder(self) -> None:
-        """Ask where runs are kept."""
+        """Ask for the folder of runs."""
         if name := FolderDialog.ask(self, tr("Folder of runs"), str(self._folder)):
             self.set_runs_folder(Path(name))
 
     def set_runs_folder(self, folder: Path) -> None:
-        """Keep runs there, and show what is there."""
+        """Set the folder of runs and list its runs."""
         self._folder = folder
         self._context.remember("folder", str(folder))
         self._list_runs()
 
     @staticmethod
     def player_ball() -> Any:
-        """A shape for particles of which only the size is known."""
+        """A sphere-like shape for particles of which only the size is known."""
         from regolith_studio.geometry.sphere_points import icosphere
 
         return icosphere(1).vertices
@@ -217,14 +217,14 @@ class ReposePage(PageWidget):
         try:
             order = self.setup.order()
         except RegolithError as error:
-            self.setup.tell([], str(error))
+            self.setup.show_consequences([], str(error))
             return
-        if order.case.n_particles > MOST_PREVIEWED:
+        if order.case.n_particles > MAX_PREVIEWED:
             words = tr(
                 "More than {count:,} particles are for other programs: export the dataset.",
-                count=MOST_PREVIEWED,
+                count=MAX_PREVIEWED,
             )
-            self.setup.tell([words])
+            self.setup.show_consequences([words])
             return
 
         def show(drawn: tuple[Prepared, Pile]) -> None:
@@ -235,14 +235,14 @@ class ReposePage(PageWidget):
             tr("Drawing particles"),
             job,
             show,
-            failed=lambda each: self.setup.tell([], each.sentence),
+            failed=lambda each: self.setup.show_consequences([], each.sentence),
             lane=PREVIEW,
         )
 
     def _show_preview(self, order: Any, prepared: Prepared, pile: Pile) -> None:
         seconds = engine_named(order.engine).seconds(prepared, order.settings)
-        time = tr("About {time} on one core.", time=duration(seconds))
-        self.setup.tell([time, *consequences(prepared).sentences])
+        time = tr("About {time} on one core.", time=duration_text(seconds))
+        self.setup.show_consequences([time, *consequences(prepared).sentences])
         self.player.set_scene(prepared.shapes, order.case.shapes == "spheres", order.case.test)
         self.player.show_moment(
             pile,
@@ -296,7 +296,7 @@ class ReposePage(PageWidget):
             final = run.folder / FINAL
             self.player.set_scene(shapes, case["shapes"] == "spheres", test)
             self.player.show_run(
-                [*files, final] if final.exists() else files, run.folder.name, checks_in_words(run)
+                [*files, final] if final.exists() else files, run.folder.name, checks_text(run)
             )
             pile = read_pile(final) if final.exists() else None
         except (RegolithError, TypeError) as error:
@@ -331,7 +331,7 @@ class ReposePage(PageWidget):
                 plot.show_nothing(str(measured))
             return
         self._measured = measured
-        self.verdict.setText(angle_in_words(measured))
+        self.verdict.setText(angle_text(measured))
         self.x_z.show_section(self._pile, measured.sections[0])
         self.y_z.show_section(self._pile, measured.sections[1])
 

@@ -1,4 +1,4 @@
-"""The particles in three dimensions, live or from the snapshots of a run, with a slider for the time."""
+"""3-D view of the particles, live or from the snapshots of a run, with a time slider."""
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -20,11 +20,11 @@ from regolith_studio.ui.views.factory import make_view
 from regolith_studio.ui.views.view_frame import ViewFrame
 
 FRAME = 50
-"""Milliseconds between two pictures of a replay."""
+"""Milliseconds between two frames of a replay."""
 
 
 class RunPlayer(QWidget):
-    """Shows piles; never asks where they come from."""
+    """Shows piles and replays runs."""
 
     def __init__(self, views: str) -> None:
         super().__init__()
@@ -79,26 +79,26 @@ class RunPlayer(QWidget):
             self.frame.view.set_pose(framing_pose(corners, "isometric", aspect, 0.95))
 
     def show_moment(self, pile: Pile, title: str, detail: str = "") -> None:
-        """One moment that is not in a file: a preview, or what a simulation has just said."""
+        """Show a state that is not in a file: a preview, or the latest of a running simulation."""
         self.stop()
         self._set_files([])
         self.frame.set_texts(title, detail)
         self._show(pile)
 
     def show_run(self, files: Sequence[Path], title: str, detail: str = "") -> None:
-        """Snapshots to look through; the last one is shown."""
+        """Set the snapshots of a run and show the last one."""
         self.stop()
         self.frame.set_texts(title, detail)
         self._set_files(list(files))
         if files:
             self._show_file(len(files) - 1)
 
-    def play_or_tell(self, tell: Callable[[str], object]) -> None:
-        """Play or pause; say so where there is no run."""
+    def play_or_report(self, report: Callable[[str], object]) -> None:
+        """Play or pause, or report that there is no run."""
         if self._files:
             self.toggle()
         else:
-            tell(tr("There is no run to play: make one, or choose one of the list."))
+            report(tr("There is no run to play: make one, or choose one of the list."))
 
     def toggle(self) -> None:
         """Play from the beginning, or from here, or pause."""
@@ -116,7 +116,7 @@ class RunPlayer(QWidget):
         self.button.setText(tr("Play"))
 
     def release(self) -> None:
-        """Give the graphics memory back."""
+        """Release graphics memory."""
         self.stop()
         self.frame.view.release()
 

@@ -1,4 +1,4 @@
-"""The table of runs, and their angles against what differs between them."""
+"""Table of the runs, and a plot of their angles against a varied parameter."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -32,7 +32,7 @@ AGAINST: Mapping[str, tuple[str, ...]] = {
     mark("Seed"): ("case", "seed"),
 }
 SHAPES = (mark("polyhedra"), mark("spheres"))
-"""What runs are told apart by."""
+"""Parameters that distinguish runs."""
 HEADINGS = (
     mark("Run"),
     mark("Angle"),
@@ -48,7 +48,7 @@ HEADINGS = (
 
 
 class RunsPanel(QWidget):
-    """Chooses one run; shows all of them."""
+    """Lists the runs and selects one."""
 
     chosen = Signal(object)
 
@@ -90,7 +90,7 @@ class RunsPanel(QWidget):
         self.plot.set_theme(theme)
 
     def set_runs(self, runs: Sequence[RunSummary], chosen: Path | None = None) -> None:
-        """Show these runs, one of them chosen; announces nothing."""
+        """List other runs and select one, without emitting a signal."""
         self._runs = list(runs)
         with QSignalBlocker(self.table):
             self.table.setRowCount(len(runs))
@@ -106,7 +106,7 @@ class RunsPanel(QWidget):
         self._compare()
 
     def current(self) -> RunSummary | None:
-        """The chosen run."""
+        """The selected run."""
         rows = self.table.selectionModel().selectedRows()
         return self._runs[rows[0].row()] if rows else None
 
@@ -161,11 +161,11 @@ def _cells(run: RunSummary) -> tuple[str, ...]:
 
 
 def _explained(run: RunSummary) -> str:
-    """Why there is no angle, or what the checks say."""
+    """Why there is no angle, and the problems of the checks."""
     measurement = run.document.get("measurement") or {}
     checks = run.document.get("checks") or {}
-    said = [run.document.get("problem"), measurement.get("reason"), *checks.get("problems", ())]
-    return "\n".join(each for each in said if each)
+    problems = [run.document.get("problem"), measurement.get("reason"), *checks.get("problems", ())]
+    return "\n".join(each for each in problems if each)
 
 
 def _at(document: Mapping[str, Any], path: tuple[str, ...]) -> Any:

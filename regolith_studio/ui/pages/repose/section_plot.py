@@ -1,4 +1,4 @@
-"""One section of Fig. 9, with cuts that can be dragged."""
+"""A section of the pile as in Fig. 9, with draggable limits of the regression."""
 
 import numpy as np
 import pyqtgraph as pg
@@ -13,17 +13,17 @@ from regolith_studio.ui.widgets.plots.base import Numbers, Plot
 
 MILLIMETRE = 1e3
 LEFT, RIGHT, BOTH = "#0072b2", "#e69f00", "#009e73"
-"""Left flank, right flank, symmetric model, as in the paper's figure."""
-REACH = 12.0
-"""Pixels from a surface point at which it is still told."""
+"""Colours of left flank, right flank and symmetric model, as in the paper's figure."""
+HOVER_DISTANCE = 12.0
+"""Pixels from a surface point within which the tool tip describes it."""
 LEFT_SIDE = mark("left flank: {z:.3g} mm, {angle:.1f}°")
 RIGHT_SIDE = mark("right flank: {z:.3g} mm, {angle:.1f}°")
 
 
 class SectionPlot(Plot):
-    """Projected particles, surface points in the regression range, both models.
+    """Projected particles, surface points used in the regression, and both models.
 
-    ``cutDragged`` says which cut (``low`` or ``high``) the user has let go at which share of the height.
+    ``cutDragged`` carries the cut (``low`` or ``high``) that the user has moved and its share of the height.
     """
 
     cutDragged = Signal(str, float)  # noqa: N815
@@ -39,7 +39,7 @@ class SectionPlot(Plot):
 
     @property
     def section(self) -> Section | None:
-        """What is shown."""
+        """The section."""
         return self._section
 
     def cut(self, name: str) -> pg.InfiniteLine:
@@ -61,19 +61,19 @@ class SectionPlot(Plot):
         self.redraw()
 
     def show_nothing(self, sentence: str) -> None:
-        """Say why there is no section."""
+        """Show why there is no section."""
         self._pile = self._section = self._discs = None
         self.set_empty(True, sentence)
         self.redraw()
 
     def value_at(self, place: QPointF) -> str:
-        """The surface point that is nearest, the models below or above it; a grain elsewhere in the pile."""
+        """The nearest surface point with both models, or the particle at a position."""
         if self._pile is None or self._section is None:
             return ""
         here = self.canvas.getViewBox().mapSceneToView(place)
         u, z = here.x() / MILLIMETRE, here.y() / MILLIMETRE
-        reach = REACH / MILLIMETRE * self.canvas.getViewBox().viewPixelSize()[0]
-        return surface_words(self._section, u, z, reach) or grain_words(self._discs, u, z)
+        reach = HOVER_DISTANCE / MILLIMETRE * self.canvas.getViewBox().viewPixelSize()[0]
+        return surface_text(self._section, u, z, reach) or particle_text(self._discs, u, z)
 
     def numbers(self) -> Numbers:
         if self._section is None:
@@ -89,7 +89,7 @@ class SectionPlot(Plot):
         self._items, self._cuts = [], {}
         if self._pile is None or self._section is None:
             return
-        self._draw_grains(self._pile, self._section)
+        self._draw_particles(self._pile, self._section)
         self._draw_models(self._section)
         self._draw_cuts(self._section)
         reach, top = framed(self._section)
@@ -98,7 +98,7 @@ class SectionPlot(Plot):
             xRange=(-MILLIMETRE * reach, MILLIMETRE * reach), yRange=(0.0, MILLIMETRE * top), padding=0.02
         )
 
-    def _draw_grains(self, pile: Pile, section: Section) -> None:
+    def _draw_particles(self, pile: Pile, section: Section) -> None:
         discs = self._discs = project(pile.points, pile.diameters, 0.0, np.radians(section.azimuth))
         grains = pg.ScatterPlotItem(
             x=MILLIMETRE * discs.u,
@@ -153,8 +153,8 @@ class SectionPlot(Plot):
         self._items.append(item)
 
 
-def surface_words(section: Section, u: float, z: float, reach: float) -> str:
-    """The point of the surface within `reach` (metres) of a place, and where the models are there."""
+def surface_text(section: Section, u: float, z: float, reach: float) -> str:
+    """Describe the surface point within `reach` (metres) of a position, and the models there."""
     profile = section.profile
     away = np.hypot(profile.u - u, profile.height - z)
     if not np.isfinite(away).any() or np.nanmin(away) > reach:
@@ -180,8 +180,8 @@ def surface_words(section: Section, u: float, z: float, reach: float) -> str:
     )
 
 
-def grain_words(discs: Discs | None, u: float, z: float) -> str:
-    """The grain that a place is on, the smallest if there are several; the plane's own place elsewhere."""
+def particle_text(discs: Discs | None, u: float, z: float) -> str:
+    """Describe the particle at a position, the smallest if there are several; empty elsewhere."""
     if discs is None:
         return ""
     over = np.flatnonzero(np.hypot(discs.u - u, discs.z - z) <= discs.radius)

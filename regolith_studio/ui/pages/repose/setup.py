@@ -1,4 +1,4 @@
-"""What is simulated: dataset, number of particles, Tables 1 and 2, engine, evaluation."""
+"""Set-up of a simulation: dataset, number of particles, Tables 1 and 2, engine, evaluation."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -37,12 +37,12 @@ COHESION = {
     mark("Scaled with the size (experimental)"): "scaled",
 }
 
-LINES, MOST_LINES = 6, 11
-"""Of what the choices lead to, that are seen without scrolling: in low windows, and in high ones."""
+LINES, MAX_LINES = 6, 11
+"""Visible lines of the consequences, in low and in high windows."""
 
 
 class SetupPanel(QWidget):
-    """Edits one order."""
+    """Edits the request of a simulation."""
 
     valueChanged = Signal()  # noqa: N815
     evaluationChanged = Signal()  # noqa: N815
@@ -85,8 +85,8 @@ class SetupPanel(QWidget):
         self.contact = PresetForm(ContactParameters, "contact", tr("Table 1 of the paper"))
         self.evaluation = SettingsForm(EvaluationSettings)
         self._numerics = {key: SettingsForm(engine.Settings) for key, engine in ENGINES.items()}
-        self.told = remark()
-        self.told.setObjectName("repose_consequences")
+        self.consequences = remark()
+        self.consequences.setObjectName("repose_consequences")
         self.problem = remark(role="warning")
         self.problem.hide()
         self.run = _button(tr("Run the test"), "repose_run", tr("Fill, lift, measure"))
@@ -96,27 +96,27 @@ class SetupPanel(QWidget):
 
     @property
     def numerics(self) -> SettingsForm:
-        """The settings of the chosen engine."""
+        """The settings of the selected engine."""
         return self._numerics[self.engine.currentData()]
 
     @property
     def dataset(self) -> Path | None:
-        """The chosen dataset folder."""
+        """The selected dataset folder."""
         return self._dataset
 
     def set_dataset(self, folder: Path | None) -> None:
-        """Choose a dataset."""
+        """Select a dataset folder."""
         self._dataset = folder
         self.dataset_label.setText(str(folder) if folder else tr("No dataset yet"))
         self.valueChanged.emit()
 
     def order(self) -> ReposeRequest:
-        """What the panel says.
+        """The request with the values of the panel.
 
         Raises
         ------
         InputError
-            If values do not go together.
+            If values are inconsistent.
         """
         engine = engine_named(self.engine.currentData())
         case = ReposeCase(
@@ -131,29 +131,29 @@ class SetupPanel(QWidget):
         return ReposeRequest(case, engine.key, settings, self.evaluation_settings())
 
     def evaluation_settings(self) -> EvaluationSettings:
-        """How piles are measured.
+        """The settings of the evaluation.
 
         Raises
         ------
         InputError
-            If values do not go together.
+            If values are inconsistent.
         """
         return EvaluationSettings(**self.evaluation.value())  # type: ignore[arg-type]
 
     def set_evaluation(self, **changes: Any) -> None:
-        """Change settings of the evaluation, as the draggable cuts do."""
+        """Change settings of the evaluation."""
         self.evaluation.setValue(self.evaluation.value() | changes)
         self.evaluationChanged.emit()
 
-    def tell(self, sentences: list[str], problem: str = "") -> None:
-        """Show the consequences of the choices, or why they cannot be."""
-        self.told.setText("<br>".join(sentences))
+    def show_consequences(self, sentences: list[str], problem: str = "") -> None:
+        """Show the consequences of the values, or why they are invalid."""
+        self.consequences.setText("<br>".join(sentences))
         self.problem.setText(problem)
         self.problem.setVisible(bool(problem))
         self.run.setEnabled(self._dataset is not None and not problem)
 
     def state(self) -> dict[str, Any]:
-        """As plain JSON."""
+        """The values as plain JSON."""
         return {
             "particles": self.particles.value(),
             "seed": self.seed.value(),
@@ -168,7 +168,7 @@ class SetupPanel(QWidget):
         }
 
     def restore(self, state: Mapping[str, Any]) -> None:
-        """Show what :meth:`state` returned; what cannot be read is left as it is."""
+        """Show what :meth:`state` returned; invalid values are ignored."""
         try:
             self.test.restore(state.get("test", {}))
             self.contact.restore(state.get("contact", {}))
@@ -209,7 +209,7 @@ class SetupPanel(QWidget):
         form.addRow(tr("Gravity of"), self.gravity)
         column.addLayout(form)
         column.addWidget(self.run)
-        column.addWidget(FixedHeightText((self.problem, self.told), LINES, MOST_LINES))
+        column.addWidget(FixedHeightText((self.problem, self.consequences), LINES, MAX_LINES))
         column.addWidget(Collapsible(tr("Test (Table 2)"), self.test))
         column.addWidget(Collapsible(tr("Contact (Table 1)"), self.contact))
         column.addWidget(Collapsible(tr("Evaluation (section 3.3)"), self.evaluation))

@@ -1,4 +1,4 @@
-"""A study on the page: what is varied, start and stop, and a plot that grows with every run."""
+"""Panel of a study: varied parameter, start and stop, and a plot that is updated after every run."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -41,12 +41,12 @@ VARIED: Mapping[str, tuple[str, str]] = {
     "lift_speed": (mark("Lift speed [m/s]"), "0.01, 0.03, 0.1"),
     "n_particles": (mark("Number of particles"), "300, 1000, 2000"),
 }
-"""What can be varied: label, and the values that are proposed."""
+"""Parameters that can be varied: label and proposed values."""
 HEADINGS = (mark("Value"), mark("Seed"), mark("Angle"), mark("Interval"))
 
 
 class StudyPanel(QWidget):
-    """Says what is wished; shows what has become of it."""
+    """Edits the request of a study and shows its runs."""
 
     startWanted = Signal()  # noqa: N815
     stopWanted = Signal()  # noqa: N815
@@ -74,8 +74,8 @@ class StudyPanel(QWidget):
         self.stop.setObjectName("repose_study_stop")
         self.table = self._table()
         self.plot = CurvePlot(tr("Static friction"), tr("Angle [°]"), tr("Each run adds a point."))
-        self.said = remark()
-        self.said.setObjectName("repose_study_said")
+        self.status = remark()
+        self.status.setObjectName("repose_study_status")
         self._place()
         self._connect()
         self.set_running(False)
@@ -85,30 +85,30 @@ class StudyPanel(QWidget):
         self.plot.set_theme(theme)
         self._draw()
 
-    def wish(self) -> tuple[str, tuple[float | str, ...], int]:
-        """What is varied, to which values, how often.
+    def request(self) -> tuple[str, tuple[float | str, ...], int]:
+        """Varied parameter, values and number of repetitions.
 
         Raises
         ------
         InputError
-            If a value is none.
+            If a value is invalid.
         """
         key = str(self.key.currentData())
         return key, values_in(key, self.values.text()), self.repeats.value()
 
     def set_running(self, running: bool) -> None:
-        """Whether a study is going on."""
+        """Set whether a study is running."""
         self.start.setVisible(not running)
         self.stop.setVisible(running)
         for each in (self.key, self.values, self.repeats):
             each.setEnabled(not running)
 
-    def tell(self, text: str) -> None:
-        """A sentence on where the study stands."""
-        self.said.setText(text)
+    def show_status(self, text: str) -> None:
+        """Show a status text."""
+        self.status.setText(text)
 
     def show_study(self, study: ReposeStudy | None) -> None:
-        """Show these runs."""
+        """Show other runs."""
         self._study = study
         runs = study.runs if study is not None else ()
         self.table.setRowCount(len(runs))
@@ -121,7 +121,7 @@ class StudyPanel(QWidget):
         self._draw()
 
     def state(self) -> dict[str, Any]:
-        """As plain JSON."""
+        """The values as plain JSON."""
         return {
             "key": self.key.currentData(),
             "values": self.values.text(),
@@ -129,7 +129,7 @@ class StudyPanel(QWidget):
         }
 
     def restore(self, state: Mapping[str, Any]) -> None:
-        """Show what :meth:`state` returned; what is not known is left as it is."""
+        """Show what :meth:`state` returned; unknown values are ignored."""
         at = self.key.findData(state.get("key"))
         if at >= 0:
             self.key.setCurrentIndex(at)
@@ -189,7 +189,7 @@ class StudyPanel(QWidget):
         buttons.addWidget(self.stop)
         buttons.addStretch(1)
         form.addRow(buttons)
-        form.addRow(self.said)
+        form.addRow(self.status)
         left = QWidget()
         column = QVBoxLayout(left)
         column.setContentsMargins(0, 0, 0, 0)
@@ -212,7 +212,9 @@ class StudyPanel(QWidget):
         self.values.setText(VARIED[key][1])
         tip = tr("Names of presets: {names}", names=", ".join(presets())) if key == "preset" else ""
         self.values.setToolTip(tip)
-        self.tell(tr("A dataset is made of the open particles for every value.") if key in SHAPE_KEYS else "")
+        self.show_status(
+            tr("A dataset is made of the open particles for every value.") if key in SHAPE_KEYS else ""
+        )
 
     def _announce(self) -> None:
         rows = self.table.selectionModel().selectedRows()

@@ -1,4 +1,4 @@
-"""Starts and stops the study of the page, and tells its panel what becomes of it."""
+"""Starts and stops the study of the page and shows its progress in the panel."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -17,14 +17,14 @@ LANE = "study"
 
 
 class ReposeStudyController:
-    """One study at a time, in the background; what is on screen can be used meanwhile.
+    """Runs one study at a time in the background.
 
     Parameters
     ----------
     panel, setup
-        What is varied; what stays the same.
+        The varied parameter, and all others.
     show_run
-        Shows a run that was chosen in the panel.
+        Called with a run that is selected in the panel.
     """
 
     def __init__(
@@ -41,7 +41,7 @@ class ReposeStudyController:
         panel.chosen.connect(self._choose)
 
     def busy(self) -> str:
-        """What would be lost if the window closed now."""
+        """What closing the window would interrupt; empty for nothing."""
         return (
             tr("A study of the angle of repose would be stopped; it can go on later.")
             if self._running
@@ -49,22 +49,22 @@ class ReposeStudyController:
         )
 
     def start(self, runs: Path) -> None:
-        """Run what the panel says, or go on with it, in a folder of its own below `runs`."""
+        """Start or resume the study in its own folder below `runs`."""
         if self._running:
             return
         try:
-            wish = self._wish()
+            request = self._request()
         except RegolithError as error:
             self._context.toast.problem(str(error))
             return
-        name = "open-particles" if wish.dataset is None else wish.dataset.name
-        self._folder, self._running = runs / "studies" / f"{wish.key}-{name}", True
+        name = "open-particles" if request.dataset is None else request.dataset.name
+        self._folder, self._running = runs / "studies" / f"{request.key}-{name}", True
         self._panel.show_study(None)
         self._panel.set_running(True)
-        self._panel.tell(tr("Every run is kept in {folder}.", folder=self._folder))
+        self._panel.show_status(tr("Every run is kept in {folder}.", folder=self._folder))
         self._context.start(
             tr("Angle of repose: study"),
-            Job(run_repose_study, (wish, self._folder)),
+            Job(run_repose_study, (request, self._folder)),
             self._finished,
             partial=self._panel.show_study,
             failed=self._failed,
@@ -73,11 +73,11 @@ class ReposeStudyController:
         )
 
     def stop(self) -> None:
-        """Stop; starting it again goes on after what is finished."""
+        """Stop; the next start resumes the study."""
         self._context.stop(LANE)
 
-    def _wish(self) -> ReposeStudyRequest:
-        key, values, repeats = self._panel.wish()
+    def _request(self) -> ReposeStudyRequest:
+        key, values, repeats = self._panel.request()
         session, order = self._context.session, self._setup.order()
         if key not in SHAPE_KEYS:
             return ReposeStudyRequest(key, values, order, self._setup.dataset, repeats)
@@ -100,7 +100,7 @@ class ReposeStudyController:
     def _over(self, text: str) -> None:
         self._running = False
         self._panel.set_running(False)
-        self._panel.tell(text)
+        self._panel.show_status(text)
 
     def _choose(self, run: ReposeStudyRun) -> None:
         if self._folder is not None:

@@ -1,12 +1,12 @@
-"""Sentences of the page."""
+"""Texts of the page: checks of a run, durations, result."""
 
 from regolith_studio.dem.repose import ReposeMeasurement
 from regolith_studio.dem.run_folder import RunSummary
 from regolith_studio.ui.translation import tr
 
 
-def checks_in_words(run: RunSummary) -> str:
-    """What the checks of a run say, or what became of it."""
+def checks_text(run: RunSummary) -> str:
+    """Result of the checks of a run, or its problem or state."""
     checks = run.document.get("checks")
     if checks is None:
         return str(run.document.get("problem") or run.document["state"])
@@ -20,8 +20,8 @@ def checks_in_words(run: RunSummary) -> str:
     )
 
 
-def duration(seconds: float) -> str:
-    """A time as people say it."""
+def duration_text(seconds: float) -> str:
+    """A duration in seconds, minutes or hours."""
     return (
         f"{seconds:.0f} s"
         if seconds < 100
@@ -31,8 +31,8 @@ def duration(seconds: float) -> str:
     )
 
 
-def angle_in_words(measured: ReposeMeasurement) -> str:
-    """The result as rich text."""
+def angle_text(measured: ReposeMeasurement) -> str:
+    """The angle of repose as rich text."""
     low, high = measured.interval
     return (
         tr(

@@ -1,4 +1,4 @@
-"""The report on one particle's mesh: what it was like, what was done, what is left, and where."""
+"""Report on the mesh of a particle: findings, repairs and remaining faults, with a coloured view."""
 
 import html
 from collections.abc import Mapping
@@ -40,7 +40,7 @@ FINDINGS = (
     ("self_intersections", mark("Crossing pairs"), mark("Pairs of triangles that cross each other")),
     ("degenerate_faces", mark("Faces without area"), mark("Triangles that are a line or a point")),
 )
-"""Fields of :class:`MeshHealth`, what they are called, and what they mean."""
+"""Fields of :class:`MeshHealth` with label and explanation."""
 KINDS = {
     "filled": mark("closed holes"),
     "open": mark("rims of holes"),
@@ -52,7 +52,7 @@ KINDS = {
     "degenerate": mark("faces without area"),
     "hidden": mark("hidden from the star point"),
 }
-"""What the picture shows, in the order of :data:`COLOURS`."""
+"""Labels of the faults, in the order of :data:`COLOURS`."""
 DASH = "–"
 
 
@@ -65,7 +65,7 @@ class _Row:
 
 
 class HealthPanel(QWidget):
-    """Two columns of findings, the sentences, and what is coloured in the picture."""
+    """Two columns of findings, texts, and the legend of the coloured faults."""
 
     showChanged = Signal(bool)  # noqa: N815
 
@@ -90,7 +90,7 @@ class HealthPanel(QWidget):
         self.where.toggled.connect(self.showChanged)
 
     def show_entry(self, entry: ParticleEntry | None) -> None:
-        """Report on this particle; the legend follows when its faults have been found."""
+        """Show the report of a particle; the legend follows when its faults are located."""
         self.legend.clear()
         rows = () if entry is None or entry.health is None else _rows(entry, entry.health)
         self.table.setRowCount(len(rows))
@@ -104,7 +104,7 @@ class HealthPanel(QWidget):
         self.words.setText("" if entry is None else _words(entry))
 
     def show_legend(self, counts: Mapping[str, int]) -> None:
-        """Name the colours of what was found, with the number of triangles."""
+        """Show the legend of the faults with their numbers of triangles."""
         found = [(kind, counts[kind]) for kind in COLOURS if counts.get(kind)]
         self.legend.setText(
             "&nbsp; ".join(
@@ -155,7 +155,7 @@ class HealthPanel(QWidget):
 
 
 def retold_health(entry: ParticleEntry) -> list[str]:
-    """All that is known about the mesh, in the language of the window."""
+    """The report as text in the language of the window."""
     return [retold(sentence) for sentence in health_sentences(entry).split("\n")]
 
 

@@ -1,4 +1,4 @@
-"""The table on the left with its filter and statistics; the particle and the scatter plot on the right."""
+"""Page "Sample": table with filter and statistics, view of the particle, scatter plot."""
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -33,7 +33,7 @@ from regolith_studio.ui.widgets.labels import heading, remark
 
 
 class SamplePage(PageWidget):
-    """Table, plot and view choose each other."""
+    """Connects the selections of table, plot and view."""
 
     def __init__(self, context: PageContext) -> None:
         super().__init__()
@@ -92,7 +92,7 @@ class SamplePage(PageWidget):
         self.frame.view.release()
 
     def export_table(self) -> None:
-        """Ask for a file and write the rows that are seen, every descriptor with its unit."""
+        """Ask for a file and write the visible rows, every descriptor with its unit."""
         start = str(Path.home() / "particles.csv")
         name, _ = QFileDialog.getSaveFileName(self, tr("Export table"), start, tr("Tables (*.csv)"))
         if not name:
@@ -106,13 +106,13 @@ class SamplePage(PageWidget):
         self._context.toast.note(tr("{count} particles are in {name}.", count=len(entries), name=name))
 
     def copy_table(self) -> None:
-        """Put the rows that are seen onto the clipboard, as a spreadsheet takes them."""
+        """Copy the visible rows to the clipboard, separated by tabs."""
         text = csv_text(sample_table(self.table.visible_entries()))
         QApplication.clipboard().setText(text.replace(",", "\t"))
         self._context.toast.note(tr("The table is on the clipboard."))
 
     def keep_chosen(self) -> None:
-        """Close every particle but the chosen rows."""
+        """Close all particles but the selected ones."""
         chosen = set(self.table.chosen())
         if not any(entry.id in chosen for entry in self._session.particles):
             self._context.toast.problem(tr("Choose the rows to keep first."))
@@ -227,6 +227,6 @@ class SamplePage(PageWidget):
 
 
 def in_english(text: str) -> str:
-    """A filter whose words on form and health are the English ones, in whatever language they are read."""
+    """A filter with its translated words of form and health replaced by the English ones."""
     known = {tr(word).lower(): word for word in (*HEALTH_WORDS, *FORM_WORDS)}
     return " ".join(known.get(word.lower(), word) for word in text.split())

@@ -1,4 +1,4 @@
-"""Any descriptor against any other, a point a particle; points and table rows choose each other."""
+"""Scatter plot of two descriptors with linked selection."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -23,11 +23,11 @@ ZINGG = ("flatness", "elongation")
 SYMBOLS = ("o", "s", "t", "d", "star", "p", "h", "+")
 _UNITS = {0: "", 1: " [µm]", 2: " [µm²]", 3: " [µm³]", 5: " [µm⁵]"}
 _CORNERS = ((mark("blade"), 0, 0), (mark("rod"), 1, 0), (mark("disc"), 0, 1), (mark("equant"), 1, 1))
-"""Zingg's classes, and whether flatness and elongation are above the threshold."""
+"""Zingg's form classes, and whether flatness and elongation exceed the threshold."""
 
 
 class ScatterPanel(QWidget):
-    """Chosen points are ringed; a click chooses, with Ctrl it adds."""
+    """A point per particle; a click selects it, with Ctrl it is added to the selection."""
 
     pointChosen = Signal(str, bool)  # noqa: N815
 
@@ -54,7 +54,7 @@ class ScatterPanel(QWidget):
         return str(self.across.currentData()), str(self.up.currentData())
 
     def set_axes(self, x: str, y: str) -> None:
-        """Show two other descriptors."""
+        """Select two other descriptors."""
         for box, key in ((self.across, x), (self.up, y)):
             with QSignalBlocker(box):
                 box.setCurrentIndex(max(0, box.findData(key)))
@@ -63,7 +63,7 @@ class ScatterPanel(QWidget):
         self._draw()
 
     def show_entries(self, entries: Sequence[ParticleEntry], chosen: Sequence[str]) -> None:
-        """Draw these particles and ring the chosen ones."""
+        """Draw other particles and highlight the selected ones."""
         self._entries = tuple(entry for entry in entries if entry.descriptors)
         self._chosen = frozenset(chosen)
         self._draw()

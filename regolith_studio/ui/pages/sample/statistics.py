@@ -1,4 +1,4 @@
-"""Statistics of groups, each particle counting once or by its volume."""
+"""Statistics of groups of particles, by number or by volume."""
 
 from collections.abc import Sequence
 
@@ -34,11 +34,11 @@ _SHORT = {
 }
 QUANTILE = " quantile"
 GROUPS = (mark("all"), mark("(no group)"))
-"""Names of groups that are no names of samples."""
+"""Group names that are translated."""
 
 
 class StatisticsPanel(QWidget):
-    """One row a group."""
+    """A table with a row per group."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -88,13 +88,13 @@ class StatisticsPanel(QWidget):
         self.border.toggled.connect(lambda _on: self._fill())
 
     def show_entries(self, entries: Sequence[ParticleEntry]) -> None:
-        """Count these particles."""
+        """Show the statistics of other particles."""
         self._entries = tuple(entries)
         self.border.setVisible(has_weights(entries))
         self._fill()
 
     def value(self) -> Table:
-        """What is shown."""
+        """The statistics."""
         return statistics_table(
             self._entries, self.key.currentData(), self.weighting.currentData(), self.border.isChecked()
         )
@@ -113,12 +113,12 @@ class StatisticsPanel(QWidget):
 
 
 def _word(cell: object) -> str:
-    """A name of a group, of which those that are ours are translated."""
+    """The name of a group, translated if it is one of the program."""
     return tr(str(cell))
 
 
 def _two_lines(column: Column) -> str:
-    """Name above unit, short enough for a narrow window; the file has them in full."""
+    """Header with the unit on a second line."""
     name = tr(_SHORT.get(column.name, column.name))
     if column.name.endswith(QUANTILE):
         name = tr("{share} quant.", share=column.name.removesuffix(QUANTILE))

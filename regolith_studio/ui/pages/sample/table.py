@@ -1,4 +1,4 @@
-"""The table: a row a particle, a column a descriptor; sortable, filterable, many rows at a time."""
+"""Table with a row per particle and a column per descriptor; sortable, filterable, multiple selection."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -32,12 +32,12 @@ HEALTH_WORDS = (
 )
 FORM_WORDS = (mark("equant"), mark("disc"), mark("rod"), mark("blade"))
 WORDS = 4
-"""Columns of words; those of numbers follow."""
+"""Text columns, which precede those of numbers."""
 
 
 @dataclass(frozen=True)
 class SampleColumn:
-    """Key, header, explanation; what it is sorted by and what it shows."""
+    """Key, header and tool tip of a column; functions for its sort key and text."""
 
     key: str
     title: str
@@ -47,7 +47,7 @@ class SampleColumn:
 
 
 def columns() -> tuple[SampleColumn, ...]:
-    """Name, health, group and form, the descriptors of the catalogue that are at hand, and the weight."""
+    """Name, health, group and form, the available descriptors of the catalogue, and the weight."""
     words: tuple[tuple[str, str, str, Callable[[ParticleEntry], str]], ...] = (
         ("name", tr("Particle"), tr("Name of the file or of the grain"), lambda entry: entry.id),
         (
@@ -98,7 +98,7 @@ class _Formatted(_Number):
 
 
 class SampleTableModel(ParticleTableModel):
-    """The entries as Qt asks for them."""
+    """Item model of the table."""
 
     def __init__(self, parent: QWidget) -> None:
         self.columns = columns()
@@ -144,7 +144,7 @@ def _tip(entry: ParticleEntry) -> str:
 
 
 class SampleTable(ListTable):
-    """Announces which particles are chosen, and which one is current."""
+    """Emits which particles are selected, and which one is current."""
 
     chosenChanged = Signal(list)  # noqa: N815
     currentChosen = Signal(str)  # noqa: N815
@@ -164,7 +164,7 @@ class SampleTable(ListTable):
         self.selectionModel().currentRowChanged.connect(lambda index, _old: self._announce_current(index))
 
     def set_entries(self, entries: tuple[ParticleEntry, ...]) -> None:
-        """Show these, keeping what is chosen."""
+        """Show other particles and keep the selection."""
         chosen = self.chosen()
         self._quiet = True
         self.model_.set_entries(entries)
@@ -175,7 +175,7 @@ class SampleTable(ListTable):
         self.fit_columns()
 
     def set_filter(self, keeps: Filter | None) -> None:
-        """Show only what this keeps."""
+        """Show only the particles for which this is true."""
         chosen = self.chosen()
         self._quiet = True
         self.model_.set_filter(keeps)
@@ -184,16 +184,16 @@ class SampleTable(ListTable):
         self._announce()
 
     def visible_entries(self) -> list[ParticleEntry]:
-        """What is listed, in the order of the rows."""
+        """The listed particles, in the order of the rows."""
         return list(self.model_.rows)
 
     def chosen(self) -> list[str]:
-        """Ids of the chosen rows, from top to bottom."""
+        """Ids of the selected rows, from top to bottom."""
         rows = sorted(index.row() for index in self.selectionModel().selectedRows())
         return [self.model_.rows[row].id for row in rows]
 
     def choose(self, ids: Sequence[str], current: str = "") -> None:
-        """Choose these rows; announces nothing."""
+        """Select these rows without emitting a signal."""
         wanted, flags = set(ids), QItemSelectionModel.SelectionFlag
         self._quiet = True
         self.selectionModel().clearSelection()
@@ -210,7 +210,7 @@ class SampleTable(ListTable):
         return list(range(self.model_.columnCount()))
 
     def stretch(self) -> None:
-        """No column: there are more than fit."""
+        """Disabled: the table is scrolled horizontally."""
 
     def _announce(self) -> None:
         if not self._quiet:

@@ -47,11 +47,11 @@ MIN_VOXELS = NumberSpec(
 )  # fmt: skip
 
 _LABEL_WIDTH = 62
-"""Pixels before the sliders, at least."""
+"""Minimum pixels before the sliders."""
 
 
 class SegmentationControls(QWidget):
-    """Edits a :class:`GrainSettings`. ``valueChanged`` is for changes by the user only."""
+    """Edits a :class:`GrainSettings`. ``valueChanged`` is emitted for changes by the user only."""
 
     valueChanged = Signal(object)  # noqa: N815
 
@@ -94,7 +94,7 @@ class SegmentationControls(QWidget):
         self.setValue(self._recipe)
 
     def value(self) -> GrainSettings:
-        """What is chosen."""
+        """The settings."""
         method = str(self.threshold.currentData())
         before = self._recipe.segmentation
         segmentation = SegmentationSettings(
@@ -124,7 +124,7 @@ class SegmentationControls(QWidget):
         return GrainSettings(segmentation, extraction)
 
     def setValue(self, recipe: GrainSettings) -> None:
-        """Show other choices; announces nothing."""
+        """Show other settings without emitting a signal."""
         self._recipe = recipe
         how, what = recipe.segmentation, recipe.extraction
         for box, value in (
@@ -151,7 +151,7 @@ class SegmentationControls(QWidget):
         self._show_which()
 
     def set_level(self, level: float) -> None:
-        """Take a level by hand, as when the line is dragged: a grey value, of a probability its share."""
+        """Set a manual threshold: a grey value, or for a probability map its share."""
         method = "probability" if self.threshold.currentData() == "probability" else "manual"
         with QSignalBlocker(self.threshold):
             self.threshold.setCurrentIndex(self.threshold.findData(method))
@@ -159,12 +159,12 @@ class SegmentationControls(QWidget):
         self._changed()
 
     def show_automatic_level(self, level: float | None) -> None:
-        """Say where an automatic threshold lies."""
+        """Show the value of an automatic threshold."""
         if level is not None and self.threshold.currentData() in ("otsu", "multi-otsu"):
             self._show_level(level)
 
     def set_kind(self, kind: str) -> None:
-        """Labels need no segmentation."""
+        """Disable the settings of the segmentation for a volume of labels."""
         for part in (self.denoise, self.threshold, self.level, self.boundary, self.dark, self.split,
                      self.opening, self.closing, self.h_maxima, self.surface):  # fmt: skip
             part.setEnabled(kind == "grey")

@@ -1,4 +1,4 @@
-"""The histogram of grey values with the threshold as a line that can be dragged."""
+"""Histogram of grey values with the threshold as a draggable line."""
 
 from collections.abc import Sequence
 
@@ -13,10 +13,10 @@ from regolith_studio.ui.widgets.plots.base import Numbers, Plot
 
 
 class HistogramPlot(Plot):
-    """How often grey values occur, before and after denoising."""
+    """Histograms before and after denoising."""
 
     levelDragged = Signal(float)  # noqa: N815
-    """The line is being dragged, or was let go, at this grey value."""
+    """Grey value of the line while it is dragged or after it is released."""
 
     def __init__(self) -> None:
         self._scanned: Histogram | None = None
@@ -37,18 +37,18 @@ class HistogramPlot(Plot):
         self.line.sigDragged.connect(lambda line: self.levelDragged.emit(float(line.value())))
 
     def set_scanned(self, seen: Histogram | None) -> None:
-        """The volume as it was scanned."""
+        """Set the histogram of the scanned volume."""
         self._scanned, self._denoised = seen, None
         self.set_empty(seen is None, tr("A volume of labels has no histogram of grey values."))
         self.redraw()
 
     def set_denoised(self, seen: Histogram | None) -> None:
-        """The part of the preview, or the volume, without noise."""
+        """Set the histogram after denoising, of the preview or of the volume."""
         self._denoised = seen
         self.redraw()
 
     def set_level(self, level: float | None) -> None:
-        """Put the line somewhere; announces nothing."""
+        """Move the line without emitting a signal."""
         self.line.setVisible(level is not None)
         if level is not None and level != self.line.value():
             self.line.setValue(level)
@@ -61,7 +61,7 @@ class HistogramPlot(Plot):
         self.line.label.fill = pg.mkBrush(theme.base)
 
     def value_at(self, place: QPointF) -> str:
-        """Grey values of the bin there and their share of the voxels."""
+        """Grey values of the bin at a position and their share of the voxels."""
         box = self.canvas.getViewBox()
         if not self._shown() or not box.sceneBoundingRect().contains(place):
             return ""
@@ -70,7 +70,7 @@ class HistogramPlot(Plot):
         found = _bin_of(first, value)
         if found is None:
             return ""
-        lines = [_bin_words(first, found)]
+        lines = [_bin_text(first, found)]
         for seen, _, label in self._shown():
             place_in = _bin_of(seen, value)
             if place_in is not None:
@@ -130,7 +130,7 @@ def _bin_of(seen: Histogram, value: float) -> int | None:
     return place if 0 <= place < len(seen.counts) else None
 
 
-def _bin_words(seen: Histogram, place: int) -> str:
+def _bin_text(seen: Histogram, place: int) -> str:
     low, high = float(seen.edges[place]), float(seen.edges[place + 1])
     if high - low == 1.0 and low % 1.0 == 0.5:
         return tr("Grey value {value:g}", value=low + 0.5)

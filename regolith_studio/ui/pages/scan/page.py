@@ -1,4 +1,4 @@
-"""Three slices with the grains over them, the histogram, and what leads from one to the other."""
+"""Page "Scan": three slices with the grains, histogram, settings, and the steps of the workflow."""
 
 import contextlib
 from collections.abc import Callable, Mapping
@@ -47,11 +47,11 @@ VOLUMES = mark(
 )
 RECIPES = mark("Settings (*.json);;All files (*)")
 PREVIEW_DELAY = 120
-"""Milliseconds without a change before a preview is begun."""
+"""Milliseconds from the last change to the preview."""
 
 
 class ScanPage(PageWidget):
-    """Opens a volume, shows a preview of its grains at every change, finds all of them when asked."""
+    """Opens a volume, previews its grains after every change, and segments all of it on request."""
 
     def __init__(self, context: PageContext) -> None:
         super().__init__()
@@ -75,7 +75,7 @@ class ScanPage(PageWidget):
 
     @property
     def grains(self) -> Segmentation | None:
-        """The grains of the whole volume, once they have been found."""
+        """The grains of the whole volume, or ``None``."""
         return self._whole.segmentation if self._whole else None
 
     def set_theme(self, theme: Theme) -> None:
@@ -123,7 +123,7 @@ class ScanPage(PageWidget):
             self.open(Path(name))
 
     def open(self, path: Path) -> None:
-        """Open a file or a folder of slices; what it does not say is asked."""
+        """Open a file or a folder of slices, and ask for missing properties."""
         self._context.remember("folder", str(path.parent))
         if path.suffix.lower() in RAW_SUFFIXES:
             self._ask_layout(path)
@@ -144,7 +144,7 @@ class ScanPage(PageWidget):
         )
 
     def read(self, given: VolumeInput) -> None:
-        """Read a volume of which everything is known."""
+        """Read a volume."""
         job = Job(read_scan, (given,))
         self._context.start(tr("Reading the volume"), job, lambda scan: self._take(scan, given), lane="read")
 
@@ -176,7 +176,7 @@ class ScanPage(PageWidget):
         self.read(given)
 
     def _last_size(self) -> tuple[float, str]:
-        """Voxel size and unit of the volume before: scans of one day are alike."""
+        """Voxel size and unit of the previous volume, proposed for the next one."""
         size, unit = self._context.recall("voxel_size", [1.0, "um"])
         return float(size), str(unit)
 
@@ -195,7 +195,7 @@ class ScanPage(PageWidget):
     # --- settings ------------------------------------------------------------------------------
 
     def ask_for_settings(self) -> None:
-        """Ask for a recipe, as this page or ``extract`` has written it, and take its settings."""
+        """Ask for a recipe of this page or of ``extract`` and apply its settings."""
         name, _ = QFileDialog.getOpenFileName(self, tr("Open settings"), self._folder(), tr(RECIPES))
         if not name:
             return
@@ -205,7 +205,7 @@ class ScanPage(PageWidget):
             self._context.toast.problem(str(error))
 
     def save_settings(self) -> None:
-        """Ask for a file and write the settings there."""
+        """Ask for a file and write the settings as a recipe."""
         start = str(Path(self._folder()) / "grains.json")
         name, _ = QFileDialog.getSaveFileName(self, tr("Save settings"), start, tr(RECIPES))
         if not name:
@@ -237,7 +237,7 @@ class ScanPage(PageWidget):
         )
 
     def make_particles(self) -> None:
-        """Make particles of the grains and hand them to all other pages."""
+        """Convert the grains to particles and open them."""
         labels = self.grains.labels if self.grains else None
         if self.scan is not None and self.scan.volume.kind == "labels":
             labels = self.scan.volume
@@ -280,7 +280,7 @@ class ScanPage(PageWidget):
         self.steps.set_particles(summary)
 
     def _changed(self, recipe: GrainSettings) -> None:
-        """Forget grains that were found with other settings, and begin a preview with these."""
+        """Discard grains of other settings and start a preview."""
         if self.grains is not None and recipe.segmentation == self._found_with:
             self._show_state()
             return
@@ -302,7 +302,7 @@ class ScanPage(PageWidget):
         self.controls.show_automatic_level(level)
 
     def _probability_range(self) -> float:
-        """Grey value of certainty, where the threshold is a share of it; else 1."""
+        """Grey value of probability 1 in a probability map; else 1."""
         settings = self.controls.value().segmentation
         if self.scan is None or settings.threshold.method != "probability":
             return 1.0

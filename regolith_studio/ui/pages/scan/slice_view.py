@@ -1,4 +1,4 @@
-"""One slice of a volume with the grains laid over it."""
+"""View of one slice of a volume with an overlay of the grains."""
 
 from typing import Any
 
@@ -20,7 +20,7 @@ _OPACITY = 105
 
 
 def label_colours() -> NDArray[np.uint8]:
-    """Colours of 255 labels in turn, far from their neighbours in hue; entry 0 is clear. Shape (256, 4)."""
+    """RGBA colours of 255 labels with distant hues, shape (256, 4); entry 0 is transparent."""
     hues = (np.arange(255) * 0.618033988749895) % 1.0
     table = np.zeros((256, 4), dtype=np.uint8)
     for row, hue in zip(table[1:], hues, strict=True):
@@ -29,12 +29,12 @@ def label_colours() -> NDArray[np.uint8]:
 
 
 class SliceView(QWidget):
-    """Shows the slice of one direction; a click says where, the wheel turns pages.
+    """Shows the slice of one direction; a click selects a voxel, the wheel another slice.
 
     Parameters
     ----------
     axis
-        0, 1 or 2: the direction that is looked along.
+        Direction of view: 0, 1 or 2.
     """
 
     placePicked = Signal(int, int, int)  # noqa: N815
@@ -70,7 +70,7 @@ class SliceView(QWidget):
             line.setPen(pg.mkPen(QColor(theme.accent).lighter(120), width=1, style=Qt.PenStyle.DotLine))
 
     def set_volume(self, volume: Volume, sections: Sections, contrast: tuple[float, float]) -> None:
-        """Show another volume, in micrometres, whole."""
+        """Show another volume as a whole, in micrometres."""
         self._volume, self._sections = volume, sections
         self._grey.setLevels(contrast)
         self._grains.clear()
@@ -80,7 +80,7 @@ class SliceView(QWidget):
         self.canvas.view.setRange(QRectF(0, 0, width, height), padding=0.02)
 
     def show_place(self, place: tuple[int, int, int], box: Box) -> None:
-        """Show the slice through a voxel, where the voxel is, and where the box of the preview is."""
+        """Show the slice through a voxel, with a crosshair and the box of the preview."""
         if self._volume is None or self._sections is None:
             return
         number, count = place[self.axis], self._volume.shape[self.axis]
@@ -112,7 +112,7 @@ class SliceView(QWidget):
         self._frame.setVisible(box[self.axis].start <= number < box[self.axis].stop)
 
     def show_grains(self, labels: Sections | None, box: Box, number: int) -> None:
-        """Lay the grains of a part of the volume over the slice; none where the part does not reach it."""
+        """Overlay the grains of a part of the volume, if it intersects the slice."""
         side = box[self.axis]
         if self._volume is None or self._volume.kind == "labels":
             return
@@ -125,7 +125,7 @@ class SliceView(QWidget):
         self._set(self._grains, self._painted(picture), start, size)
 
     def set_box_shown(self, shown: bool) -> None:
-        """Whether the box of the preview is drawn."""
+        """Set whether the box of the preview is drawn."""
         self._frame.setOpacity(1.0 if shown else 0.0)
 
     def _painted(self, labels: NDArray[Any]) -> NDArray[np.uint8]:
@@ -133,7 +133,7 @@ class SliceView(QWidget):
         return self._colours[np.where(number > 0, (number - 1) % 255 + 1, 0)]
 
     def _set(self, item: Any, picture: NDArray[Any], start: tuple[int, int], size: tuple[int, int]) -> None:
-        """Draw a picture over so many voxels, whether it has as many pixels or fewer."""
+        """Set an image that covers so many voxels, which may have fewer pixels."""
         item.setImage(picture, autoLevels=False)
         item.setRect(self._rectangle(start, size))
 
@@ -158,7 +158,7 @@ class SliceView(QWidget):
         layout.addWidget(self.canvas, 1)
 
     def picked(self, point: QPointF) -> None:
-        """A click at a point of the scene, in micrometres."""
+        """Select the voxel at a point of the scene in micrometres."""
         if self._volume is None:
             return
         place = [0, 0, 0]
@@ -169,12 +169,12 @@ class SliceView(QWidget):
         self.placePicked.emit(*place)
 
     def turn(self, steps: int) -> None:
-        """Go some slices on or back."""
+        """Go some slices forward or back."""
         self.slider.setValue(self.slider.value() + steps)
 
 
 class _Canvas(pg.GraphicsView):  # type: ignore[misc]
-    """Fits the slice into its room; click and wheel go to the view."""
+    """Fits the slice to its size and forwards clicks and the wheel to the view."""
 
     def __init__(self, owner: SliceView) -> None:
         super().__init__()

@@ -1,4 +1,4 @@
-"""Three slices through one voxel, the histogram beside them, and the box of the preview."""
+"""Three slices through one voxel and the histogram."""
 
 import numpy as np
 from PySide6.QtCore import Qt, Signal
@@ -16,14 +16,14 @@ from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import remark
 
 PREVIEW_EDGE = 96
-"""Voxels of the box of the preview along each axis, where the volume has as many."""
+"""Edge of the preview box in voxels, if the volume is that large."""
 
 
 class SlicesView(QWidget):
-    """Shows a :class:`Scan` and the grains found in a part of it, or in all of it."""
+    """Shows a :class:`Scan` and the grains of the preview or of the whole volume."""
 
     boxMoved = Signal()  # noqa: N815
-    """The box of the preview is elsewhere."""
+    """The preview box has moved."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -46,7 +46,7 @@ class SlicesView(QWidget):
         self.histogram.set_theme(theme)
 
     def set_scan(self, scan: Scan) -> None:
-        """Show another volume, through its middle."""
+        """Show another volume, with slices through its centre."""
         self._scan, self._labels = scan, None
         for view in self.slices:
             view.set_volume(scan.volume, scan.sections, scan.contrast)
@@ -71,7 +71,7 @@ class SlicesView(QWidget):
             self.boxMoved.emit()
 
     def show_preview(self, found: Segmentation | None, box: Box) -> None:
-        """Lay the grains of the preview over the slices."""
+        """Overlay the grains of the preview."""
         self._labels = None if found is None else Sections(found.labels.array)
         self._part = box
         self.histogram.set_denoised(None if found is None else found.seen)
@@ -80,7 +80,7 @@ class SlicesView(QWidget):
         self._lay_over()
 
     def show_whole(self, found: Segmentation, labels: Sections) -> None:
-        """Lay the grains of the whole volume over the slices."""
+        """Overlay the grains of the whole volume."""
         self._labels, self._part = labels, box_between((0, 0, 0), found.labels.shape)
         self.histogram.set_denoised(found.seen)
         self.histogram.set_level(found.level)
@@ -119,7 +119,7 @@ class SlicesView(QWidget):
 
 
 def _box_about(place: tuple[int, int, int], shape: tuple[int, int, int]) -> Box:
-    """The box of the preview about a voxel, moved inside where it would stick out."""
+    """The preview box around a voxel, moved to lie inside the volume."""
     edge = np.minimum(PREVIEW_EDGE, shape)
     low = np.clip(np.array(place) - edge // 2, 0, np.array(shape) - edge)
     return box_between(low.tolist(), (low + edge).tolist())

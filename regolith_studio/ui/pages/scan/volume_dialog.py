@@ -1,4 +1,4 @@
-"""Asks what a file of voxels does not say about itself."""
+"""Dialog for the properties of a volume that its file does not contain."""
 
 import math
 from collections.abc import Sequence
@@ -49,11 +49,11 @@ class VolumeDialog(QDialog):
     path
         The file, or the folder of slices.
     header
-        What it says about itself; none for a raw file.
+        The header of the file; ``None`` for a raw file.
     layout
-        What the name of a raw file tells, if anything.
+        Layout from the name of a raw file, if any.
     last
-        Voxel size, and its unit, that begin where the file does not say them.
+        Initial voxel size and unit if the file has none.
     """
 
     def __init__(
@@ -96,7 +96,7 @@ class VolumeDialog(QDialog):
             self._check_size()
 
     def value(self) -> VolumeInput:
-        """The answer."""
+        """The entered properties."""
         raw = None
         if self._header is None:
             x, y, z = (field.value() for field in self.shape)
@@ -114,7 +114,7 @@ class VolumeDialog(QDialog):
         )
 
     def _follow(self, value: float) -> None:
-        """Voxels are mostly cubes: the first edge takes the others with it while they are alike."""
+        """Change all edges with the first one while they are equal."""
         for field in self.edges[1:]:
             if field.value() == self._last:
                 field.setValue(value)
@@ -142,7 +142,7 @@ class VolumeDialog(QDialog):
         self.dataset.setCurrentIndex(max(0, self.dataset.findData(header.dataset)))
 
     def _suggest_layout(self, layout: RawLayout | None) -> None:
-        """What the file's name says, if its size agrees; else a cube of bytes of the file's size."""
+        """Layout from the file's name if its size agrees; else a cube of bytes."""
         if layout is None:
             edge = max(1, round(self._path.stat().st_size ** (1 / 3)))
             layout = RawLayout((edge, edge, edge), "uint8")
@@ -155,7 +155,7 @@ class VolumeDialog(QDialog):
         self.offset.setValue(layout.offset)
 
     def _check_size(self, _changed: int = 0) -> None:
-        """Say at once whether the file has as many bytes as its layout needs, and open only then."""
+        """Show whether the size of the file fits the layout, and enable opening if it does."""
         voxels = math.prod(field.value() for field in self.shape)
         needed = voxels * np.dtype(str(self.dtype.currentData())).itemsize + self.offset.value()
         there = self._path.stat().st_size
@@ -205,7 +205,7 @@ class VolumeDialog(QDialog):
 
 
 def needs_asking(header: VolumeHeader) -> bool:
-    """Whether a file leaves something open: the voxel size, its unit, or which volume is meant."""
+    """Whether a file lacks the voxel size, its unit, or the selection of a volume."""
     return header.voxel_size is None or header.unit is None or len(header.datasets) > 1
 
 

@@ -1,4 +1,4 @@
-"""The way from a volume to particles in three steps, with what each has found."""
+"""The three steps from a volume to particles, with their results."""
 
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout, QWidget
@@ -11,11 +11,11 @@ from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
 from regolith_studio.ui.widgets.labels import WrappedLabel, heading
 
 _DENSEST, _LARGEST = 0.7, 0.4
-"""Shares of the voxels that the grains of no packing have, and that no single grain has."""
+"""Plausible limits of the volume fraction of all grains, and of a single grain."""
 
 
 class WorkflowPanel(QWidget):
-    """Buttons that lead through the page; each says what it needs by being greyed out."""
+    """A button for each step, enabled when its input is available."""
 
     openRequested = Signal()  # noqa: N815
     sampleRequested = Signal()  # noqa: N815
@@ -65,7 +65,7 @@ class WorkflowPanel(QWidget):
     def show_state(
         self, scan: Scan | None, preview: Segmentation | None, grains: Segmentation | None, least: int
     ) -> None:
-        """Say what is open and what has been found, and how much of it has fewer than `least` voxels."""
+        """Describe the volume and the grains, and how many have fewer than `least` voxels."""
         is_grey = scan is not None and scan.volume.kind == "grey"
         self.search.setEnabled(is_grey)
         self.convert.setEnabled(grains is not None or (scan is not None and not is_grey))
@@ -92,7 +92,7 @@ class WorkflowPanel(QWidget):
             )
 
     def set_particles(self, summary: str) -> None:
-        """Say what came out, in the words of the window."""
+        """Show the result of the extraction."""
         self.made.setText(summary)
         self.show_them.show()
 
@@ -118,7 +118,7 @@ def _too_small(found: Segmentation, least: int) -> str:
 
 
 def _too_large(found: Segmentation) -> str:
-    """What a new user must be told who sees one body instead of many grains."""
+    """Advice if one grain has most of the volume or the volume fraction is implausible."""
     voxels = found.labels.array.size
     if found.sizes.sum() < _DENSEST * voxels and found.sizes.max() < _LARGEST * voxels:
         return ""
@@ -146,7 +146,7 @@ def _about(scan: Scan | None) -> str:
 
 
 def _words() -> WrappedLabel:
-    """What a step has come to; all its lines are seen, however low the window is."""
+    """A label for the result of a step, with all lines visible."""
     label = WrappedLabel()
     label.setProperty("role", "remark")
     return label

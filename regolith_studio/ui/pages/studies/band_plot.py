@@ -1,4 +1,4 @@
-"""Curves and points with the bars of their bootstrap intervals."""
+"""Curves and points with error bars of bootstrap intervals."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -28,7 +28,7 @@ class Series:
     low, high
         Ends of the interval of each y.
     left, right
-        Of each x; empty where x is no measurement.
+        Ends of the interval of each x; empty if x is not measured.
     line
         Whether the points are joined.
     """
@@ -45,7 +45,7 @@ class Series:
 
 
 class BandPlot(CurvePlot):
-    """A bar through each point; pointing at one tells values and intervals."""
+    """Points with error bars; tool tips show values and intervals."""
 
     def __init__(self, x: str, y: str, placeholder: str, log_y: bool = False) -> None:
         self._series: tuple[Series, ...] = ()
@@ -54,11 +54,11 @@ class BandPlot(CurvePlot):
 
     @property
     def series(self) -> tuple[Series, ...]:
-        """What is drawn."""
+        """The series that are drawn."""
         return self._series
 
     def set_series(self, series: Sequence[Series], behind: Sequence[PlotCurve] = ()) -> None:
-        """Draw these instead, and other curves behind them."""
+        """Draw other series, and curves behind them."""
         self._series = tuple(series)
         points = [PlotCurve(s.label, s.colour, s.x, s.y, markers=True, line=s.line) for s in self._series]
         self.set_curves([*behind, *points])
@@ -84,7 +84,7 @@ class BandPlot(CurvePlot):
                 self._draw_bars(s.colour, np.column_stack([s.left, s.right]).ravel(), np.repeat(s.y, 2))
 
     def value_at(self, place: QPointF) -> str:
-        """The nearest point, its values and their intervals, in words; empty if it is far."""
+        """Values and intervals of the nearest point; empty if it is far."""
         best, words = HOVER_DISTANCE, ""
         for s in self._series:
             for number, (x, y) in enumerate(zip(s.x, s.y, strict=True)):
@@ -95,7 +95,7 @@ class BandPlot(CurvePlot):
         return words
 
     def scene_place(self, x: float, y: float) -> QPointF:
-        """Where a point is drawn, in the coordinates of the scene."""
+        """Position of a point in the scene."""
         with np.errstate(divide="ignore", invalid="ignore"):
             high = float(np.log10(y)) if self._log_y else y
         place: QPointF = self.canvas.getViewBox().mapViewToScene(QPointF(x, high))

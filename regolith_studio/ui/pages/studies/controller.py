@@ -1,4 +1,4 @@
-"""Starts the variations of the coarsening, keeps what was found, and shows it."""
+"""Starts the sweeps of the coarsening, keeps their results and shows them."""
 
 from collections.abc import Mapping
 from functools import partial
@@ -18,19 +18,19 @@ from regolith_studio.ui.translation import tr
 
 
 class SweepController:
-    """A lane for each variation: they can run beside each other, each can be stopped.
+    """Runs sweeps, which can run at the same time and be stopped separately.
 
     Parameters
     ----------
     panels
         By key of :data:`~regolith_studio.studies.variations.VARIATIONS`.
     bar
-        Says by which box diameters are measured.
+        Selects the bounding box of the diameters.
     """
 
     def __init__(self, context: PageContext, panels: Mapping[str, SweepPanel], bar: LossSelector) -> None:
         self._context, self._session, self._panels, self._bar = context, context.session, panels, bar
-        self._found: dict[str, CoarseningStudy] = {}
+        self._results: dict[str, CoarseningStudy] = {}
         self._made: dict[str, Choices] = {}
         self._shown: dict[str, object] = {}
         self._ids: tuple[str, ...] = ()
@@ -41,17 +41,17 @@ class SweepController:
         context.wiring.refresh("tasks choices", self._refresh, slow=True)
 
     @property
-    def found(self) -> Mapping[str, CoarseningStudy]:
-        """Studies that are there, by key; one that runs or was stopped as far as it has come."""
-        return self._found
+    def results(self) -> Mapping[str, CoarseningStudy]:
+        """Results by key, which are partial while a sweep is running or after it was stopped."""
+        return self._results
 
     def start(self, key: str, quietly: bool = False) -> None:
-        """Start a variation with the present choices.
+        """Start a sweep with the present choices.
 
         Parameters
         ----------
         quietly
-            Whether a variation that the choices do not allow is left out without a word.
+            Whether to ignore a sweep that the choices do not allow, instead of reporting it.
         """
         choices, particles = self._session.choices, tuple(e.particle for e in self._session.particles)
         try:
@@ -71,8 +71,8 @@ class SweepController:
         self._context.start(title, job, partial(self._end, key), partial=take, lane=key)
 
     def _take(self, key: str, study: CoarseningStudy) -> None:
-        """Keep a study so far; it is drawn at the next beat."""
-        self._found[key] = study
+        """Keep a partial result, which is drawn at the next refresh."""
+        self._results[key] = study
 
     def _end(self, key: str, study: CoarseningStudy) -> None:
         self._take(key, study)
@@ -87,7 +87,7 @@ class SweepController:
             self._ids = ids
             for key in self._panels:
                 self._context.stop(key)
-            self._found.clear()
+            self._results.clear()
             self._refresh()
 
     def _refresh(self) -> None:
@@ -96,7 +96,7 @@ class SweepController:
             lane = f"{self._context.key}:{key}"
             panel.frame.show_task(next((task for task in self._session.tasks if task.lane == lane), None))
             panel.show_method(self._session.choices.method)
-            study = self._found.get(key)
+            study = self._results.get(key)
             state = (study, study is not None and self._is_outdated(key))
             if state != self._shown.get(key):
                 self._shown[key] = state

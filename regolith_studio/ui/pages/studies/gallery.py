@@ -1,4 +1,4 @@
-"""Fig. 7: a row a loss function, a column a particle, the polyhedron in each cell."""
+"""Gallery of polyhedra with a row per loss function and a column per particle, as in Fig. 7."""
 
 from collections.abc import Sequence
 
@@ -29,12 +29,12 @@ LETTERS = 22
 """Pixels below a picture."""
 WAITING = mark("The polyhedra of six particles as each loss function makes them, as in Fig. 7 of the paper.")
 Index = QModelIndex | QPersistentModelIndex
-COLUMNS = 6
-"""Particles that are shown at most."""
+MAX_PARTICLES = 6
+"""Maximum number of columns."""
 
 
 class PolyhedronGallery(QWidget):
-    """Cells fill while the polyhedra are found."""
+    """A table of thumbnails that is filled while polyhedra are computed."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -65,7 +65,7 @@ class PolyhedronGallery(QWidget):
         layout.addWidget(self.frame, 1)
 
     def begin(self, names: Sequence[str], labels: Sequence[str]) -> None:
-        """Empty cells for these particles and losses."""
+        """Show empty cells for these particles and losses."""
         self._solids = ()
         self._stack.setCurrentWidget(self.table)
         self.table.clear()
@@ -75,13 +75,13 @@ class PolyhedronGallery(QWidget):
         self.table.setHorizontalHeaderLabels(list(names))
 
     def show_solids(self, solids: Sequence[GalleryCell]) -> None:
-        """Fill the cells that are known and still empty."""
+        """Fill the cells of new polyhedra."""
         for solid in solids[len(self._solids) :]:
             self.table.setItem(solid.row, solid.column, self._cell(solid))
         self._solids = tuple(solids)
 
     def value(self) -> tuple[GalleryCell, ...]:
-        """What is shown."""
+        """The polyhedra that are shown."""
         return self._solids
 
     def set_theme(self, theme: Theme) -> None:
@@ -115,7 +115,7 @@ class PolyhedronGallery(QWidget):
 
 
 class _PictureAbove(QStyledItemDelegate):
-    """Puts the words of a cell below its picture."""
+    """Places the text of a cell below its picture."""
 
     def initStyleOption(self, option: QStyleOptionViewItem, index: Index) -> None:
         super().initStyleOption(option, index)
@@ -125,5 +125,5 @@ class _PictureAbove(QStyledItemDelegate):
 
 
 def picture_size() -> QSize:
-    """Of one picture."""
+    """Size of a thumbnail."""
     return QSize(SIZE, SIZE)

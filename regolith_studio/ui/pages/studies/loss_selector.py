@@ -1,4 +1,4 @@
-"""Which losses are the rows of figures 7 and 8, and by which box the diameters are measured."""
+"""Selection of the losses in the rows of figures 7 and 8, and of the bounding box of diameters."""
 
 from collections.abc import Sequence
 from functools import partial
@@ -25,13 +25,13 @@ EQUAL_TIP = mark("Losses can be compared at equal numbers of facets only; choose
 
 
 class LossSelector(QWidget):
-    """One line above the studies; emits ``valueChanged``."""
+    """A row of controls above the studies."""
 
     valueChanged = Signal()  # noqa: N815
 
     def __init__(self) -> None:
         super().__init__()
-        self.setObjectName("study_rows_bar")
+        self.setObjectName("study_loss_selector")
         self._actions: dict[str, QAction] = {}
         self.rows = QToolButton()
         self.rows.setObjectName("study_rows")
@@ -59,20 +59,20 @@ class LossSelector(QWidget):
         self.set_names(PAPER_ROWS)
 
     def names(self) -> tuple[str, ...]:
-        """Keys of the losses that are chosen, in the order of the menu; never none."""
+        """Keys of the selected losses in the order of the menu, at least one."""
         return tuple(name for name, action in self._actions.items() if action.isChecked())
 
     def set_names(self, names: Sequence[str]) -> None:
-        """Choose others; those that are not known are left out, and none stands for those of Fig. 8."""
+        """Select other losses; unknown ones are ignored, and none means those of Fig. 8."""
         known = [name for name in names if name in self._actions] or PAPER_ROWS
         for wanted in (True, False):  # never none in between
             for name, action in self._actions.items():
                 if (name in known) is wanted:
                     action.setChecked(wanted)
-        self._tell()
+        self._update_text()
 
     def show_facets(self, choices: Choices) -> None:
-        """Say how many facets studies take where polyhedra stop at an error."""
+        """Show the number of facets of the studies if polyhedra stop at an error."""
         stops = choices.stop_at == "error"
         words = tr("compared at {count} facets each, not at an error", count=choices.facet_count)
         self.remark.setText(words if stops else "")
@@ -94,7 +94,7 @@ class LossSelector(QWidget):
         return menu
 
     def _open(self) -> None:
-        """Without waiting for an answer, as a button's own menu would."""
+        """Show the menu without blocking, unlike the menu of a button."""
         self.menu.popup(self.rows.mapToGlobal(self.rows.rect().bottomLeft()))
 
     def _choose(self, names: Sequence[str], _checked: bool = False) -> None:
@@ -105,10 +105,10 @@ class LossSelector(QWidget):
         if not self.names():  # the last one stays
             self._actions[name].setChecked(True)
             return
-        self._tell()
+        self._update_text()
         self.valueChanged.emit()
 
-    def _tell(self) -> None:
+    def _update_text(self) -> None:
         names = self.names()
         words = tr("{count} losses", count=len(names))
         if names == tuple(name for name in self._actions if name in PAPER_ROWS):

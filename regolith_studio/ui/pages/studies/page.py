@@ -1,4 +1,4 @@
-"""Fig. 3 and Fig. 8 with its relatives above, Fig. 7 below, each with its own start, progress and stop."""
+"""Page "Studies": Fig. 3, Fig. 8 with further sweeps of the coarsening, and Fig. 7."""
 
 from collections.abc import Callable, Mapping
 from functools import partial
@@ -19,7 +19,7 @@ from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.layout import side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.studies.controller import SweepController
-from regolith_studio.ui.pages.studies.gallery import COLUMNS, PolyhedronGallery
+from regolith_studio.ui.pages.studies.gallery import MAX_PARTICLES, PolyhedronGallery
 from regolith_studio.ui.pages.studies.loss_selector import LossSelector
 from regolith_studio.ui.pages.studies.sweep_panel import SweepPanel
 from regolith_studio.ui.panels.coarsening_study import CoarseningStudyPanel
@@ -32,11 +32,11 @@ from regolith_studio.ui.widgets.labels import heading
 LMAX_TITLE = mark("Error against l<sub>max</sub> (Fig. 3)")
 COARSENING_TITLE = mark("Error of coarsened particles")
 TABS = {"faces": mark("Faces"), "tradeoff": mark("Overlap or descriptors"), "sensitivity": mark("Weights")}
-"""Behind the losses of Fig. 8."""
+"""Object name of the tab after that of Fig. 8."""
 
 
 class StudiesPage(PageWidget):
-    """Studies of l_max and of the coarsening, and a gallery."""
+    """Studies of l_max and of the coarsening, and the gallery of polyhedra."""
 
     def __init__(self, context: PageContext) -> None:
         super().__init__()
@@ -54,7 +54,7 @@ class StudiesPage(PageWidget):
             self.variations[key] = SweepPanel(key)
         self.tabs = self._tabs()
         self._place()
-        self.desk = SweepController(self._context, self.variations, self.bar)
+        self.sweeps = SweepController(self._context, self.variations, self.bar)
         self._wire(Kind.LMAX_STUDY, self.lmax_study)
         self._wire(Kind.COARSENING_STUDY, self.coarsening_study)
         self.gallery.frame.startRequested.connect(self.draw_gallery)
@@ -98,11 +98,11 @@ class StudiesPage(PageWidget):
         for kind in KINDS:
             self.start(kind)
         for key in VARIATIONS:
-            self.desk.start(key, quietly=True)
+            self.sweeps.start(key, quietly=True)
         self.draw_gallery()
 
     def start(self, kind: Kind) -> None:
-        """Start a study; that of the losses with the rows and the box that are chosen."""
+        """Start a study; that of the losses with the selected rows and box."""
         options: dict[str, Any] = {}
         if kind is Kind.COARSENING_STUDY:
             rows = chosen_rows(self.bar.names(), self._session.choices)
@@ -113,14 +113,14 @@ class StudiesPage(PageWidget):
             self._context.toast.problem(str(error))
 
     def draw_gallery(self) -> None:
-        """Coarsen the particle on screen and those after it once for each loss function."""
+        """Coarsen the current particle and those after it with each loss function."""
         entries = self._session.particles
         if not entries:
             self._context.toast.problem(tr("No particle is open; open a mesh first."))
             return
         ids = [entry.id for entry in entries]
         first = ids.index(self._session.choices.selected) if self._session.choices.selected in ids else 0
-        shown = [*entries[first:], *entries[:first]][:COLUMNS]
+        shown = [*entries[first:], *entries[:first]][:MAX_PARTICLES]
         rows = chosen_rows(self.bar.names(), self._session.choices)
         self._drawn = [row.label for row in rows], [entry.particle.name for entry in shown]
         self.gallery.begin([entry.id for entry in shown], [retold(row.label) for row in rows])
@@ -131,9 +131,9 @@ class StudiesPage(PageWidget):
         self._context.start(tr("Coarsening for the gallery"), job, show, partial=show, lane="gallery")
 
     def save(self) -> None:
-        """Ask for a folder and write tables and figures of the studies that are there."""
+        """Ask for a folder and write tables and figures of all results."""
         found = {kind.value: getattr(self._session.results, kind.value) for kind in KINDS}
-        found |= {f"{key}_study": study for key, study in self.desk.found.items() if study.names}
+        found |= {f"{key}_study": study for key, study in self.sweeps.results.items() if study.names}
         if solids := self.gallery.value():
             found["solids_study"] = solid_study(solids, *self._drawn)
         done = tuple((kind, study) for kind, study in found.items() if study is not None)
@@ -146,9 +146,9 @@ class StudiesPage(PageWidget):
             return
         self._context.remember("folder", name)
         job = Job(write_studies, (done, Path(name)))
-        self._context.start(tr("Writing figures"), job, self._tell_written, lane="save")
+        self._context.start(tr("Writing figures"), job, self._report_written, lane="save")
 
-    def _tell_written(self, paths: tuple[Path, ...]) -> None:
+    def _report_written(self, paths: tuple[Path, ...]) -> None:
         listed = "\n".join(str(path) for path in paths)
         self._context.toast.note(
             tr("{count} files were written to {folder}.", count=len(paths), folder=paths[0].parent), listed
@@ -183,7 +183,7 @@ class StudiesPage(PageWidget):
             tr_count(
                 "Draw the polyhedra of this particle",
                 "Draw the polyhedra of {count} particles",
-                min(count, COLUMNS),
+                min(count, MAX_PARTICLES),
             )
         )
 
@@ -228,7 +228,7 @@ def _titled(title: str, part: QWidget) -> QWidget:
 
 
 def _framed(part: QWidget) -> QTabWidget:
-    """The border and ground of tabs around a part that stands alone."""
+    """A single widget with the border and background of tabs."""
     box = QTabWidget()
     box.tabBar().hide()
     for bare in (box, box.tabBar()):

@@ -1,4 +1,4 @@
-"""What each changed weight changes: percentage points, red where an error grows, blue where it falls."""
+"""Sensitivity of errors to weights in percentage points, red for an increase, blue for a decrease."""
 
 import numpy as np
 from PySide6.QtCore import Qt
@@ -15,7 +15,7 @@ from regolith_studio.ui.widgets.table import FontRowHeight
 
 
 class SensitivityTable(QWidget):
-    """A row a change, a column a descriptor; a sentence where there is nothing yet."""
+    """A table with a row per change and a column per descriptor, or a placeholder."""
 
     def __init__(self, placeholder: str, headers: tuple[str, ...]) -> None:
         super().__init__()
@@ -30,7 +30,7 @@ class SensitivityTable(QWidget):
         self._stack.addWidget(self.table)
 
     def show_study(self, study: CoarseningStudy | None) -> None:
-        """Show the changes of a study of the sensitivity, or the sentence."""
+        """Show the changes of a sensitivity study, or the placeholder."""
         self._study = study if study is not None and len(study.rows) > 1 else None
         self._stack.setCurrentIndex(1 if self._study else 0)
         self._fill()

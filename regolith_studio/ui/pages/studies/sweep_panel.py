@@ -1,4 +1,4 @@
-"""One variation of the coarsening: its values, its start and stop, and what it shows."""
+"""Panel of a sweep of the coarsening: values, start and stop, and its plot or table."""
 
 from collections.abc import Callable, Mapping
 from typing import Protocol
@@ -25,14 +25,14 @@ ON_AND_OFF = mark("The method keeps descriptors exactly: each is asked for or no
 
 
 class StudyView(Protocol):
-    """What a panel places below its controls."""
+    """A widget that shows the results of a sweep."""
 
     def show_study(self, study: CoarseningStudy | None) -> None: ...
     def set_theme(self, theme: Theme) -> None: ...
 
 
 class FacetsPlot(BandPlot):
-    """A curve a descriptor against the number of facets."""
+    """A curve per descriptor against the number of facets."""
 
     def __init__(self) -> None:
         super().__init__(
@@ -43,7 +43,7 @@ class FacetsPlot(BandPlot):
         )
 
     def show_study(self, study: CoarseningStudy | None) -> None:
-        """Draw a study of the faces, or nothing."""
+        """Draw a sweep of the number of facets, or nothing."""
         if study is None:
             self.set_series([])
             return
@@ -67,7 +67,7 @@ class FacetsPlot(BandPlot):
 
 
 class TradeoffPlot(BandPlot):
-    """A point a row, overlap to the right, descriptors up; a line joins what none is better than."""
+    """A point per loss, overlap against descriptor errors, and the Pareto front."""
 
     def __init__(self) -> None:
         super().__init__(
@@ -77,7 +77,7 @@ class TradeoffPlot(BandPlot):
         )
 
     def show_study(self, study: CoarseningStudy | None) -> None:
-        """Draw a study of the trade-off, or nothing."""
+        """Draw a trade-off study, or nothing."""
         if study is None:
             self.set_series([])
             return
@@ -106,7 +106,7 @@ class TradeoffPlot(BandPlot):
 
 
 def sensitivity_part() -> SensitivityTable:
-    """The table of a sensitivity."""
+    """The table of a sensitivity study."""
     headers = (*(plain_symbol(CATALOGUE[key].symbol) for key in LOSS_KEYS), OVERLAP)
     return SensitivityTable(
         tr("What each error becomes when one weight of the loss is changed: which weights matter."), headers
@@ -118,11 +118,11 @@ PARTS: Mapping[str, Callable[[], QWidget]] = {
     "tradeoff": TradeoffPlot,
     "sensitivity": sensitivity_part,
 }
-"""What shows each variation, by its key."""
+"""View of each sweep, by key."""
 
 
 class SweepPanel(QWidget):
-    """Emits ``startRequested`` and ``cancelRequested(task)`` of its frame."""
+    """Edits the values of a sweep and shows its results."""
 
     startRequested = Signal()  # noqa: N815
 
@@ -152,13 +152,13 @@ class SweepPanel(QWidget):
         self.frame.startRequested.connect(self.startRequested)
 
     def show_method(self, method: str) -> None:
-        """Ask for values where the method makes something of them."""
+        """Show the field of values if the method uses them."""
         takes = self._variation.takes_values(method)
         self.values.setVisible(takes)
         self.asked.setText(tr(self._variation.asks if takes else ON_AND_OFF))
 
     def show_study(self, study: CoarseningStudy | None, outdated: bool) -> None:
-        """Show what was found, or nothing."""
+        """Show the results, or nothing."""
         shown: StudyView = self.part  # type: ignore[assignment]  # every part of PARTS is one
         shown.show_study(study)
         self.frame.set_remark("" if study is None else summary_text(study, outdated))
@@ -170,7 +170,7 @@ class SweepPanel(QWidget):
 
 
 def summary_text(study: CoarseningStudy, outdated: bool) -> str:
-    """Particles, box, requests that could not be met, and whether the choices have moved on."""
+    """Number of particles, box, unmet requests, and whether the choices have changed since."""
     words = [tr_count("1 particle", "{count} particles", len(study.names))]
     if study.box_metric != "exact":
         words.append(tr("box of {name}", name=study.box_metric))
