@@ -24,7 +24,7 @@ from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.dataset import PAGE
 from regolith_studio.ui.theme import DARK, LIGHT
-from regolith_studio.ui.widgets.thumbnails import AT_ONCE, painted, thumbnail
+from regolith_studio.ui.widgets.thumbnails import TRIANGLES_PER_STEP, paint_thumbnail, thumbnail
 from regolith_studio.ui.widgets.toast import Toast
 from regolith_studio.ui.wiring import Wiring
 
@@ -295,8 +295,8 @@ def test_that_a_picture_shows_a_lit_solid_on_a_clear_ground() -> None:
 @pytest.mark.usefixtures("app")
 def test_that_the_window_answers_while_a_picture_is_painted() -> None:
     fine = icosphere(4)
-    steps = list(painted(fine, "#c08040"))
-    assert len(steps) == -(-len(fine.faces) // 2 // AT_ONCE), "half of its triangles face the eye"
+    steps = list(paint_thumbnail(fine, "#c08040"))
+    assert len(steps) == -(-len(fine.faces) // 2 // TRIANGLES_PER_STEP), "half of its triangles face the eye"
 
 
 def tree(folder):
