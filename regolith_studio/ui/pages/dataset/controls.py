@@ -258,4 +258,6 @@ class DatasetControls:
     def request(self) -> DatasetRequest:
         """The values as a recipe holds them."""
         name = self.folder.name.text().strip()
-        return DatasetRequest(self.representatives.recipe_part(self.sizes.text(), name), self.targets.recipe_part())
+        return DatasetRequest(
+            self.representatives.recipe_part(self.sizes.text(), name), self.targets.recipe_part()
+        )
