@@ -133,10 +133,10 @@ def conclude(kind: str, study: Callable[..., "Steps"], folder: Path, json: bool,
     """
     from regolith_studio.cli.terminal import follow, print_json, print_table
     from regolith_studio.io.atomic import staged_folder
-    from regolith_studio.jobs.answers import Answers
+    from regolith_studio.jobs.study_checkpoint import StudyCheckpoint
     from regolith_studio.session.outputs.studies import STUDIES
 
-    with Answers(folder / "journal" / f"{kind}.jsonl", resume) as answers:
+    with StudyCheckpoint(folder / "journal" / f"{kind}.sqlite", resume) as answers:
         found = follow(study(answers=answers))
         with staged_folder(folder) as stage:
             files = [path.name for path in STUDIES[kind].write(found, stage)]

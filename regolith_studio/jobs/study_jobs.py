@@ -5,10 +5,10 @@ from functools import partial
 from typing import Any
 
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.jobs.answers import Answers, Mapper, fingerprint, fingerprint_of_rows
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
 from regolith_studio.jobs.events import Job, Partial, Progress, Started, Step, Steps
 from regolith_studio.jobs.executor import Executor, call, open_executor, value_of
+from regolith_studio.jobs.study_checkpoint import Mapper, StudyCheckpoint, hash_of_particles, hash_of_rows
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.studies.coarsening import TargetChoice, coarsening_study
 from regolith_studio.studies.lmax import lmax_study
@@ -20,7 +20,7 @@ def study_lmax(
     particles: Sequence[Particle],
     workers: int | Executor = 1,
     seed: int = 0,
-    answers: Answers | None = None,
+    answers: StudyCheckpoint | None = None,
     **options: Any,
 ) -> Steps:
     """Fig. 3 for `particles`; partial results and the result are ``LmaxStudy``.
@@ -36,7 +36,7 @@ def study_lmax(
     """
     yield Started("RMSRE against l_max", len(particles))
     if answers is not None:
-        answers.about("lmax", (seed, sorted(options.items())), fingerprint(particles))
+        answers.open("lmax", (seed, sorted(options.items())), hash_of_particles(particles))
     with open_executor(workers) as executor:
         mapper = _with_answers(executor.map, answers)
         return (yield from as_job_steps(lmax_study(particles, mapper=mapper, seed=seed, **options)))
@@ -46,7 +46,7 @@ def study_population(
     sample: Sample,
     models: Sequence[str] | None = None,
     workers: int | Executor = 1,
-    answers: Answers | None = None,
+    answers: StudyCheckpoint | None = None,
     **options: Any,
 ) -> Steps:
     """Figs. 4 to 6 for `sample`; partial results and the result are ``PopulationStudy``.
@@ -64,8 +64,8 @@ def study_population(
     """
     yield Started("Judging models", 0)
     if answers is not None:
-        inputs = fingerprint_of_rows(sample.coefficients, (*sample.names, sample.unit))
-        answers.about("population", (models, sorted(options.items())), inputs)
+        inputs = hash_of_rows(sample.coefficients, (*sample.names, sample.unit))
+        answers.open("population", (models, sorted(options.items())), inputs)
     with open_executor(workers) as executor:
         mapper = _with_answers(partial(_map_with_pauses, executor), answers)
         return (yield from as_job_steps(population_study(sample, models, mapper=mapper, **options)))
@@ -83,7 +83,7 @@ def study_coarsening(
     particles: Sequence[Particle],
     request: CoarseningRequest,
     workers: int | Executor = 1,
-    answers: Answers | None = None,
+    answers: StudyCheckpoint | None = None,
     title: str = "RMSRE against loss weights",
     **options: Any,
 ) -> Steps:
@@ -104,7 +104,7 @@ def study_coarsening(
     """
     yield Started(title, len(particles))
     if answers is not None:
-        answers.about("coarsening", (request, sorted(options.items())), fingerprint(particles))
+        answers.open("coarsening", (request, sorted(options.items())), hash_of_particles(particles))
     with open_executor(workers) as executor:
         study = coarsening_study(
             particles,
@@ -119,8 +119,8 @@ def study_coarsening(
         return (yield from as_job_steps(study))
 
 
-def _with_answers(mapper: Mapper, answers: Answers | None) -> Mapper:
-    return mapper if answers is None else answers.through(mapper)
+def _with_answers(mapper: Mapper, answers: StudyCheckpoint | None) -> Mapper:
+    return mapper if answers is None else answers.wrap(mapper)
 
 
 def as_job_steps(steps: Generator[StudyProgress, None, Any]) -> Generator[Step, None, Any]:

@@ -1,11 +1,11 @@
 """Run a recipe on local processes or a Dask cluster, as the window does in the background."""
 
 import contextlib
-import json
 from dataclasses import dataclass
 from pathlib import Path
 
-from regolith_studio.jobs.chunked import JOURNAL
+from regolith_studio.errors import FileError
+from regolith_studio.io.checkpoint import read_note
 from regolith_studio.jobs.events import Partial, Started, Steps
 from regolith_studio.jobs.executor import ExecutorSettings
 from regolith_studio.session.recipe import Recipe
@@ -44,18 +44,10 @@ def run_recipe_job(
 
 def is_unfinished(folder: Path) -> bool:
     """Whether a run into `folder` was begun and has not ended."""
-    from regolith_studio.session.run_recipe import JOURNAL_FOLDER
+    from regolith_studio.session.run_recipe import CHECKPOINT, ENDED, JOURNAL_FOLDER
 
+    path = folder / JOURNAL_FOLDER / CHECKPOINT
     try:
-        lines = (folder / JOURNAL_FOLDER / JOURNAL).read_text(encoding="utf-8").splitlines()
-    except (OSError, UnicodeDecodeError):
-        return False
-    return not any("ended" in _entry(line) for line in lines[1:])
-
-
-def _entry(line: str) -> dict[str, object]:
-    try:
-        entry = json.loads(line)
-    except ValueError:  # the last line of a process that died
-        return {}
-    return entry if isinstance(entry, dict) else {}
+        return path.exists() and read_note(path, ENDED) is None
+    except FileError:  # damaged, or being written
+        return True

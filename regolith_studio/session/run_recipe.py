@@ -1,7 +1,7 @@
 """Performs a recipe: from files to everything that it asks for, in one folder.
 
 Every particle is worked on by itself; what is known of it goes to disk at once (``journal/`` in the
-folder, see :mod:`regolith_studio.jobs.chunked`) and becomes the files of the results in the end. So a run
+folder, see :mod:`regolith_studio.jobs.batch`) and becomes the files of the results in the end. So a run
 that was killed goes on where it was, and its size is limited by the disk and not by the memory.
 """
 
@@ -20,13 +20,12 @@ from regolith_studio.dataset.streaming import check_count, write_stored
 from regolith_studio.errors import FileError, RegolithError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.io.atomic import staged_folder, write_bytes
-from regolith_studio.jobs.answers import Answers
-from regolith_studio.jobs.chunked import JOURNAL, LOST, Batch, work_through
+from regolith_studio.io.checkpoint import CheckpointRecord, read_note
+from regolith_studio.jobs.batch import LOST, Batch, run_batch
 from regolith_studio.jobs.dataset_jobs import dataset_provenance
 from regolith_studio.jobs.events import Job, Progress, Started, Step, Steps
 from regolith_studio.jobs.executor import Executor, open_executor
-from regolith_studio.jobs.journal import Journal
-from regolith_studio.jobs.shards import Record
+from regolith_studio.jobs.study_checkpoint import StudyCheckpoint
 from regolith_studio.jobs.study_jobs import study_coarsening, study_lmax
 from regolith_studio.readers.particles import unique_name
 from regolith_studio.session.batch.dataset_step import (
@@ -55,7 +54,9 @@ from regolith_studio.session.outputs.summary import Summary, write_summary
 from regolith_studio.session.recipe import Recipe, Representatives
 
 Part = Generator[Step, None, Any]
-JOURNAL_FOLDER, PREPARED_FOLDER = "journal", "prepared"
+JOURNAL_FOLDER, CHECKPOINT, PREPARED_FOLDER = "journal", "checkpoint.sqlite", "prepared"
+ENDED = "ended"
+"""Note of a run that has ended: the problems that it met."""
 
 
 @dataclass
@@ -131,8 +132,9 @@ def run_recipe(
     choices, place = recipe.choices(), folder / JOURNAL_FOLDER
     if folder.exists() and not folder.is_dir():
         raise FileError(f"{folder} is a file; name a folder for the results.")
-    over = (place / JOURNAL).exists() and _has_ended(place)
-    if (place / JOURNAL).exists() and not (over or resume):
+    checkpoint = place / CHECKPOINT
+    over = checkpoint.exists() and read_note(checkpoint, ENDED) is not None
+    if checkpoint.exists() and not (over or resume):
         raise FileError(
             f"{folder} holds a run that has not ended; go on with --resume, or remove {place} to begin anew."
         )
@@ -144,8 +146,9 @@ def run_recipe(
         )
         done = RecipeRun(folder, recipe, choices, BatchInputs.of(recipe, base, prepared), resume=resume)
         _check(done)
-        with _opened(done, resume, chunk) as batch:
-            if (ended := _ending(batch)) is not None:
+        batch = _opened(done, resume, chunk)
+        with batch.checkpoint:
+            if (ended := batch.checkpoint.note(ENDED)) is not None:
                 done.problems = ended
                 return done
             yield from _worked(done, batch, executor)
@@ -155,8 +158,7 @@ def run_recipe(
             if recipe.outputs.summary:
                 write_summary(folder, done.recipe, done.summary, done.studies, done.problems)
             write_bytes(folder / "recipe.json", recipe.to_json().encode("utf-8"))
-            batch.note({"ended": done.problems})
-            batch.clear()
+            batch.checkpoint.remove_records(**{ENDED: done.problems})
             clear_prepared_inputs(prepared)
     return done
 
@@ -179,26 +181,16 @@ def _check_size(recipe: Recipe, n_particles: int) -> None:
 
 def _opened(done: RecipeRun, resume: bool, chunk: int | None) -> Batch:
     """The batch of the recipe, begun or taken up again."""
-    items, place = done.items, done.folder / JOURNAL_FOLDER
+    items, place = done.items, done.folder / JOURNAL_FOLDER / CHECKPOINT
     inputs = "\n".join(items.fingerprints()).encode("utf-8", "surrogateescape")
     subject = {
         "recipe": done.recipe.model_dump(mode="json"),
         "set of input files": hashlib.sha256(inputs).hexdigest(),
         "set of program versions": software_versions(),
     }
-    if resume and (place / JOURNAL).exists():
+    if resume and place.exists():
         return Batch.resume(place, len(items.members), subject)
-    return Batch.begin(place, len(items.members), subject, chunk)
-
-
-def _has_ended(place: Path) -> bool:
-    with contextlib.closing(Journal.reopen(place / JOURNAL)) as journal:
-        return any("ended" in entry for entry in journal.entries)
-
-
-def _ending(batch: Batch) -> list[str] | None:
-    """The problems of a run that has ended already."""
-    return next((list(entry["ended"]) for entry in batch.notes if "ended" in entry), None)
+    return Batch.create(place, len(items.members), subject, chunk)
 
 
 def _worked(done: RecipeRun, batch: Batch, executor: Executor) -> Part:
@@ -215,7 +207,7 @@ def _worked(done: RecipeRun, batch: Batch, executor: Executor) -> Part:
     )
     members = done.items.members
     yield Started("Working on particles", len(members))
-    yield from work_through(
+    yield from run_batch(
         batch,
         lambda chunk: Job(process_particles, (tuple((i, members[i]) for i in chunk), asked)),
         executor,
@@ -232,7 +224,7 @@ def _assembled(done: RecipeRun, batch: Batch) -> Part:
         sinks: list[ResultWriter] = [
             done.summary,
             stack.enter_context(failure_writer(done.folder)),
-            stack.enter_context(time_writer(batch.folder / "times.csv")),
+            stack.enter_context(time_writer(done.folder / JOURNAL_FOLDER / "times.csv")),
         ]
         if wish.descriptors:
             sinks.append(stack.enter_context(descriptor_writer(done.folder)))
@@ -254,15 +246,16 @@ def _tally(done: RecipeRun, batch: Batch) -> None:
     done.problems += [problem.with_path for problem in done.items.problems]
     done.problems += done.tally.unread + done.tally.problems
     if not done.tally.n_read:
-        shutil.rmtree(batch.folder, ignore_errors=True)
+        batch.checkpoint.close()
+        shutil.rmtree(done.folder / JOURNAL_FOLDER, ignore_errors=True)
         with contextlib.suppress(OSError):
             done.folder.rmdir()
         raise FileError(done.tally.unread[0])
 
 
-def _records(done: RecipeRun, batch: Batch) -> Iterator[Record]:
+def _records(done: RecipeRun, batch: Batch) -> Iterator[CheckpointRecord]:
     """What is known of each particle; those that ended their process get a name."""
-    for record in batch.records():
+    for record in batch.checkpoint.records():
         if LOST in record.values:
             failures = [{"stage": LOST, "reason": record.values[LOST]}]
             name = done.items.members[record.index].name
@@ -351,7 +344,7 @@ def _read(done: RecipeRun) -> Generator[Step, None, list[Particle]]:
 
 
 def _study(done: RecipeRun, name: str, study: Callable[..., Steps]) -> Part:
-    with Answers(done.folder / JOURNAL_FOLDER / f"{name}.jsonl", done.resume) as answers:
+    with StudyCheckpoint(done.folder / JOURNAL_FOLDER / f"{name}.sqlite", done.resume) as answers:
         try:
             found = yield from study(answers=answers)
         except RegolithError as error:

@@ -9,10 +9,10 @@ from typing import Any
 from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.fit import HarmonicFit
-from regolith_studio.jobs.answers import Answers, fingerprint
 from regolith_studio.jobs.coarsening_jobs import CoarsenedParticle, CoarseningRequest, coarsen_particle
 from regolith_studio.jobs.events import Job, Partial, Progress, Started, Step, Steps
 from regolith_studio.jobs.executor import Executor, open_executor
+from regolith_studio.jobs.study_checkpoint import StudyCheckpoint, hash_of_particles
 from regolith_studio.jobs.study_jobs import study_coarsening, study_lmax
 from regolith_studio.session.choices import L_MAX_LIMIT, Choices
 from regolith_studio.session.dependencies import Kind
@@ -149,7 +149,7 @@ def study_gallery(
     order: CoarseningRequest,
     rows: Sequence[StudyRow] | None = None,
     workers: int | Executor = 1,
-    answers: Answers | None = None,
+    answers: StudyCheckpoint | None = None,
 ) -> Steps:
     """As :func:`coarsen_gallery`, particle by particle; the result is the study that can be written.
 
@@ -163,11 +163,11 @@ def study_gallery(
     chosen = paper_rows() if rows is None else tuple(rows)
     yield Started("Coarsening for the gallery", len(particles))
     if answers is not None:
-        answers.about("solids", (order, chosen), fingerprint(particles))
+        answers.open("solids", (order, chosen), hash_of_particles(particles))
     labels, names = [row.label for row in chosen], [particle.name for particle in particles]
     cells: dict[tuple[int, int], StudiedSolid | str] = {}
     with open_executor(workers) as executor:
-        mapper = executor.map if answers is None else answers.through(executor.map)
+        mapper = executor.map if answers is None else answers.wrap(executor.map)
         found = mapper(partial(coarsen_column, order=order, rows=chosen), list(enumerate(particles)))
         for column, (name, answer) in enumerate(zip(names, found, strict=True)):
             for row, cell in enumerate(answer["rows"]):

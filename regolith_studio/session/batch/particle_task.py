@@ -13,13 +13,13 @@ from regolith_studio.errors import Cancelled
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.fit import DEFAULT_FIT_OPTIONS, FitOptions, HarmonicFit
 from regolith_studio.harmonics.io import fits_document
+from regolith_studio.io.checkpoint import CheckpointRecord
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.jobs.coarsening_jobs import CoarsenedParticle, CoarseningRequest, coarsen_particle
 from regolith_studio.jobs.events import Failed, Finished, Job, JobResult, Progress, Started, Step, Steps
 from regolith_studio.jobs.executor import call
 from regolith_studio.jobs.particle_jobs import FitRequest, MeasuredParticle, fit_one, measure_particle
 from regolith_studio.jobs.runners.run_job import iterate_job
-from regolith_studio.jobs.shards import Record
 from regolith_studio.session.batch.inputs import BatchInput
 from regolith_studio.session.outputs.coarsening import STL_HEADER, coarsening_entry
 from regolith_studio.session.outputs.descriptors import described
@@ -79,7 +79,7 @@ class _Entry:
 
 
 def process_particles(items: Sequence[tuple[int, BatchInput]], wish: ParticleTask) -> Steps:
-    """Read, measure, fit and coarsen particles; returns a tuple of :class:`Record`, one an item.
+    """Read, measure, fit and coarsen particles; returns a tuple of :class:`CheckpointRecord`, one an item.
 
     Whatever goes wrong with a particle stands in its record, under ``failures``, and stops nothing else.
     """
@@ -91,14 +91,14 @@ def process_particles(items: Sequence[tuple[int, BatchInput]], wish: ParticleTas
     return tuple(records)
 
 
-def _record(index: int, item: BatchInput, wish: ParticleTask) -> Generator[Step, None, Record]:
+def _record(index: int, item: BatchInput, wish: ParticleTask) -> Generator[Step, None, CheckpointRecord]:
     entry = _Entry(index, {"name": item.name, "group": "", "seconds": {}})
     particle = yield from entry.attempt("reading", Job(call, (_particle, item)))
     if particle is not None:
         entry.values["group"] = particle.group
         yield from _results(entry, particle, wish)
     entry.values["failures"] = entry.failures
-    return Record(index, entry.values, entry.blobs)
+    return CheckpointRecord(index, entry.values, entry.blobs)
 
 
 def _results(entry: _Entry, particle: Particle, wish: ParticleTask) -> Generator[Step, None, None]:

@@ -15,11 +15,11 @@ from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.io import fits_from
 from regolith_studio.io.atomic import staged_file, staged_folder, write_bytes
+from regolith_studio.io.checkpoint import CheckpointRecord
 from regolith_studio.io.json_text import JsonListWriter
 from regolith_studio.io.tables import csv_bytes
-from regolith_studio.jobs.chunked import LOST, Batch
+from regolith_studio.jobs.batch import LOST, Batch
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
-from regolith_studio.jobs.shards import Record
 from regolith_studio.session.batch.particle_task import COEFFICIENTS, CUT, MESH, SHAPE, STAGES
 from regolith_studio.session.outputs.coarsening import document_head
 from regolith_studio.session.outputs.descriptors import table_columns, table_row
@@ -29,7 +29,7 @@ from regolith_studio.session.outputs.fits import FittedSample, write_fits
 class ResultWriter(Protocol):
     """Takes the records of a batch in their order."""
 
-    def add(self, record: Record) -> None:
+    def add(self, record: CheckpointRecord) -> None:
         """Take one more."""
 
 
@@ -52,7 +52,7 @@ class _Descriptors:
     keys: list[str] = field(default_factory=list)
     waiting: list[dict[str, Any]] = field(default_factory=list)
 
-    def add(self, record: Record) -> None:
+    def add(self, record: CheckpointRecord) -> None:
         entry = record.values.get("described")
         if entry is None:
             return
@@ -96,7 +96,7 @@ class _Meshes:
     entries: JsonListWriter
     failed: list[dict[str, str]] = field(default_factory=list)
 
-    def add(self, record: Record) -> None:
+    def add(self, record: CheckpointRecord) -> None:
         values = record.values
         if entry := values.get("coarse"):
             self.entries.add(entry)
@@ -120,7 +120,7 @@ class _Fits:
     fits: list[HarmonicFit] = field(default_factory=list)
     failed: list[tuple[str, str]] = field(default_factory=list)
 
-    def add(self, record: Record) -> None:
+    def add(self, record: CheckpointRecord) -> None:
         values = record.values
         if known := values.get("fit"):
             given = values["origin"]
@@ -143,7 +143,7 @@ def fit_writer(stem: Path) -> Iterator[ResultWriter]:
 class _Failures:
     rows: list[list[str]] = field(default_factory=list)
 
-    def add(self, record: Record) -> None:
+    def add(self, record: CheckpointRecord) -> None:
         name = record.values["name"]
         self.rows += [[name, each["stage"], each["reason"]] for each in record.values["failures"]]
 
@@ -164,7 +164,7 @@ def failure_writer(folder: Path) -> Iterator[ResultWriter]:
 class _Times:
     stream: IO[bytes]
 
-    def add(self, record: Record) -> None:
+    def add(self, record: CheckpointRecord) -> None:
         seconds = record.values.get("seconds", {})
         row = [record.values["name"], *[seconds.get(stage) for stage in STAGES]]
         self.stream.write(csv_bytes([row]))
@@ -201,7 +201,7 @@ class RunStatistics:
     fitted: list[ShCoefficients] = field(default_factory=list)
     first_coarse: int | None = None
 
-    def add(self, record: Record) -> None:
+    def add(self, record: CheckpointRecord) -> None:
         """Take one more."""
         values = record.values
         if reason := reason_of(record, "reading"):
@@ -218,23 +218,23 @@ class RunStatistics:
 
 def shapes_of(batch: Batch) -> Iterator[StoredShape]:
     """The shapes of a dataset, one at a time."""
-    for record in batch.records():
+    for record in batch.checkpoint.records():
         if shape := record.values.get("shape"):
             yield StoredShape(shape, record.blobs[SHAPE])
 
 
-def reason_of(record: Record, stage: str = "") -> str:
+def reason_of(record: CheckpointRecord, stage: str = "") -> str:
     """Why a stage failed, or the last one that did; empty if none has."""
     failures = record.values["failures"]
     return next((each["reason"] for each in reversed(failures) if stage in ("", each["stage"])), "")
 
 
-def n_failures(record: Record) -> int:
+def n_failures(record: CheckpointRecord) -> int:
     """1 if anything has failed."""
     return int(bool(record.values.get("failures") or LOST in record.values))
 
 
-def _reasons(record: Record) -> list[str]:
+def _reasons(record: CheckpointRecord) -> list[str]:
     return list(dict.fromkeys(each["reason"] for each in record.values["failures"]))
 
 

@@ -10,7 +10,7 @@ from typing import Any
 from regolith_studio.dataset.build import software_versions
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.io.atomic import write_bytes
-from regolith_studio.jobs.shards import Record
+from regolith_studio.io.checkpoint import CheckpointRecord
 from regolith_studio.session.outputs.studies import STUDIES
 from regolith_studio.session.recipe import Recipe
 
@@ -52,7 +52,7 @@ class Summary:
     pictures: Sequence[tuple[str, str]] = ()
     _squares: dict[str, float] = field(default_factory=dict)
 
-    def add(self, record: Record) -> None:
+    def add(self, record: CheckpointRecord) -> None:
         """Take one more particle."""
         self.n_particles += 1
         for key, kept in (("described", self.described), ("coarse", self.coarse)):

@@ -1,7 +1,9 @@
-"""Answers that were kept are given again to the bit, and only for the same question."""
+"""StudyCheckpoint that were kept are given again to the bit, and only for the same question."""
 
 import json
+import sqlite3
 from collections.abc import Callable, Iterator
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -11,14 +13,14 @@ import pytest
 from regolith_studio.errors import FileError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.jobs.answers import LARGEST, Answers, fingerprint
+from regolith_studio.jobs.study_checkpoint import MAX_NUMBERS, StudyCheckpoint, hash_of_particles
 
 GIVEN: dict[int, Any] = {
     0: np.array([[0.1, -0.0, np.nan], [np.inf, 1e-308, 2.0 / 3.0]]),
     1: "The mesh is open.",
     2: (np.array([[1.0 / 3.0]]), (True,)),
     3: object(),  # cannot be kept
-    4: np.zeros(LARGEST + 1),  # too large
+    4: np.zeros(MAX_NUMBERS + 1),  # too large
     5: np.empty((0, 4)),
 }
 
@@ -33,15 +35,15 @@ def asked(path: Path, resume: bool, until: int = len(GIVEN)) -> tuple[list[Any],
         worked.append(item)
         return GIVEN[item]
 
-    with Answers(path, resume) as answers:
-        answers.about("counting", ("abc", 1), "inputs")
-        mapper = answers.through(map)
+    with StudyCheckpoint(path, resume) as answers:
+        answers.open("counting", ("abc", 1), "inputs")
+        mapper = answers.wrap(map)
         found = [*mapper(work, [0, 1, 2]), *mapper(work, iter([3, 4, 5]))]
     return found, worked
 
 
 def test_that_what_was_known_is_not_worked_out_again_and_is_the_same_to_the_bit(tmp_path: Path) -> None:
-    path = tmp_path / "out" / "journal" / "study.jsonl"
+    path = tmp_path / "out" / "journal" / "study.sqlite"
     with pytest.raises(KeyboardInterrupt):
         asked(path, False, until=5)
     found, worked = asked(path, True)
@@ -65,19 +67,19 @@ def test_that_a_waiting_mapper_may_say_so_between_answers(tmp_path: Path) -> Non
             yield None
             yield function(item)
 
-    with Answers(tmp_path / "out" / "journal" / "study.jsonl") as answers:
-        answers.about("counting", 1, "inputs")
-        found = list(answers.through(waiting)(str, [1, 2]))
+    with StudyCheckpoint(tmp_path / "out" / "journal" / "study.sqlite") as answers:
+        answers.open("counting", 1, "inputs")
+        found = list(answers.wrap(waiting)(str, [1, 2]))
     assert found == [None, "1", None, "2"]
 
 
-def test_that_a_line_that_was_cut_off_is_worked_out_again(tmp_path: Path) -> None:
-    path = tmp_path / "out" / "journal" / "study.jsonl"
+def test_that_an_answer_that_was_damaged_is_worked_out_again(tmp_path: Path) -> None:
+    path = tmp_path / "out" / "journal" / "study.sqlite"
     with pytest.raises(KeyboardInterrupt):
         asked(path, False, until=3)
-    whole = path.read_bytes()
-    path.write_bytes(whole[:-7])
-    assert asked(path, True)[1] == [2, 3, 4, 5]
+    with closing(sqlite3.connect(path)) as database, database:
+        database.execute("UPDATE records SET content = replace(content, 'open', 'shut')")
+    assert asked(path, True)[1] == [1, 3, 4, 5]
 
 
 @pytest.mark.parametrize(
@@ -91,31 +93,32 @@ def test_that_a_line_that_was_cut_off_is_worked_out_again(tmp_path: Path) -> Non
 def test_that_answers_to_another_question_are_refused(
     tmp_path: Path, other: dict[str, Any], words: str
 ) -> None:
-    path = tmp_path / "out" / "journal" / "study.jsonl"
+    path = tmp_path / "out" / "journal" / "study.sqlite"
     with pytest.raises(KeyboardInterrupt):
         asked(path, False, until=2)
     before = path.read_bytes()
     question = {"study": "counting", "options": ("abc", 1), "inputs": "inputs"} | other
-    with pytest.raises(FileError, match=words), Answers(path, True) as answers:
-        answers.about(**question)
+    with pytest.raises(FileError, match=words), StudyCheckpoint(path, True) as answers:
+        answers.open(**question)
     assert path.read_bytes() == before
 
 
 def test_that_without_resume_a_study_begins_anew(tmp_path: Path) -> None:
-    path = tmp_path / "out" / "journal" / "study.jsonl"
+    path = tmp_path / "out" / "journal" / "study.sqlite"
     with pytest.raises(KeyboardInterrupt):
         asked(path, False, until=2)
     assert asked(path, False)[1] == list(GIVEN)
 
 
 def test_that_other_versions_of_programs_are_refused(tmp_path: Path) -> None:
-    path = tmp_path / "out" / "journal" / "study.jsonl"
+    path = tmp_path / "out" / "journal" / "study.sqlite"
     with pytest.raises(KeyboardInterrupt):
         asked(path, False, until=2)
-    head, *lines = path.read_text().splitlines()
-    document = json.loads(head)
-    document["subject"]["set of program versions"]["numpy"] = "0.1"
-    path.write_text("\n".join([json.dumps(document), *lines]) + "\n")
+    with closing(sqlite3.connect(path)) as database, database:
+        (text,) = database.execute("SELECT content FROM notes WHERE name = 'subject'").fetchone()
+        subject = json.loads(text)
+        subject["set of program versions"]["numpy"] = "0.1"
+        database.execute("UPDATE notes SET content = ? WHERE name = 'subject'", (json.dumps(subject),))
     with pytest.raises(FileError, match="another set of program versions"):
         asked(path, True)
 
@@ -131,5 +134,5 @@ def test_that_a_fingerprint_knows_names_groups_and_coordinates() -> None:
         (Particle("ag", ball, ""),),
         (Particle("a", ball.moved(scale=1.0 + 1e-15), "g"),),
     ]
-    assert fingerprint((first,)) == fingerprint((Particle("a", icosphere(1), "g"),))
-    assert len({fingerprint(each) for each in [(first,), *others]}) == 1 + len(others)
+    assert hash_of_particles((first,)) == hash_of_particles((Particle("a", icosphere(1), "g"),))
+    assert len({hash_of_particles(each) for each in [(first,), *others]}) == 1 + len(others)

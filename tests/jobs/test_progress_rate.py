@@ -1,0 +1,24 @@
+"""Rate and remaining time of a batch."""
+
+import pytest
+
+from regolith_studio.jobs.progress_rate import ProgressRate, format_duration
+
+
+def test_that_the_pace_is_items_by_seconds_and_forgets_what_was_done_before() -> None:
+    now = [0.0]
+    rate = ProgressRate(1000, 400, clock=lambda: now[0])
+    assert str(rate) == ""
+    now[0] = 10.0
+    rate.advance(50, failed=2)
+    assert rate.rate == 5.0
+    assert rate.seconds_left == 110.0
+    assert str(rate) == "5 a second, 1 min 50 s left, 2 failed"
+
+
+@pytest.mark.parametrize(
+    ("seconds", "words"),
+    [(8.4, "8 s"), (99, "99 s"), (200, "3 min 20 s"), (1500, "25 min"), (7500, "2 h 5 min")],
+)
+def test_that_a_time_is_said_as_people_say_it(seconds: float, words: str) -> None:
+    assert format_duration(seconds) == words
