@@ -23,7 +23,7 @@ from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.dataset.build import build_dataset
 from regolith_studio.dataset.folder_io import write_dataset
-from regolith_studio.dem.repose import measure_repose
+from regolith_studio.dem.angle_of_repose import measure_repose
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces

@@ -10,9 +10,9 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
-from regolith_studio.dem.pile import read_pile
-from regolith_studio.dem.repose import measure_repose
-from regolith_studio.dem.run_folder import RunSummary, find_runs
+from regolith_studio.dem.angle_of_repose import measure_repose
+from regolith_studio.dem.run_io import RunSummary, find_runs
+from regolith_studio.dem.snapshot import read_particle_state
 from regolith_studio.studies.repose_figures import section_figure
 
 IMAGES = Path(__file__).parent / "images"
@@ -35,7 +35,7 @@ def main(folder: Path) -> None:
     right.xaxis.set_minor_locator(NullLocator())
     right.set_xlabel("facets a particle")
     _save(figure, "repose_trends.png")
-    pile = read_pile(usual[0].folder / "final.npz")
+    pile = read_particle_state(usual[0].folder / "final.npz")
     measured = measure_repose(pile.points, pile.diameters, base=0.0)
     _save(section_figure(pile.points, pile.diameters, measured), "repose_sections.png")
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from regolith_studio.coarsening.weights import LossWeights
     from regolith_studio.dataset.build import build_dataset
     from regolith_studio.dataset.folder_io import read_dataset, write_dataset
-    from regolith_studio.dem.repose import measure_repose
+    from regolith_studio.dem.angle_of_repose import measure_repose
     from regolith_studio.descriptors.describe import describe
     from regolith_studio.harmonics.fit import fit_harmonics
     from regolith_studio.harmonics.surface import reconstruct

@@ -82,7 +82,7 @@ def test_that_engine_model_and_page_of_another_package_are_offered(installed: di
     script = """
 import numpy as np
 from PySide6.QtWidgets import QApplication
-from regolith_studio.dem.engine_table import engine_rows
+from regolith_studio.dem.engines import engine_rows
 from regolith_studio.shape_models.models import MODELS
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.ui.pages import PAGES

@@ -67,7 +67,7 @@ def examine_machine() -> dict[str, Any]:
 
 def _engines() -> dict[str, str]:
     """Versions of the engines that can simulate the angle of repose, or why one cannot be used."""
-    from regolith_studio.dem.engine_table import engine_rows
+    from regolith_studio.dem.engines import engine_rows
 
     return {row["key"]: row["problem"] or row["version"] for row in engine_rows()}
 

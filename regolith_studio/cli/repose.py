@@ -35,7 +35,7 @@ def engines(json: Json = False, jobs: Jobs = 1, seed: Seed = 0) -> None:
     """What each engine represents of the paper's contact model, and whether it is here."""
     del jobs, seed  # taken by every command
     from regolith_studio.cli.terminal import print_json
-    from regolith_studio.dem.engine_table import HEADINGS, engine_rows
+    from regolith_studio.dem.engines import CAPABILITY_LABELS, engine_rows
 
     rows = engine_rows()
     if json:
@@ -43,7 +43,7 @@ def engines(json: Json = False, jobs: Jobs = 1, seed: Seed = 0) -> None:
         return
     for row in rows:
         typer.echo(f"{row['label']} ({row['key']}, {row['licence']}): {row['version'] or row['problem']}")
-        for key, heading in HEADINGS.items():
+        for key, heading in CAPABILITY_LABELS.items():
             typer.echo(f"  {heading.lower():17}{row[key]}")
 
 
@@ -63,7 +63,7 @@ def measure(
     """Measure the angle of repose of a pile: both sections and both models of the paper."""
     from regolith_studio.cli.repose_words import in_words
     from regolith_studio.cli.terminal import complain, print_json
-    from regolith_studio.dem.repose import measure_repose, measurement_document
+    from regolith_studio.dem.angle_of_repose import measure_repose, measurement_document
 
     del jobs  # taken by every command
     settings = evaluation_settings([f"seed={seed}", *(set_ or ())])
@@ -94,13 +94,13 @@ def positions_in(file: Path, unit: str, diameter: float) -> tuple[Any, Any]:
         If the file holds no positions, or no diameters and none is given.
     """
     from regolith_studio.cli.terminal import complain
-    from regolith_studio.dem.pile import read_pile
+    from regolith_studio.dem.snapshot import read_particle_state
     from regolith_studio.errors import FileError
     from regolith_studio.readers.positions import read_positions
     from regolith_studio.readers.units import unit_factor
 
     if file.suffix.lower() == ".npz":
-        pile = read_pile(file)
+        pile = read_particle_state(file)
         return pile.points, pile.diameters
     with as_bad_use():
         metres = unit_factor(unit) * 1e-6

@@ -75,7 +75,7 @@ class ReposeCase:
 
 
 @dataclass(frozen=True, eq=False)
-class Prepared:
+class PreparedCase:
     """A case with its particles. SI units.
 
     Parameters
@@ -112,9 +112,16 @@ class Prepared:
         shapes = tuple(locked_floats(each, (None, 3), "shapes") for each in self.shapes)
         object.__setattr__(self, "shapes", shapes)
 
-    def __reduce__(self) -> tuple[Callable[..., "Prepared"], tuple[Any, ...]]:
+    def __reduce__(self) -> tuple[Callable[..., "PreparedCase"], tuple[Any, ...]]:
         draws = (self.class_index, self.diameters, self.coarse_graining)
-        return Prepared, (self.case, self.shapes, *draws, self.dataset_name, self.dataset_hash, self.n_facets)
+        return PreparedCase, (
+            self.case,
+            self.shapes,
+            *draws,
+            self.dataset_name,
+            self.dataset_hash,
+            self.n_facets,
+        )
 
     def __len__(self) -> int:
         return len(self.diameters)
@@ -155,7 +162,7 @@ class Prepared:
         return {"none": 0.0, "given": given, "scaled": given * ratio**2}[self.case.cohesion]
 
 
-def prepare(dataset: Dataset, case: ReposeCase, dataset_hash: str = "") -> Prepared:
+def prepare(dataset: Dataset, case: ReposeCase, dataset_hash: str = "") -> PreparedCase:
     """Draw the particles of a case.
 
     Raises
@@ -167,7 +174,7 @@ def prepare(dataset: Dataset, case: ReposeCase, dataset_hash: str = "") -> Prepa
     fine = drawn.diameter * MICROMETRE
     mass = case.contact.density * np.pi / 6 * float((fine**3).sum())
     factor = case.coarse_graining or (case.test.mass / mass) ** (1 / 3)
-    prepared = Prepared(
+    prepared = PreparedCase(
         case=case,
         shapes=tuple(each.shape.vertices for each in dataset.representatives),
         class_index=drawn.class_index,
@@ -181,7 +188,7 @@ def prepare(dataset: Dataset, case: ReposeCase, dataset_hash: str = "") -> Prepa
     return prepared
 
 
-def _check_room(prepared: Prepared) -> None:
+def _check_room(prepared: PreparedCase) -> None:
     test, mean = prepared.case.test, prepared.mean_diameter
     widest = float(prepared.diameters.max())
     if test.diameter < max(NARROWEST * mean, 1.5 * widest):

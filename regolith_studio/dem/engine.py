@@ -1,15 +1,15 @@
-"""What every engine offers: it finds itself, says what it represents, and runs a prepared case."""
+"""What every engine offers: it finds itself, says what it capabilities, and runs a prepared case."""
 
 from collections.abc import Generator
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from regolith_studio.dem.case import Prepared
-from regolith_studio.dem.pile import Pile
+from regolith_studio.dem.case import PreparedCase
+from regolith_studio.dem.snapshot import ParticleState, Snapshot
 
 
 @dataclass(frozen=True)
-class Representation:
+class EngineCapabilities:
     """What an engine makes of Table 1, one sentence or word each; shown in the table of engines."""
 
     shape: str
@@ -22,7 +22,7 @@ class Representation:
 
 
 @dataclass(frozen=True)
-class Found:
+class Availability:
     """Whether an engine is there: its version, or else why not in one sentence."""
 
     version: str = ""
@@ -33,34 +33,15 @@ class Found:
         return not self.problem
 
 
-@dataclass(frozen=True, eq=False)
-class Moment:
-    """One picture of a run.
-
-    Parameters
-    ----------
-    pile
-        The particles.
-    share
-        Of the work that is done, 0 to 1.
-    message
-        What is going on.
-    """
-
-    pile: Pile
-    share: float
-    message: str
-
-
 @dataclass(frozen=True)
-class Checks:
+class RunChecks:
     """What is verified after every run. Overlaps in mean diameters, energies in units of m g d a particle.
 
     Parameters
     ----------
     particles_in, particles_out
         Number at the beginning, and of those that still lie on or above the plate at the end.
-    mean_overlap, largest_overlap
+    mean_overlap, max_overlap
         At rest.
     energy_gain
         Largest rise of the total energy while nothing that moves touches the particles; a sound
@@ -80,7 +61,7 @@ class Checks:
     particles_in: int
     particles_out: int
     mean_overlap: float
-    largest_overlap: float
+    max_overlap: float
     energy_gain: float
     kinetic_energy: float
     at_rest: bool
@@ -90,13 +71,13 @@ class Checks:
 
 
 @dataclass(frozen=True, eq=False)
-class Ending:
+class SimulationResult:
     """A finished run.
 
     Parameters
     ----------
-    pile
-        Where the particles came to rest.
+    particles
+        At rest.
     checks
         Of the run.
     steps, simulated_time
@@ -105,8 +86,8 @@ class Ending:
         Sentences on what the engine made of the particles.
     """
 
-    pile: Pile
-    checks: Checks
+    particles: ParticleState
+    checks: RunChecks
     steps: int
     simulated_time: float
     notes: tuple[str, ...] = ()
@@ -119,17 +100,17 @@ class Engine(Protocol):
     label: str
     order: int
     licence: str
-    represents: Representation
+    capabilities: EngineCapabilities
     Settings: type[Any]
 
-    def find(self) -> Found:
+    def find(self) -> Availability:
         """Look for the code without loading it."""
         ...
 
-    def seconds(self, prepared: Prepared, settings: Any) -> float:
+    def seconds(self, prepared: PreparedCase, settings: Any) -> float:
         """Estimated time on one core."""
         ...
 
-    def simulate(self, prepared: Prepared, settings: Any) -> Generator[Moment, None, Ending]:
+    def simulate(self, prepared: PreparedCase, settings: Any) -> Generator[Snapshot, None, SimulationResult]:
         """Run in this process; yields moments in the order of time."""
         ...

@@ -9,17 +9,24 @@ from typing import Any
 from regolith_studio.coarsening.weights import presets
 from regolith_studio.dataset.folder_io import dataset_hash, read_dataset
 from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
-from regolith_studio.dem.case import Prepared, ReposeCase, prepare
-from regolith_studio.dem.engine import Ending, Engine, Moment
+from regolith_studio.dem.angle_of_repose import ReposeMeasurement, measure_repose
+from regolith_studio.dem.case import PreparedCase, ReposeCase, prepare
+from regolith_studio.dem.engine import Engine, SimulationResult
+from regolith_studio.dem.engine_process import EngineError, run_engine
 from regolith_studio.dem.engines import DEFAULT_ENGINE, engine_named
-from regolith_studio.dem.evaluation.refusal import NoPile
+from regolith_studio.dem.evaluation.errors import NotAPileError
 from regolith_studio.dem.evaluation.settings import EvaluationSettings
-from regolith_studio.dem.filling import loose_column
-from regolith_studio.dem.host import EngineStopped, run_engine
-from regolith_studio.dem.pile import Pile
-from regolith_studio.dem.repose import ReposeMeasurement, measure_repose
-from regolith_studio.dem.run_document import case_document, run_document
-from regolith_studio.dem.run_folder import claim_folder, read_run, save_ending, save_shapes, snapshot_files
+from regolith_studio.dem.initial_packing import loose_column
+from regolith_studio.dem.run_io import (
+    case_document,
+    claim_folder,
+    read_run,
+    run_document,
+    save_result,
+    save_shapes,
+    snapshot_files,
+)
+from regolith_studio.dem.snapshot import ParticleState, Snapshot
 from regolith_studio.errors import EnvironmentProblem, FileError, InputError, RegolithError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
@@ -74,14 +81,14 @@ class ReposeRun:
 
     folder: Path
     document: dict[str, Any]
-    ending: Ending
-    measurement: ReposeMeasurement | NoPile
+    ending: SimulationResult
+    measurement: ReposeMeasurement | NotAPileError
 
 
 def simulate_repose(dataset_folder: Path, folder: Path, request: ReposeRequest) -> Steps:
     """Draw particles from a dataset on disk, simulate, measure, write; returns :class:`ReposeRun`.
 
-    Partial results are :class:`~regolith_studio.dem.engine.Moment`. What was saved stays when the run
+    Partial results are :class:`~regolith_studio.dem.engine.Snapshot`. What was saved stays when the run
     is stopped or fails, and ``repose.json`` says so.
     """
     yield Started("Angle of repose", PROGRESS_STEPS)
@@ -89,7 +96,7 @@ def simulate_repose(dataset_folder: Path, folder: Path, request: ReposeRequest) 
     return (yield from simulate_prepared(prepared, folder, request))
 
 
-def simulate_prepared(prepared: Prepared, folder: Path, request: ReposeRequest) -> Steps:
+def simulate_prepared(prepared: PreparedCase, folder: Path, request: ReposeRequest) -> Steps:
     """The same for particles that are drawn already."""
     engine = engine_named(request.engine)
     settings = engine.Settings() if request.settings is None else request.settings
@@ -106,7 +113,7 @@ def simulate_prepared(prepared: Prepared, folder: Path, request: ReposeRequest) 
                 moment = next(steps)
             except StopIteration as end:
                 return _finish_run(record, end.value, request.evaluation)
-            if isinstance(moment, Moment):
+            if isinstance(moment, Snapshot):
                 share, message = moment.share, moment.message
                 yield Partial(moment)
             yield Progress(round(PROGRESS_STEPS * share), PROGRESS_STEPS, message)
@@ -124,7 +131,7 @@ def simulate_prepared(prepared: Prepared, folder: Path, request: ReposeRequest) 
 class _RunWriter:
     """What is written whenever and however a run ends."""
 
-    prepared: Prepared
+    prepared: PreparedCase
     engine: Engine
     settings: Any
     folder: Path
@@ -133,8 +140,8 @@ class _RunWriter:
     def save(
         self,
         state: str,
-        ending: Ending | None = None,
-        measured: ReposeMeasurement | NoPile | None = None,
+        ending: SimulationResult | None = None,
+        measured: ReposeMeasurement | NotAPileError | None = None,
         problem: str | None = None,
     ) -> dict[str, Any]:
         document = run_document(
@@ -148,42 +155,44 @@ class _RunWriter:
             problem=problem,
             n_snapshots=len(snapshot_files(self.folder)),
         )
-        save_ending(self.folder, document, ending.pile if ending else None)
+        save_result(self.folder, document, ending.particles if ending else None)
         return document
 
 
-def _finish_run(record: _RunWriter, ending: Ending, evaluation: EvaluationSettings) -> ReposeRun:
+def _finish_run(record: _RunWriter, ending: SimulationResult, evaluation: EvaluationSettings) -> ReposeRun:
     measured = measure_result(ending, evaluation)
     if isinstance(measured, ReposeMeasurement):
         from regolith_studio.studies.repose_figures import write_section_figure  # matplotlib
 
-        write_section_figure(ending.pile.points, ending.pile.diameters, measured, record.folder)
+        write_section_figure(ending.particles.points, ending.particles.diameters, measured, record.folder)
     document = record.save("finished", ending, measured)
     return ReposeRun(record.folder, document, ending, measured)
 
 
-def measure_result(ending: Ending, evaluation: EvaluationSettings) -> ReposeMeasurement | NoPile:
+def measure_result(
+    ending: SimulationResult, evaluation: EvaluationSettings
+) -> ReposeMeasurement | NotAPileError:
     """The angle of a finished run; a refusal is a result too. The plate is at z = 0."""
     try:
-        return measure_repose(ending.pile.points, ending.pile.diameters, evaluation, base=0.0)
-    except NoPile as refusal:
+        return measure_repose(ending.particles.points, ending.particles.diameters, evaluation, base=0.0)
+    except NotAPileError as refusal:
         return refusal
 
 
 def preview_repose(dataset_folder: Path, case: ReposeCase) -> Steps:
-    """The particles of a case before they fall; returns (:class:`Prepared`, :class:`Pile`)."""
+    """The particles of a case before they fall; returns (:class:`PreparedCase`, :class:`ParticleState`)."""
     yield Started("Drawing particles")
     prepared = prepare(read_dataset(dataset_folder), case, dataset_hash(dataset_folder))
     yield Progress(1, 2)
     return prepared, loose_column(prepared)
 
 
-def remeasure(pile: Pile, evaluation: EvaluationSettings) -> Steps:
+def remeasure(pile: ParticleState, evaluation: EvaluationSettings) -> Steps:
     """The angle of a pile once more, with other choices; returns the measurement or the refusal."""
     yield Started("Measuring")
     try:
         return measure_repose(pile.points, pile.diameters, evaluation, base=0.0)
-    except NoPile as refusal:
+    except NotAPileError as refusal:
         return refusal
 
 
@@ -247,7 +256,7 @@ def _study_run(
             if isinstance(step, Progress):
                 message = f"{row.varied} {row.value}: {step.message}"
                 yield Progress(PROGRESS_STEPS * number + step.done, PROGRESS_STEPS * total, message)
-    except EngineStopped:
+    except EngineError:
         return dict(read_run(place).document)
     finally:
         steps.close()

@@ -11,7 +11,7 @@ import pyvista as pv
 from scipy.spatial import ConvexHull
 from vtkmodules.vtkRenderingCore import vtkActor, vtkGlyph3DMapper
 
-from regolith_studio.dem.pile import Pile
+from regolith_studio.dem.snapshot import ParticleState
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.scene import palette
@@ -25,7 +25,7 @@ COLOURS = ("#e8b04a", "#c98f2e", "#f3cf85", "#b5a18a", "#d8c3a0", "#9f8f7d", "#e
 N_AROUND = 96
 
 
-def show_heap(plotter: Any, shapes: Sequence[FloatArray], pile: Pile, spheres: bool = False) -> None:
+def show_heap(plotter: Any, shapes: Sequence[FloatArray], pile: ParticleState, spheres: bool = False) -> None:
     """The particles of one moment.
 
     Parameters
@@ -71,7 +71,7 @@ def show_heap(plotter: Any, shapes: Sequence[FloatArray], pile: Pile, spheres: b
 
 def show_apparatus(
     plotter: Any,
-    pile: Pile,
+    pile: ParticleState,
     diameter: float,
     height: float,
     reach: float,
@@ -120,7 +120,7 @@ def framing_corners(diameter: float, height: float) -> FloatArray:
     return np.array([(x, y, z) for x in (-reach, reach) for y in (-reach, reach) for z in (0.0, top)])
 
 
-def _instances(pile: Pile, n_shapes: int) -> pv.PolyData:
+def _instances(pile: ParticleState, n_shapes: int) -> pv.PolyData:
     data: pv.PolyData = pv.PolyData(MICROMETRES * np.asarray(pile.points))
     kinds = np.minimum(pile.class_index, n_shapes - 1)
     data.point_data["shape"] = kinds.astype(np.int32)

@@ -22,7 +22,7 @@ COLUMNS = (
     Column("asymmetric_paper", "deg"),
     Column("symmetric_paper", "deg"),
     Column("n_particles"),
-    Column("largest_overlap", "%"),
+    Column("max_overlap", "%"),
     Column("seconds", "s"),
     Column("folder"),
 )
@@ -83,7 +83,7 @@ def _row(run: ReposeStudyRun) -> tuple[Cell, ...]:
     low, high = measurement.get("interval_deg", (None, None))
     paper = measurement.get("paper_sections", {})
     checks = run.document.get("checks") or {}
-    overlap = checks.get("largest_overlap")
+    overlap = checks.get("max_overlap")
     return (
         run.varied,
         run.value,

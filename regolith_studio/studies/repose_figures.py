@@ -7,9 +7,9 @@ from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection
 from matplotlib.figure import Figure
 
+from regolith_studio.dem.angle_of_repose import ReposeMeasurement
 from regolith_studio.dem.evaluation.profile import project
 from regolith_studio.dem.evaluation.section import Section
-from regolith_studio.dem.repose import ReposeMeasurement
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.studies.figure_files import write_figure
 

@@ -2,7 +2,7 @@
 
     yade -n -x -j1 yade_repose.py FOLDER
 
-reads order.json in FOLDER and writes state.000000.json, state.000001.json ... there until the heap is at
+reads input.json in FOLDER and writes state.000000.json, state.000001.json ... there until the heap is at
 rest (or the longest wait is over); each state is whole, and any of them can be the beginning of another
 run. Numbers are in SI units.
 """
@@ -16,18 +16,18 @@ from yade import O, Vector3, log, polyhedra_utils, utils, wrapper
 from yade.minieigenHP import Quaternion
 
 FOLDER = Path(sys.argv[1])
-ORDER = json.loads((FOLDER / "order.json").read_text(encoding="utf-8"))
+INPUT = json.loads((FOLDER / "input.json").read_text(encoding="utf-8"))
 GONE = 1000.0
-ANY, STAVE = 1, 2
+ANY, SEGMENT = 1, 2
 """Bits of masks: bodies with a common bit meet, but not the blocks of the tube, which touch for good."""
 
 
 def material(label, friction):
     """One material; the stiffness is force by overlapping volume."""
     made = wrapper.PolyhedraMat(
-        density=ORDER["density"],
-        young=ORDER["young"],
-        poisson=ORDER["poisson"],
+        density=INPUT["density"],
+        young=INPUT["young"],
+        poisson=INPUT["poisson"],
         frictionAngle=math.atan(friction),
         label=label,
     )
@@ -37,10 +37,10 @@ def material(label, friction):
 
 def add_particles():
     """Numbers of the particles' bodies, and the turn that each began with in YADE's own axes."""
-    grain, numbers, first = material("grain", ORDER["friction"]), [], []
-    for one in ORDER["particles"]:
+    grain, numbers, first = material("grain", INPUT["friction"]), [], []
+    for one in INPUT["particles"]:
         turn, place = Quaternion(*one["turn"]), Vector3(*one["place"])
-        corners = ORDER["shapes"][one["shape"]]
+        corners = INPUT["shapes"][one["shape"]]
         body = polyhedra_utils.polyhedra(
             grain, v=[place + turn * (Vector3(*corner) * one["scale"]) for corner in corners]
         )
@@ -51,20 +51,20 @@ def add_particles():
 
 
 def add_walls():
-    """Numbers of the staves of the tube: convex blocks side by side."""
-    wall, stave = ORDER["tube"], material("tube", ORDER["wall_friction"])
-    O.bodies.append(utils.wall(0.0, axis=2, sense=1, material=material("plate", ORDER["plate_friction"])))
-    numbers, half = [], math.pi / wall["staves"]
+    """Numbers of the segments of the tube: convex blocks side by side."""
+    wall, segment = INPUT["tube"], material("tube", INPUT["wall_friction"])
+    O.bodies.append(utils.wall(0.0, axis=2, sense=1, material=material("plate", INPUT["plate_friction"])))
+    numbers, half = [], math.pi / wall["n_segments"]
     inner, outer = wall["radius"], wall["radius"] + wall["thickness"]
-    for k in range(wall["staves"]):
+    for k in range(wall["n_segments"]):
         corners = []
         for radius in (inner, outer):
             for side in (-half, half):
-                angle, reach = 2 * math.pi * k / wall["staves"] + side, radius / math.cos(half)
+                angle, reach = 2 * math.pi * k / wall["n_segments"] + side, radius / math.cos(half)
                 x, y = reach * math.cos(angle), reach * math.sin(angle)
-                corners += [Vector3(x, y, ORDER["rim"] + z) for z in (0.0, wall["height"])]
-        body = polyhedra_utils.polyhedra(stave, v=corners, fixed=True)
-        body.mask = ANY | STAVE
+                corners += [Vector3(x, y, INPUT["rim"] + z) for z in (0.0, wall["height"])]
+        body = polyhedra_utils.polyhedra(segment, v=corners, fixed=True)
+        body.mask = ANY | SEGMENT
         numbers.append(O.bodies.append(body))
     return numbers
 
@@ -75,8 +75,8 @@ def set_engines():
         wrapper.ForceResetter(),
         wrapper.InsertionSortCollider(
             [wrapper.Bo1_Polyhedra_Aabb(), wrapper.Bo1_Wall_Aabb()],
-            verletDist=ORDER["skin"],
-            avoidSelfInteractionMask=STAVE,
+            verletDist=INPUT["skin"],
+            avoidSelfInteractionMask=SEGMENT,
         ),
         wrapper.InteractionLoop(
             [
@@ -86,23 +86,23 @@ def set_engines():
             [wrapper.Ip2_PolyhedraMat_PolyhedraMat_PolyhedraPhys()],
             [wrapper.Law2_PolyhedraGeom_PolyhedraPhys_Volumetric()],
         ),
-        wrapper.NewtonIntegrator(gravity=(0.0, 0.0, -ORDER["gravity"]), damping=ORDER["damping"]),
+        wrapper.NewtonIntegrator(gravity=(0.0, 0.0, -INPUT["gravity"]), damping=INPUT["damping"]),
     ]
-    O.dt = ORDER["time_step"]
+    O.dt = INPUT["time_step"]
 
 
 class Test:
     """Where the test stands."""
 
-    def __init__(self, grains, first, staves):
-        self.grains, self.first, self.staves = grains, first, staves
-        self.phase, self.time, self.rim = ORDER["phase"], ORDER["time"], ORDER["rim"]
+    def __init__(self, grains, first, segments):
+        self.grains, self.first, self.segments = grains, first, segments
+        self.phase, self.time, self.rim = INPUT["phase"], INPUT["time"], INPUT["rim"]
         self.began, self.calm_since = self.time, None
-        self.number, self.next_picture = ORDER["number"], self.time
+        self.number, self.next_picture = INPUT["number"], self.time
 
     def advance(self):
         """A look's worth of steps; whether the test goes on."""
-        plan = ORDER["plan"]
+        plan = INPUT["plan"]
         steps = max(1, round(plan["look"] / O.dt))
         if self.phase == "lift":
             self.set_lift(plan["lift_speed"])
@@ -111,7 +111,7 @@ class Test:
         if self.phase == "lift":
             self.rim += steps * O.dt * plan["lift_speed"]
         if self.phase == "fill":
-            self.limit_speed(plan["fastest"])
+            self.limit_speed(plan["max_fill_speed"])
         going = self.go_on(plan)
         if self.time >= self.next_picture or not going:
             self.next_picture = self.time + plan["picture"]
@@ -121,20 +121,20 @@ class Test:
     def go_on(self, plan):
         """Move on to the next phase where this one is over; whether the test goes on."""
         kinetic = self.kinetic()
-        calm = kinetic < plan["calm"]
+        calm = kinetic < plan["rest_energy"]
         self.calm_since = (self.calm_since if self.calm_since is not None else self.time) if calm else None
-        still = calm and self.time - self.calm_since >= plan["calm_time"]
+        still = calm and self.time - self.calm_since >= plan["rest_time"]
         late = self.time - self.began
-        if self.phase == "fill" and (still or late > plan["longest_fill"]):
+        if self.phase == "fill" and (still or late > plan["max_fill_time"]):
             self.enter("settle")
-        elif self.phase == "settle" and (still or late > plan["longest_rest"]):
+        elif self.phase == "settle" and (still or late > plan["max_rest_time"]):
             self.enter("lift")
-        elif self.phase == "lift" and (self.is_clear() or late > plan["longest_lift"]):
+        elif self.phase == "lift" and (self.is_clear() or late > plan["max_lift_time"]):
             self.set_lift(0.0)
             self.remove_tube()
             self.enter("rest")
-        elif self.phase == "rest" and (still or late > plan["longest_rest"]):
-            self.calm = still
+        elif self.phase == "rest" and (still or late > plan["max_rest_time"]):
+            self.at_rest = still
             return False
         return True
 
@@ -142,24 +142,24 @@ class Test:
         self.phase, self.began, self.calm_since = phase, self.time, None
 
     def set_lift(self, speed):
-        for number in self.staves:
+        for number in self.segments:
             O.bodies[number].state.vel = Vector3(0.0, 0.0, speed)
 
     def remove_tube(self):
         """Far up and out of the way; a body that is erased would leave contacts behind."""
-        for number in self.staves:
-            O.bodies[number].state.pos += Vector3(0.0, 0.0, GONE * ORDER["tube"]["height"])
+        for number in self.segments:
+            O.bodies[number].state.pos += Vector3(0.0, 0.0, GONE * INPUT["tube"]["height"])
 
     def is_clear(self):
-        reach = ORDER["plan"]["reach"]
+        reach = INPUT["plan"]["reach"]
         return self.rim > max(O.bodies[number].state.pos[2] for number in self.grains) + reach
 
-    def limit_speed(self, fastest):
+    def limit_speed(self, max_fill_speed):
         for number in self.grains:
             state = O.bodies[number].state
             speed = state.vel.norm()
-            if speed > fastest:
-                state.vel *= fastest / speed
+            if speed > max_fill_speed:
+                state.vel *= max_fill_speed / speed
 
     def kinetic(self):
         """Mean kinetic energy of a particle."""
@@ -174,7 +174,7 @@ class Test:
     def potential(self):
         """Mean energy of height of a particle."""
         heights = sum(O.bodies[n].state.mass * O.bodies[n].state.pos[2] for n in self.grains)
-        return ORDER["gravity"] * heights / len(self.grains)
+        return INPUT["gravity"] * heights / len(self.grains)
 
     def write(self, going):
         """One state, whole or not at all."""
@@ -191,7 +191,7 @@ class Test:
             "potential": self.potential(),
             "steps": O.iter,
             "last": not going,
-            "calm": not going and self.calm,
+            "at_rest": not going and self.at_rest,
             "particles": rows,
         }
         fresh = FOLDER / "state.new"

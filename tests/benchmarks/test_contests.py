@@ -9,7 +9,7 @@ import pytest
 from benchmarks import contests, plain, report, steps
 from benchmarks.contests import Contest, Growth, Outcome
 from benchmarks.descriptors import by_trimesh, polyhedron, stone
-from regolith_studio.dem.repose import measure_repose
+from regolith_studio.dem.angle_of_repose import measure_repose
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.shape_models.models import MODELS

@@ -14,7 +14,7 @@ from regolith_studio.dataset.parameters import (
     missing_in_paper,
 )
 from regolith_studio.dem.case import ReposeCase, prepare
-from regolith_studio.dem.consequences import bond_number, consequences, rayleigh_time
+from regolith_studio.dem.scaling_report import bond_number, rayleigh_time, scaling_report
 from regolith_studio.errors import InputError
 
 
@@ -84,7 +84,7 @@ def test_that_scaled_cohesion_keeps_its_ratio_to_weight(boxes: Dataset) -> None:
     ratio = prepared.coarse_graining / 10
     assert prepared.surface_energy == pytest.approx(0.01 * ratio**2)
     at_ten = bond_number(0.01, prepared.mean_diameter / ratio, 3075, 9.81)
-    assert consequences(prepared).bond_number[2] == pytest.approx(at_ten)
+    assert scaling_report(prepared).bond_number[2] == pytest.approx(at_ten)
 
 
 def test_that_the_bond_number_is_pull_off_over_weight() -> None:
@@ -100,7 +100,7 @@ def test_that_full_stiffness_needs_twenty_million_steps_a_second() -> None:
 
 
 def test_that_the_consequences_are_sentences(boxes: Dataset) -> None:
-    told = consequences(prepare(boxes, ReposeCase(n_particles=300)))
+    told = scaling_report(prepare(boxes, ReposeCase(n_particles=300)))
     assert all(sentence.endswith(".") for sentence in told.sentences)
     assert any("teaching" in sentence for sentence in told.sentences)
 

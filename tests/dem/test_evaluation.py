@@ -6,12 +6,16 @@ import pickle
 import numpy as np
 import pytest
 
-from regolith_studio.dem.evaluation.flanks import fit_asymmetric, fit_symmetric
-from regolith_studio.dem.evaluation.interval import bootstrap_interval
+from regolith_studio.dem.angle_of_repose import (
+    azimuths_of,
+    bootstrap_interval,
+    measure_repose,
+    measurement_document,
+)
+from regolith_studio.dem.evaluation.errors import NotAPileError
 from regolith_studio.dem.evaluation.profile import Discs, base_level, connected_tops, project
-from regolith_studio.dem.evaluation.refusal import NoPile
 from regolith_studio.dem.evaluation.settings import EvaluationSettings
-from regolith_studio.dem.repose import azimuths_of, measure_repose, measurement_document
+from regolith_studio.dem.evaluation.slope_fit import fit_asymmetric, fit_symmetric
 from regolith_studio.errors import InputError
 from tests.dem.packings import cone, packing
 
@@ -73,8 +77,8 @@ def test_that_the_interval_holds_the_truth_of_most_cones() -> None:
     assert sum(each.interval[0] - 0.5 <= 32 <= each.interval[1] + 0.5 for each in found) >= 5
 
 
-def _refused(points: np.ndarray) -> NoPile:
-    with pytest.raises(NoPile) as refusal:
+def _refused(points: np.ndarray) -> NotAPileError:
+    with pytest.raises(NotAPileError) as refusal:
         measure_repose(points, 1.0)
     return refusal.value
 
@@ -98,7 +102,7 @@ def test_that_what_is_no_pile_is_refused_with_the_reason() -> None:
 
 
 def test_that_a_refusal_survives_the_way_between_processes() -> None:
-    copy = pickle.loads(pickle.dumps(NoPile("It is flat.", "layer")))
+    copy = pickle.loads(pickle.dumps(NotAPileError("It is flat.", "layer")))
     assert (str(copy), copy.status) == ("It is flat.", "layer")
 
 

@@ -6,14 +6,16 @@ import pyvista as pv
 
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dem.case import ReposeCase, prepare
-from regolith_studio.dem.filling import loose_column
-from regolith_studio.dem.pile import Pile
+from regolith_studio.dem.initial_packing import loose_column
+from regolith_studio.dem.snapshot import ParticleState
 from regolith_studio.scene import cameras, heap, stage
 
 
-def _at(points: np.ndarray, wall: float = float("inf")) -> Pile:
+def _at(points: np.ndarray, wall: float = float("inf")) -> ParticleState:
     n = len(points)
-    return Pile(points, np.full(n, 2e-3), np.tile([1.0, 0, 0, 0], (n, 1)), np.zeros(n, dtype=int), wall=wall)
+    return ParticleState(
+        points, np.full(n, 2e-3), np.tile([1.0, 0, 0, 0], (n, 1)), np.zeros(n, dtype=int), wall=wall
+    )
 
 
 @pytest.fixture
@@ -44,7 +46,7 @@ def test_that_a_particle_is_drawn_where_it_is_and_as_large(boxes: Dataset, plott
     half = 1e3 * (np.pi / 6) ** (1 / 3)
     heap.show_heap(plotter, shapes, _at(np.array([[0.003, 0.001, 0.0]])))
     assert _seen(plotter, 6000) == pytest.approx([3e3 - half, 3e3 + half, 1e3 - half, 1e3 + half], abs=120)
-    eighth = Pile(np.zeros((1, 3)), [2e-3], [[np.cos(np.pi / 8), 0, 0, np.sin(np.pi / 8)]], [0])
+    eighth = ParticleState(np.zeros((1, 3)), [2e-3], [[np.cos(np.pi / 8), 0, 0, np.sin(np.pi / 8)]], [0])
     heap.show_heap(plotter, shapes, eighth)
     corner = half * np.sqrt(2)
     assert _seen(plotter, 6000) == pytest.approx([-corner, corner, -corner, corner], abs=120)

@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
 from regolith_studio.dem.case import CohesionKind, ReposeCase, ShapeKind, prepare
-from regolith_studio.dem.engine import Ending
+from regolith_studio.dem.engine import SimulationResult
 from regolith_studio.dem.engines.lammps import ENGINE
 from regolith_studio.dem.engines.lammps.clumps import clump_shape, clumps_of
 from regolith_studio.dem.engines.lammps.script import schedule, script, stiffness, viscosity
@@ -65,9 +65,9 @@ def test_that_balls_are_single_spheres_of_the_same_volume(boxes: Dataset) -> Non
 def test_that_the_material_is_softened_only_as_far_as_asked(boxes: Dataset) -> None:
     prepared = prepare(boxes, SMALL)
     real = 30e9 / (3075 * 9.81 * prepared.mean_diameter)
-    assert stiffness(prepared, LammpsSettings(softest=0.0)) == pytest.approx(real)
+    assert stiffness(prepared, LammpsSettings(max_stiffness=0.0)) == pytest.approx(real)
     assert stiffness(prepared, LammpsSettings()) == 2e4
-    slow, fast = (schedule(prepared, LammpsSettings(softest=soft), 30.0) for soft in (4e4, 1e4))
+    slow, fast = (schedule(prepared, LammpsSettings(max_stiffness=soft), 30.0) for soft in (4e4, 1e4))
     assert fast.step == pytest.approx(2 * slow.step)
 
 
@@ -150,9 +150,14 @@ def test_that_lammps_fills_lifts_and_comes_to_rest(
         except StopIteration as end:
             ending = end.value
             break
-    assert isinstance(ending, Ending)
+    assert isinstance(ending, SimulationResult)
     assert ending.checks.particles_out == 40
-    assert ending.checks.largest_overlap < 0.05
+    assert ending.checks.max_overlap < 0.05
     assert ending.checks.energy_gain < 0.05
-    assert ending.pile.points[:, 2].max() < moments[0].pile.points[:, 2].max() / 2
-    assert list(dict.fromkeys(moment.pile.phase for moment in moments)) == ["fill", "settle", "lift", "rest"]
+    assert ending.particles.points[:, 2].max() < moments[0].particles.points[:, 2].max() / 2
+    assert list(dict.fromkeys(moment.particles.phase for moment in moments)) == [
+        "fill",
+        "settle",
+        "lift",
+        "rest",
+    ]

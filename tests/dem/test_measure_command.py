@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from regolith_studio.cli.entry import run
-from regolith_studio.dem.pile import Pile, pile_bytes
+from regolith_studio.dem.snapshot import ParticleState, particle_state_bytes
 from tests.dem.packings import cone
 
 
@@ -15,9 +15,9 @@ from tests.dem.packings import cone
 def pile_file(tmp_path: Path) -> Path:
     points = 2e-3 * cone(32, 1500, 1)
     n = len(points)
-    pile = Pile(points, np.full(n, 2e-3), np.tile([1.0, 0, 0, 0], (n, 1)), np.zeros(n, dtype=int))
+    pile = ParticleState(points, np.full(n, 2e-3), np.tile([1.0, 0, 0, 0], (n, 1)), np.zeros(n, dtype=int))
     path = tmp_path / "final.npz"
-    path.write_bytes(pile_bytes(pile))
+    path.write_bytes(particle_state_bytes(pile))
     return path
 
 
@@ -72,8 +72,10 @@ def test_that_settings_reach_the_evaluation_and_bad_ones_are_bad_use(
 
 def test_that_what_is_no_pile_is_one_sentence(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "few.npz").write_bytes(
-        pile_bytes(
-            Pile(np.zeros((5, 3)), np.ones(5), np.tile([1.0, 0, 0, 0], (5, 1)), np.zeros(5, dtype=int))
+        particle_state_bytes(
+            ParticleState(
+                np.zeros((5, 3)), np.ones(5), np.tile([1.0, 0, 0, 0], (5, 1)), np.zeros(5, dtype=int)
+            )
         )
     )
     assert run(["repose", "measure", str(tmp_path / "few.npz")]) == 1

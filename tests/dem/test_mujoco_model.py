@@ -15,10 +15,10 @@ from regolith_studio.dem.engines.mujoco.model import (
     POINTS_PER_PAIR,
     Units,
     adhesion,
-    build,
+    build_model,
 )
 from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
-from regolith_studio.dem.filling import start_places
+from regolith_studio.dem.initial_packing import start_places
 from regolith_studio.errors import InputError
 
 
@@ -35,7 +35,7 @@ def test_that_particles_start_apart_and_within_the_cylinder() -> None:
 
 def test_that_bodies_have_the_mass_and_inertia_of_their_polyhedra(boxes: Dataset) -> None:
     prepared = prepare(boxes, ReposeCase(n_particles=120, seed=2))
-    model = build(prepared, MujocoSettings()).model
+    model = build_model(prepared, MujocoSettings()).model
     units = Units.of(prepared)
     volumes = np.pi / 6 * (prepared.diameters / units.length) ** 3
     bodies = np.flatnonzero(model.body_jntnum == 1)
@@ -49,7 +49,7 @@ def test_that_bodies_have_the_mass_and_inertia_of_their_polyhedra(boxes: Dataset
 def test_that_bodies_lie_where_their_shapes_are_drawn(boxes: Dataset) -> None:
     """Position and quaternion of a body turn the dataset's own shape into what collides."""
     prepared = prepare(boxes, ReposeCase(n_particles=60, seed=5))
-    model = build(prepared, MujocoSettings()).model
+    model = build_model(prepared, MujocoSettings()).model
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     geom = int(np.flatnonzero(model.geom_contype == PARTICLE)[7])
@@ -66,7 +66,7 @@ def test_that_bodies_lie_where_their_shapes_are_drawn(boxes: Dataset) -> None:
 
 def test_that_the_cylinder_is_round_and_as_wide_as_asked(boxes: Dataset) -> None:
     prepared = prepare(boxes, ReposeCase(n_particles=60))
-    built = build(prepared, MujocoSettings())
+    built = build_model(prepared, MujocoSettings())
     assert len(built.walls) == N_WALLS
     places, sizes = built.model.geom_pos[built.walls], built.model.geom_size[built.walls]
     inner = np.hypot(places[:, 0], places[:, 1]) - sizes[:, 0]
@@ -110,8 +110,10 @@ def test_that_a_ball_hangs_on_another_by_the_pull_off_force(share: float, holds:
 
 def test_that_rolling_resistance_opens_the_dimensions_of_a_contact(boxes: Dataset) -> None:
     case = ReposeCase(contact=ContactParameters(rolling_friction=0.2), n_particles=60)
-    assert set(build(prepare(boxes, case), MujocoSettings()).model.geom_condim) == {6}
-    assert set(build(prepare(boxes, ReposeCase(n_particles=60)), MujocoSettings()).model.geom_condim) == {3}
+    assert set(build_model(prepare(boxes, case), MujocoSettings()).model.geom_condim) == {6}
+    assert set(
+        build_model(prepare(boxes, ReposeCase(n_particles=60)), MujocoSettings()).model.geom_condim
+    ) == {3}
 
 
 def test_that_a_moving_wall_drags_what_touches_it() -> None:
@@ -135,7 +137,8 @@ def test_that_bad_settings_are_one_sentence() -> None:
 
 def test_that_the_memory_for_contacts_grows_with_the_number_and_not_with_its_square(boxes: Dataset) -> None:
     small, large = (
-        build(prepare(boxes, ReposeCase(n_particles=n)), MujocoSettings()).model.narena for n in (500, 2000)
+        build_model(prepare(boxes, ReposeCase(n_particles=n)), MujocoSettings()).model.narena
+        for n in (500, 2000)
     )
     assert large < 4 * small
     assert 100_000 * 2000 < large < 1e9

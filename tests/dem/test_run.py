@@ -16,12 +16,12 @@ from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.dataset.folder_io import dataset_hash, read_dataset
 from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
 from regolith_studio.dem.case import ReposeCase, prepare
-from regolith_studio.dem.engine import Ending, Moment
+from regolith_studio.dem.engine import SimulationResult
+from regolith_studio.dem.engine_process import EngineError
 from regolith_studio.dem.engines import ENGINES
 from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
-from regolith_studio.dem.host import EngineStopped
-from regolith_studio.dem.pile import read_pile
-from regolith_studio.dem.run_folder import find_runs, read_run, read_shapes, snapshot_files
+from regolith_studio.dem.run_io import find_runs, read_run, read_shapes, snapshot_files
+from regolith_studio.dem.snapshot import Snapshot, read_particle_state
 from regolith_studio.errors import FileError, InputError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
@@ -43,11 +43,13 @@ from regolith_studio.studies.repose import write_repose_study
 
 TEST = LiftingCylinderTest(mass=0.003, lift_speed=0.15)
 CASE = ReposeCase(TEST, n_particles=40, seed=1)
-QUICK = MujocoSettings(time_step=0.04, iterations=15, calm=2e-3, calm_time=1.0, snapshots=20)
+QUICK = MujocoSettings(time_step=0.04, iterations=15, rest_energy=2e-3, rest_time=1.0, snapshots=20)
 ORDER = ReposeRequest(CASE, settings=QUICK)
 COMMAND = ["-n", "40", "--seed", "1", "--test", "mass=0.003", "--test", "lift_speed=0.15"]
-COMMAND += [word for each in ("time_step=0.04", "iterations=15", "calm=0.002") for word in ("--set", each)]
-COMMAND += ["--set", "calm_time=1", "--set", "snapshots=20"]
+COMMAND += [
+    word for each in ("time_step=0.04", "iterations=15", "rest_energy=0.002") for word in ("--set", each)
+]
+COMMAND += ["--set", "rest_time=1", "--set", "snapshots=20"]
 
 
 @pytest.fixture(scope="module")
@@ -66,21 +68,21 @@ def test_that_a_run_leaves_everything_that_it_followed_from(finished: Path, boxe
     assert document["case"]["seed"] == 1
     assert document["case"]["test"]["mass"] == 0.003
     assert document["checks"]["particles_out"] == 40
-    assert document["checks"]["largest_overlap"] < 0.05
+    assert document["checks"]["max_overlap"] < 0.05
     assert document["checks"]["energy_gain"] < 0.05
     assert document["measurement"]["status"] == "too few particles"
     assert "restitution" in document["not_given_in_the_paper"]
 
 
 def test_that_the_snapshots_tell_the_whole_test(finished: Path) -> None:
-    piles = [read_pile(path) for path in snapshot_files(finished)]
+    piles = [read_particle_state(path) for path in snapshot_files(finished)]
     assert [pile.time for pile in piles] == sorted(pile.time for pile in piles)
     assert piles[0].phase == "fill"
     assert {"fill", "lift"} <= {pile.phase for pile in piles}
     assert len(read_shapes(finished)) == 2
     lifted = [pile.wall for pile in piles if pile.phase == "lift"]
     assert lifted == sorted(lifted)
-    final = read_pile(finished / "final.npz")
+    final = read_particle_state(finished / "final.npz")
     assert final.points[:, 2].max() < piles[0].points[:, 2].max() / 2
     assert (final.points[:, 2] > 0.0).all()
 
@@ -95,8 +97,10 @@ def test_that_the_same_seed_gives_the_same_pile(finished: Path, boxes_folder: Pa
         except StopIteration as end:
             ending = end.value
             break
-    assert isinstance(ending, Ending)
-    assert np.array_equal(ending.pile.points.astype(np.float32), read_pile(finished / "final.npz").points)
+    assert isinstance(ending, SimulationResult)
+    assert np.array_equal(
+        ending.particles.points.astype(np.float32), read_particle_state(finished / "final.npz").points
+    )
     assert [moment.share for moment in moments] == sorted(moment.share for moment in moments)
 
 
@@ -112,7 +116,7 @@ def test_that_a_study_goes_on_where_it_was(finished: Path, boxes_folder: Path, t
     files = {path.name for path in write_repose_study(study, tmp_path / "figures")}
     assert files == {f"repose_study.{kind}" for kind in ("csv", "json", "png", "svg")}
     other = replace(ORDER, case=replace(CASE, contact=ContactParameters(static_friction=0.1)))
-    fresh = study_repose([replace(row, order=other)], tmp_path)
+    fresh = study_repose([replace(row, request=other)], tmp_path)
     assert any(isinstance(step, Progress) and "simulated" in step.message for step in fresh)
     fresh.close()
 
@@ -181,11 +185,11 @@ def test_that_a_crash_of_the_engine_is_one_sentence_and_keeps_the_last_snapshot(
     (victim,) = _workers()
     victim.kill()
     with pytest.raises(
-        EngineStopped, match=r"MuJoCo was ended by signal 9; the last snapshot \(.* s\) is kept\."
+        EngineError, match=r"MuJoCo was ended by signal 9; the last snapshot \(.* s\) is kept\."
     ):
         list(steps)
     assert read_run(tmp_path / "run").document["state"] == "failed"
-    assert len(read_pile(snapshot_files(tmp_path / "run")[-1])) == 40
+    assert len(read_particle_state(snapshot_files(tmp_path / "run")[-1])) == 40
 
 
 def test_that_a_cancelled_run_ends_its_process_and_says_so(boxes_folder: Path, tmp_path: Path) -> None:
@@ -204,7 +208,7 @@ def test_that_a_run_that_cannot_write_says_so(boxes_folder: Path, tmp_path: Path
     )
     _until_moment(steps)
     shutil.rmtree(tmp_path / "run" / "snapshots")
-    with pytest.raises(EngineStopped, match="could not go on"):
+    with pytest.raises(EngineError, match="could not go on"):
         list(steps)
 
 
@@ -254,10 +258,12 @@ def test_that_the_engines_say_what_they_represent(capsys: pytest.CaptureFixture[
 
 def _workers() -> list[psutil.Process]:
     """Processes of engines that belong to this test."""
-    return [each for each in psutil.Process().children() if "regolith_studio.dem.worker" in each.cmdline()]
+    return [
+        each for each in psutil.Process().children() if "regolith_studio.dem.engine_process" in each.cmdline()
+    ]
 
 
-def _until_moment(steps: object) -> Moment:
+def _until_moment(steps: object) -> Snapshot:
     for step in steps:  # type: ignore[attr-defined]
         if isinstance(step, Partial):
             return step.value
@@ -274,7 +280,7 @@ def test_that_an_engine_does_not_outlive_a_program_that_was_killed(
     while not list((tmp_path / "run" / "snapshots").glob("*.npz")):
         assert parent.is_running()
         time.sleep(0.05)
-    workers = [each for each in parent.children() if "regolith_studio.dem.worker" in each.cmdline()]
+    workers = [each for each in parent.children() if "regolith_studio.dem.engine_process" in each.cmdline()]
     assert workers
     parent.kill()
     parent.wait()

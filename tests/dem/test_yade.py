@@ -15,12 +15,13 @@ import pytest
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
 from regolith_studio.dem.case import ReposeCase, prepare
-from regolith_studio.dem.engine import Ending, Moment
+from regolith_studio.dem.engine import SimulationResult
 from regolith_studio.dem.engines import engine_named
 from regolith_studio.dem.engines.yade import program
-from regolith_studio.dem.engines.yade.order import LENGTH, TIME, WEIGHT, order
+from regolith_studio.dem.engines.yade.input_files import LENGTH, TIME, WEIGHT, input_document
 from regolith_studio.dem.engines.yade.settings import YadeSettings
-from regolith_studio.dem.filling import loose_column
+from regolith_studio.dem.initial_packing import loose_column
+from regolith_studio.dem.snapshot import Snapshot
 from regolith_studio.errors import InputError, RegolithError
 
 ENGINE = engine_named("yade")
@@ -29,14 +30,14 @@ PRETENDER = '''#!{python}
 """Writes states as YADE's script does, and dies as a crash would."""
 import json, os, pathlib, signal, sys
 folder = pathlib.Path(sys.argv[-1])
-order = json.loads((folder / "order.json").read_text())
+order = json.loads((folder / "input.json").read_text())
 rows = [[*p["place"], *p["turn"], *p["velocity"], *p["spin"]] for p in order["particles"]]
 phases = ["fill", "settle", "lift", "rest", "rest"]
 for number in range(order["number"], 5):
     if number in {crashes} and number > order["number"]:
         os.kill(os.getpid(), signal.SIGSEGV)
     state = dict(phase=phases[number], time=number * 0.1, rim=0.0, kinetic=0.0, potential=0.0, steps=10,
-                 last=number == 4, calm=True, particles=rows)
+                 last=number == 4, at_rest=True, particles=rows)
     (folder / "new").write_text(json.dumps(state))
     (folder / "new").replace(folder / f"state.{{number:06d}}.json")
 '''
@@ -55,7 +56,9 @@ def pretender(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., 
     return put
 
 
-def outcome(case: ReposeCase, boxes: Dataset, settings: YadeSettings) -> tuple[list[Moment], Ending]:
+def outcome(
+    case: ReposeCase, boxes: Dataset, settings: YadeSettings
+) -> tuple[list[Snapshot], SimulationResult]:
     steps, moments = ENGINE.simulate(prepare(boxes, case), settings), []
     while True:
         try:
@@ -64,9 +67,9 @@ def outcome(case: ReposeCase, boxes: Dataset, settings: YadeSettings) -> tuple[l
             return moments, end.value
 
 
-def test_that_the_order_is_the_case_in_the_solver_s_units(boxes: Dataset) -> None:
+def test_that_the_input_is_the_case_in_the_solver_s_units(boxes: Dataset) -> None:
     prepared, settings = prepare(boxes, SMALL), YadeSettings()
-    told = order(prepared, settings, 60.0, None)
+    told = input_document(prepared, settings, 60.0, None)
     volumes = np.array([one["scale"] ** 3 for one in told["particles"]])
     assert (6 * volumes / np.pi) ** (1 / 3) == pytest.approx(
         prepared.diameters / prepared.mean_diameter * LENGTH
@@ -88,19 +91,19 @@ def test_that_states_become_moments_in_si(boxes: Dataset, pretender) -> None:
     moments, ending = outcome(SMALL, boxes, YadeSettings())
     prepared = prepare(boxes, SMALL)
     column = loose_column(prepared)
-    assert [moment.pile.phase for moment in moments] == ["fill", "settle", "lift", "rest", "rest"]
-    assert moments[0].pile.points == pytest.approx(column.points)
-    assert moments[0].pile.orientations == pytest.approx(column.orientations)
+    assert [moment.particles.phase for moment in moments] == ["fill", "settle", "lift", "rest", "rest"]
+    assert moments[0].particles.points == pytest.approx(column.points)
+    assert moments[0].particles.orientations == pytest.approx(column.orientations)
     second = np.sqrt(prepared.mean_diameter / 9.81)
     assert ending.simulated_time == pytest.approx(0.4 / TIME * second)
     assert ending.checks.particles_out == 20
-    assert ending.checks.largest_overlap == 0.0
+    assert ending.checks.max_overlap == 0.0
 
 
 def test_that_a_crash_is_answered_from_the_last_state(boxes: Dataset, pretender) -> None:
     pretender(2, 4)
     moments, ending = outcome(SMALL, boxes, YadeSettings())
-    assert [moment.pile.phase for moment in moments] == ["fill", "settle", "lift", "rest", "rest"]
+    assert [moment.particles.phase for moment in moments] == ["fill", "settle", "lift", "rest", "rest"]
     assert "YADE crashed 2 times and went on from its last snapshot." in ending.notes
 
 
@@ -141,12 +144,14 @@ def test_that_yade_begins_where_it_is_told(boxes: Dataset) -> None:
     first, second = next(steps), next(steps)
     steps.close()
     column = loose_column(prepare(boxes, SMALL))
-    drop = column.points[:, 2] - first.pile.points[:, 2]
-    assert first.pile.points[:, :2] == pytest.approx(column.points[:, :2], abs=1e-4 * column.diameters.max())
+    drop = column.points[:, 2] - first.particles.points[:, 2]
+    assert first.particles.points[:, :2] == pytest.approx(
+        column.points[:, :2], abs=1e-4 * column.diameters.max()
+    )
     assert drop.min() >= 0.0
-    turned = np.abs((first.pile.orientations * column.orientations).sum(axis=1))
+    turned = np.abs((first.particles.orientations * column.orientations).sum(axis=1))
     assert np.quantile(turned, 0.2) == pytest.approx(1.0, abs=1e-6)
-    assert second.pile.points[:, 2].mean() < first.pile.points[:, 2].mean()
+    assert second.pile.points[:, 2].mean() < first.particles.points[:, 2].mean()
 
 
 @needs_yade
@@ -156,7 +161,12 @@ def test_that_yade_fills_lifts_and_comes_to_rest(boxes: Dataset) -> None:
     assert ending.checks.particles_out == 20
     assert ending.checks.at_rest
     assert ending.checks.energy_gain < 0.05
-    filled = [moment.pile for moment in moments if moment.pile.phase in ("fill", "settle")]
+    filled = [moment.particles for moment in moments if moment.particles.phase in ("fill", "settle")]
     assert max(np.hypot(*pile.points[:, :2].T).max() for pile in filled) < SMALL.test.diameter / 2
-    assert ending.pile.points[:, 2].max() < moments[0].pile.points[:, 2].max() / 2
-    assert list(dict.fromkeys(moment.pile.phase for moment in moments)) == ["fill", "settle", "lift", "rest"]
+    assert ending.particles.points[:, 2].max() < moments[0].particles.points[:, 2].max() / 2
+    assert list(dict.fromkeys(moment.particles.phase for moment in moments)) == [
+        "fill",
+        "settle",
+        "lift",
+        "rest",
+    ]

@@ -8,7 +8,7 @@ import numpy as np
 
 from regolith_studio.coarsening.methods.quadric import QuadricMethod
 from regolith_studio.dataset.export import Exporter
-from regolith_studio.dem.engine import Found
+from regolith_studio.dem.engine import Availability
 from regolith_studio.dem.engines.yade import YadeEngine
 from regolith_studio.errors import FileError
 from regolith_studio.readers.formats import MeshFormat, ParsedMesh
@@ -26,8 +26,8 @@ class LunarModel(GaussianRadiusModel):
 
 
 class LunarEngine(YadeEngine):
-    def find(self) -> Found:
-        return Found("1.0")
+    def find(self) -> Availability:
+        return Availability("1.0")
 
 
 def parse(data: bytes, _path: Path) -> ParsedMesh:

@@ -61,7 +61,7 @@ ANSWERS = {
     "exec": 0,
 }
 """Of dialogs with a loop of their own: they would wait for somebody."""
-SENTENCES = ("regolith_studio.errors", "regolith_studio.dem.host.EngineStopped")
+SENTENCES = ("regolith_studio.errors", "regolith_studio.dem.engine_process.EngineError")
 """What a toast tells in a sentence; the monkey also asks engines for what cannot go well."""
 PATIENCE = 200
 """Milliseconds after which a menu that a button has opened is closed: it has a loop of its own, too."""

@@ -11,8 +11,8 @@ from PySide6.QtWidgets import QFileDialog, QInputDialog, QWidget
 from regolith_studio.dataset.folder_io import write_dataset
 from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
 from regolith_studio.dem.evaluation.profile import Discs
-from regolith_studio.dem.pile import Pile, pile_bytes
-from regolith_studio.dem.run_folder import read_run
+from regolith_studio.dem.run_io import read_run
+from regolith_studio.dem.snapshot import ParticleState, particle_state_bytes
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
@@ -30,7 +30,7 @@ from regolith_studio.ui.wiring import Wiring
 from tests.dem.conftest import box_dataset
 from tests.dem.packings import cone
 
-QUICK = {"time_step": 0.04, "iterations": 15, "calm": 2e-3, "calm_time": 1.0, "snapshots": 12}
+QUICK = {"time_step": 0.04, "iterations": 15, "rest_energy": 2e-3, "rest_time": 1.0, "snapshots": 12}
 
 
 @pytest.fixture
@@ -65,7 +65,7 @@ def small(page, dataset):
 def pile_of(angle, n=700):
     points = 2e-3 * cone(angle, n, 1)
     turns = np.tile([1.0, 0, 0, 0], (n, 1))
-    return Pile(points, np.full(n, 2e-3), turns, np.zeros(n, dtype=int), 1.0, float("inf"), "rest")
+    return ParticleState(points, np.full(n, 2e-3), turns, np.zeros(n, dtype=int), 1.0, float("inf"), "rest")
 
 
 def test_that_tables_are_edited_in_the_paper_s_units_and_missing_values_are_marked(shown):
@@ -84,8 +84,8 @@ def test_that_a_dataset_is_previewed_with_the_consequences(page, dataset, wait):
     page.setup.set_dataset(dataset)
     wait(lambda: page.player.pile is not None)
     assert len(page.player.pile) == 300
-    assert "300 particles" in page.setup.consequences.text()
-    assert "on one core" in page.setup.consequences.text()
+    assert "300 particles" in page.setup.scaling_report.text()
+    assert "on one core" in page.setup.scaling_report.text()
     picture = page.player.frame.view.picture()
     assert picture.std() > 5.0
     page.setup.test.setValue(LiftingCylinderTest(diameter=0.004))
@@ -117,7 +117,7 @@ def test_that_a_test_is_run_listed_and_replayed(page, dataset, wait):
 
 def test_that_positions_are_measured_and_a_dragged_cut_changes_the_angle(page, tmp_path, monkeypatch, wait):
     path = tmp_path / "pile.npz"
-    path.write_bytes(pile_bytes(pile_of(30.0)))
+    path.write_bytes(particle_state_bytes(pile_of(30.0)))
     monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (str(path), ""))
     page.open_positions()
     wait(lambda: page.x_z.section is not None)
@@ -140,7 +140,7 @@ def test_that_positions_are_measured_and_a_dragged_cut_changes_the_angle(page, t
 def test_that_a_section_tells_surface_models_and_grains_under_the_mouse(page, tmp_path, monkeypatch, wait):
     pile = pile_of(30.0)
     path = tmp_path / "pile.npz"
-    path.write_bytes(pile_bytes(pile))
+    path.write_bytes(particle_state_bytes(pile))
     monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (str(path), ""))
     page.open_positions()
     wait(lambda: page.x_z.section is not None)
@@ -185,7 +185,7 @@ def test_that_a_table_of_another_program_asks_for_its_unit(page, tmp_path, monke
 def test_that_what_is_no_pile_says_so(page, tmp_path, monkeypatch, wait):
     flat = pile_of(30.0)
     path = tmp_path / "flat.npz"
-    path.write_bytes(pile_bytes(replace(flat, points=flat.points * [3.0, 3.0, 0.0] + [0, 0, 1e-3])))
+    path.write_bytes(particle_state_bytes(replace(flat, points=flat.points * [3.0, 3.0, 0.0] + [0, 0, 1e-3])))
     monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (str(path), ""))
     page.open_positions()
     wait(lambda: "no angle" in page.verdict.text())

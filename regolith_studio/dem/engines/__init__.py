@@ -1,5 +1,8 @@
 """The engines; each module of this folder that defines ``ENGINE`` is one."""
 
+from dataclasses import asdict
+from typing import Any
+
 from regolith_studio.dem.engine import Engine
 from regolith_studio.errors import InputError
 from regolith_studio.registry import Registry
@@ -21,3 +24,32 @@ def engine_named(key: str) -> Engine:
     if key not in ENGINES:
         raise InputError(f"There is no engine {key!r}; there are {', '.join(ENGINES)}.")
     return ENGINES[key]
+
+
+CAPABILITY_LABELS = {
+    "shape": "Shape",
+    "normal": "Normal force",
+    "tangential": "Tangential force",
+    "cohesion": "Cohesion",
+    "rolling": "Rolling",
+    "coarse_graining": "Coarse graining",
+    "missing": "Not represented",
+}
+
+
+def engine_rows() -> list[dict[str, Any]]:
+    """One dictionary an engine: key, label, licence, whether it is here, and what it capabilities."""
+    rows = []
+    for engine in ENGINES.values():
+        found = engine.find()
+        rows.append(
+            {
+                "key": engine.key,
+                "label": engine.label,
+                "licence": engine.licence,
+                "version": found.version,
+                "problem": found.problem,
+                **asdict(engine.capabilities),
+            }
+        )
+    return rows

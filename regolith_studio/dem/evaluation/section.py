@@ -4,16 +4,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from regolith_studio.dem.evaluation.flanks import (
+from regolith_studio.dem.evaluation.errors import STEEPEST, STRAIGHTEST_SHARE, NotAPileError
+from regolith_studio.dem.evaluation.profile import Profile
+from regolith_studio.dem.evaluation.settings import EvaluationSettings
+from regolith_studio.dem.evaluation.slope_fit import (
     AsymmetricFit,
     SymmetricFit,
     fit_asymmetric,
     fit_symmetric,
+    silhouette_deficit,
 )
-from regolith_studio.dem.evaluation.grain_size import silhouette_deficit
-from regolith_studio.dem.evaluation.profile import Profile
-from regolith_studio.dem.evaluation.refusal import STEEPEST, STRAIGHTEST_SHARE, NoPile
-from regolith_studio.dem.evaluation.settings import EvaluationSettings
 from regolith_studio.geometry.arrays import BoolArray
 
 
@@ -59,7 +59,7 @@ def evaluate_section(
 
     Raises
     ------
-    NoPile
+    NotAPileError
         If what is there is a layer, a standing column, or has no two straight flanks.
     """
     _check_shape(profile, mean_diameter, settings)
@@ -75,14 +75,14 @@ def evaluate_section(
         asymmetric = fit_asymmetric(u, z, settings.min_points)
     symmetric = fit_symmetric(u, z, settings.min_points)
     if asymmetric is None or symmetric is None or uncorrected is None:
-        raise NoPile(
+        raise NotAPileError(
             f"The section at {azimuth:g} degrees has no two flanks: {len(u)} surface points lie between the "
             f"cuts, and each flank needs {settings.min_points} that rise to an apex."
         )
     if asymmetric.angle > STEEPEST:
-        raise NoPile(_column(asymmetric.angle), "column stands")
+        raise NotAPileError(_column(asymmetric.angle), "column stands")
     if asymmetric.r_squared < STRAIGHTEST_SHARE:
-        raise NoPile(
+        raise NotAPileError(
             f"The section at {azimuth:g} degrees is no pile: two straight flanks explain only "
             f"{100 * max(asymmetric.r_squared, 0.0):.0f} % of its surface."
         )
@@ -111,14 +111,14 @@ def flank_points(profile: Profile, low: float, high: float) -> BoolArray:
 def _check_shape(profile: Profile, mean_diameter: float, settings: EvaluationSettings) -> None:
     layers = profile.top / mean_diameter
     if layers < settings.min_height:
-        raise NoPile(
+        raise NotAPileError(
             f"The particles lie in a layer {layers:.1f} mean diameters high; a pile has at least "
             f"{settings.min_height:g}.",
             "layer",
         )
     steepness = float(np.degrees(np.arctan2(2 * profile.top, profile.width)))
     if steepness > STEEPEST:
-        raise NoPile(_column(steepness), "column stands")
+        raise NotAPileError(_column(steepness), "column stands")
 
 
 def _column(angle: float) -> str:

@@ -25,9 +25,8 @@ class EvaluationSettings:
     slab
         Thickness of the slice that is projected; 0 projects the whole pile, as the paper does.
     grain_correction
-        Add to the surface what the silhouette of a pile of few grains lacks
-        (:mod:`~regolith_studio.dem.evaluation.grain_size`); only for the projection of the whole pile.
-        Off for the paper's letter.
+        Raise the surface by :func:`~regolith_studio.dem.evaluation.slope_fit.silhouette_deficit`, the bias of
+        a pile of few grains; only for the projection of the whole pile. The paper does not.
     azimuths
         Vertical sections, equally spaced over half a turn and beginning with x-z; even, so that y-z is
         one of them. 2 for the paper's two.

@@ -17,8 +17,7 @@ from regolith_studio.coarsening.methods import METHODS
 from regolith_studio.coarsening.weights import presets
 from regolith_studio.dataset.exporters import EXPORTERS
 from regolith_studio.dataset.parameters import GRAVITIES, ContactParameters, LiftingCylinderTest, ScriptTimes
-from regolith_studio.dem.engine_table import HEADINGS, engine_rows
-from regolith_studio.dem.engines import ENGINES
+from regolith_studio.dem.engines import CAPABILITY_LABELS, ENGINES, engine_rows
 from regolith_studio.dem.evaluation.settings import EvaluationSettings
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.resources import resource
@@ -131,8 +130,8 @@ def words_below() -> Iterator[str]:
     for model in MODELS.values():
         yield from (model.label, model.summary)
     yield from (card.label for card in materials().values())
-    yield from (*GRAVITIES, *HEADINGS.values())
-    yield from (str(row[key]) for row in engine_rows() for key in HEADINGS)
+    yield from (*GRAVITIES, *CAPABILITY_LABELS.values())
+    yield from (str(row[key]) for row in engine_rows() for key in CAPABILITY_LABELS)
     for exporter in EXPORTERS.values():
         yield from (*exporter.carries, *exporter.loses, exporter.units, exporter.alters)
     for variation in VARIATIONS.values():

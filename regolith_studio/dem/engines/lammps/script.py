@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from regolith_studio.dem.case import Prepared
-from regolith_studio.dem.consequences import rayleigh_time
+from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engines.lammps.clumps import Clumps
 from regolith_studio.dem.engines.lammps.settings import LammpsSettings
+from regolith_studio.dem.scaling_report import rayleigh_time
 
 TANGENTIAL_DAMPING = 1.0
 TYPICAL_OVERLAP = 0.005
@@ -71,14 +71,14 @@ class Schedule:
         return float("inf") if self.phase(step) == "rest" else max(0.0, late * self.speed)
 
 
-def stiffness(prepared: Prepared, settings: LammpsSettings) -> float:
+def stiffness(prepared: PreparedCase, settings: LammpsSettings) -> float:
     """Young's modulus as simulated, over rho g d."""
     contact, test = prepared.case.contact, prepared.case.test
     real = contact.youngs_modulus / (contact.density * test.gravity * prepared.mean_diameter)
-    return min(real, settings.softest) if settings.softest > 0.0 else real
+    return min(real, settings.max_stiffness) if settings.max_stiffness > 0.0 else real
 
 
-def schedule(prepared: Prepared, settings: LammpsSettings, top: float) -> Schedule:
+def schedule(prepared: PreparedCase, settings: LammpsSettings, top: float) -> Schedule:
     """When what happens; `top` is the height of the column at the start in mean diameters."""
     contact, test = prepared.case.contact, prepared.case.test
     smallest = float(prepared.diameters.min()) / prepared.mean_diameter
@@ -125,7 +125,9 @@ def bodies_file(clumps: Clumps) -> str:
     return "\n".join(lines) + "\n"
 
 
-def script(prepared: Prepared, settings: LammpsSettings, plan: Schedule, radius: float, top: float) -> str:
+def script(
+    prepared: PreparedCase, settings: LammpsSettings, plan: Schedule, radius: float, top: float
+) -> str:
     """The input of LAMMPS; the snapshots are ``body.*.dump``."""
     case = prepared.case
     friction = case.contact.static_friction
@@ -172,7 +174,7 @@ run {plan.steps_of(plan.rest)}
 """
 
 
-def _contact(prepared: Prepared, settings: LammpsSettings, friction: float) -> str:
+def _contact(prepared: PreparedCase, settings: LammpsSettings, friction: float) -> str:
     """Normal, tangential and rolling law with their numbers."""
     contact = prepared.case.contact
     young, poisson = stiffness(prepared, settings), contact.poissons_ratio

@@ -13,7 +13,7 @@ class LammpsSettings:
     ----------
     spheres
         Inscribed spheres that stand for a polyhedron.
-    softest
+    max_stiffness
         Young's modulus over rho g d is lowered to this: the real one would need millions of steps. 0 keeps
         the real one.
     step_share
@@ -30,7 +30,7 @@ class LammpsSettings:
     """
 
     spheres: int = field(default=8, metadata={"label": "Spheres a particle", "minimum": 1, "maximum": 64})
-    softest: float = field(
+    max_stiffness: float = field(
         default=2e4, metadata={"label": "Young's modulus / ρgd", "minimum": 0.0, "maximum": 1e12}
     )
     step_share: float = field(

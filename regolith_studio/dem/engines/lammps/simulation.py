@@ -11,9 +11,8 @@ import numpy as np
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
-from regolith_studio.dem.case import Prepared
-from regolith_studio.dem.checking import checked, filling_of
-from regolith_studio.dem.engine import Checks, Ending, Moment
+from regolith_studio.dem.case import PreparedCase
+from regolith_studio.dem.engine import RunChecks, SimulationResult
 from regolith_studio.dem.engines.lammps.clumps import Clumps, clumps_of
 from regolith_studio.dem.engines.lammps.program import command
 from regolith_studio.dem.engines.lammps.script import (
@@ -25,8 +24,9 @@ from regolith_studio.dem.engines.lammps.script import (
     stiffness,
 )
 from regolith_studio.dem.engines.lammps.settings import LammpsSettings
-from regolith_studio.dem.filling import enclosing_radii
-from regolith_studio.dem.pile import Pile
+from regolith_studio.dem.initial_packing import enclosing_radii
+from regolith_studio.dem.run_checks import check_run, measure_filling
+from regolith_studio.dem.snapshot import ParticleState, Snapshot
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 
@@ -40,11 +40,11 @@ CALM = 1e-3
 
 @dataclass(eq=False)
 class _Run:
-    prepared: Prepared
+    prepared: PreparedCase
     clumps: Clumps
     plan: Schedule
     first: Rotation | None = None
-    last: Pile | None = None
+    last: ParticleState | None = None
     fill: tuple[float, float] = (0.0, 0.0)
     potential: dict[int, float] = field(default_factory=dict)
 
@@ -55,7 +55,7 @@ class _Run:
         return length, float(np.sqrt(length / self.prepared.case.test.gravity))
 
 
-def simulate(prepared: Prepared, settings: LammpsSettings) -> Generator[Moment, None, Ending]:
+def simulate(prepared: PreparedCase, settings: LammpsSettings) -> Generator[Snapshot, None, SimulationResult]:
     """Write the input, run the program, read its snapshots.
 
     Raises
@@ -74,7 +74,7 @@ def simulate(prepared: Prepared, settings: LammpsSettings) -> Generator[Moment, 
         (folder / "bodies.txt").write_text(bodies_file(clumps))
         (folder / "in.repose").write_text(script(prepared, settings, run.plan, radius, top))
         words, environment = command()
-        with (folder / "said.txt").open("wb") as said:
+        with (folder / "output.txt").open("wb") as said:
             child = subprocess.Popen(
                 [*words, "-in", "in.repose", "-log", "log.lammps"],
                 cwd=folder,
@@ -89,12 +89,12 @@ def simulate(prepared: Prepared, settings: LammpsSettings) -> Generator[Moment, 
             child.kill()
             child.wait()
         if child.returncode or run.last is None:
-            words_said = (folder / "said.txt").read_text(errors="replace")
+            words_said = (folder / "output.txt").read_text(errors="replace")
             raise RegolithError(last_words(words_said, settings.step_share))
         energies = kinetic_energies((folder / "log.lammps").read_text(errors="replace"))
     _, second = run.units
     notes = (_fit_in_words(clumps), _softness_in_words(prepared, settings))
-    return Ending(run.last, _checks(run, energies), run.plan.steps, run.plan.total * second, notes)
+    return SimulationResult(run.last, _checks(run, energies), run.plan.steps, run.plan.total * second, notes)
 
 
 def _fit_in_words(clumps: Clumps) -> str:
@@ -112,14 +112,14 @@ def _fit_in_words(clumps: Clumps) -> str:
     )
 
 
-def _softness_in_words(prepared: Prepared, settings: LammpsSettings) -> str:
+def _softness_in_words(prepared: PreparedCase, settings: LammpsSettings) -> str:
     contact, test = prepared.case.contact, prepared.case.test
     scale = contact.density * test.gravity * prepared.mean_diameter
     simulated = stiffness(prepared, settings) * scale
     return f"Young's modulus was {simulated:.2g} Pa instead of {contact.youngs_modulus:.2g} Pa."
 
 
-def _follow(run: _Run, child: "subprocess.Popen[bytes]", folder: Path) -> Generator[Moment, None, None]:
+def _follow(run: _Run, child: "subprocess.Popen[bytes]", folder: Path) -> Generator[Snapshot, None, None]:
     """Moments as LAMMPS writes them; a file is whole when the next one is there or LAMMPS has ended."""
     step = 0
     while True:
@@ -128,21 +128,21 @@ def _follow(run: _Run, child: "subprocess.Popen[bytes]", folder: Path) -> Genera
             following = (folder / f"body.{step + run.plan.picture}.dump").exists()
             if not (following or ended):
                 break
-            yield _moment(run, folder / f"body.{step}.dump", step)
+            yield _snapshot(run, folder / f"body.{step}.dump", step)
             step += run.plan.picture
         if ended:
             return
         time.sleep(GLANCE)
 
 
-def _moment(run: _Run, path: Path, step: int) -> Moment:
+def _snapshot(run: _Run, path: Path, step: int) -> Snapshot:
     length, second = run.units
     rows = read_bodies(path)
     turns = Rotation.from_quat(rows[:, 4:8], scalar_first=True)
     if run.first is None:
         run.first = turns  # principal axes of LAMMPS, of which only the change counts
     turned = turns * run.first.inv() * run.clumps.turns
-    pile = Pile(
+    particles = ParticleState(
         points=rows[:, 1:4] * length,
         diameters=run.prepared.diameters,
         orientations=turned.as_quat(scalar_first=True),
@@ -151,11 +151,13 @@ def _moment(run: _Run, path: Path, step: int) -> Moment:
         wall=run.plan.rim(step) * length,
         phase=run.plan.phase(step),
     )
-    if pile.phase in ("fill", "settle"):
-        run.fill = filling_of(run.prepared, pile)
-    run.last = pile
+    if particles.phase in ("fill", "settle"):
+        run.fill = measure_filling(run.prepared, particles)
+    run.last = particles
     run.potential[step] = float(run.clumps.scales**3 @ rows[:, 3])
-    return Moment(pile, min(0.99, step / run.plan.steps), f"{pile.phase}, {pile.time:.2f} s simulated")
+    return Snapshot(
+        particles, min(0.99, step / run.plan.steps), f"{particles.phase}, {particles.time:.2f} s simulated"
+    )
 
 
 def read_bodies(path: Path) -> FloatArray:
@@ -218,14 +220,14 @@ def _energy_gain(run: _Run, kinetic: dict[int, float]) -> float:
     return gain
 
 
-def _checks(run: _Run, energies: dict[int, float]) -> Checks:
+def _checks(run: _Run, energies: dict[int, float]) -> RunChecks:
     assert run.last is not None
     length, _ = run.units
     points = run.last.points / length
     turns = Rotation.from_quat(run.last.orientations, scalar_first=True)
     overlaps = _overlaps(*run.clumps.atoms(points, turns))
     kinetic = energies[max(energies)] / len(points) if energies else float("inf")
-    return checked(
+    return check_run(
         points[:, 2],
         overlaps,
         energy_gain=_energy_gain(run, energies),

@@ -4,14 +4,15 @@ from collections.abc import Generator
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
 
-from regolith_studio.dem.case import Prepared
-from regolith_studio.dem.engine import Ending, Found, Moment, Representation
+from regolith_studio.dem.case import PreparedCase
+from regolith_studio.dem.engine import Availability, EngineCapabilities, SimulationResult
 from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
+from regolith_studio.dem.snapshot import Snapshot
 
 SECONDS_PER_PARTICLE_AND_STEP = {"polyhedra": 18e-6, "spheres": 6e-6}
 """Measured on one core at 1,000 particles of 20 facets."""
 
-REPRESENTS = Representation(
+REPRESENTS = EngineCapabilities(
     shape="the convex polyhedra themselves",
     normal="unilateral constraint, no bounce; penetration is reported, stiffness has no part",
     tangential="Coulomb friction in an elliptic cone, one coefficient (the static one)",
@@ -31,25 +32,27 @@ class MujocoEngine:
     order: int = 0
     licence: str = "Apache-2.0"
     Settings: type[MujocoSettings] = MujocoSettings
-    represents: Representation = REPRESENTS
+    capabilities: EngineCapabilities = REPRESENTS
 
-    def find(self) -> Found:
+    def find(self) -> Availability:
         """Whether the package is installed."""
         for package in ("mujoco-core", "mujoco"):
             try:
-                return Found(version(package))
+                return Availability(version(package))
             except PackageNotFoundError:
                 continue
-        return Found(problem="MuJoCo is not installed; install the package mujoco-core.")
+        return Availability(problem="MuJoCo is not installed; install the package mujoco-core.")
 
-    def seconds(self, prepared: Prepared, settings: MujocoSettings) -> float:
+    def seconds(self, prepared: PreparedCase, settings: MujocoSettings) -> float:
         """From the cost of a step and the expected length of the phases."""
-        from regolith_studio.dem.engines.mujoco.phases import expected_duration
+        from regolith_studio.dem.engines.mujoco.settings import expected_duration
 
         steps = expected_duration(prepared) / settings.time_step
         return 1.0 + SECONDS_PER_PARTICLE_AND_STEP[prepared.case.shapes] * len(prepared) * steps
 
-    def simulate(self, prepared: Prepared, settings: MujocoSettings) -> Generator[Moment, None, Ending]:
+    def simulate(
+        self, prepared: PreparedCase, settings: MujocoSettings
+    ) -> Generator[Snapshot, None, SimulationResult]:
         """Fill, settle, lift, rest."""
         from regolith_studio.dem.engines.mujoco.simulation import simulate
 

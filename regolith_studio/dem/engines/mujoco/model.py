@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from regolith_studio.dem.case import Prepared
+from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
-from regolith_studio.dem.filling import enclosing_radii, loose_column
+from regolith_studio.dem.initial_packing import enclosing_radii, loose_column
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 
 N_WALLS = 32
@@ -37,7 +37,7 @@ class Units:
     time: float
 
     @classmethod
-    def of(cls, prepared: Prepared) -> "Units":
+    def of(cls, prepared: PreparedCase) -> "Units":
         """Mean diameter, and the time in which it is about fallen through."""
         length = prepared.mean_diameter
         return cls(length, float(np.sqrt(length / prepared.case.test.gravity)))
@@ -48,7 +48,7 @@ class Units:
 
 
 @dataclass(frozen=True, eq=False)
-class Built:
+class BuiltModel:
     """A compiled model.
 
     Parameters
@@ -66,7 +66,7 @@ class Built:
     top: float
 
 
-def build(prepared: Prepared, settings: MujocoSettings) -> Built:
+def build_model(prepared: PreparedCase, settings: MujocoSettings) -> BuiltModel:
     """The model with its particles in a loose column above the plate, turned at random."""
     units = Units.of(prepared)
     spec = mujoco.MjSpec()
@@ -82,7 +82,7 @@ def build(prepared: Prepared, settings: MujocoSettings) -> Built:
     _add_particles(spec, prepared, settings, sizes, places, turns)
     model = spec.compile()
     walls = np.flatnonzero(model.geom_contype == WALL)
-    return Built(model, walls.astype(np.int64), top)
+    return BuiltModel(model, walls.astype(np.int64), top)
 
 
 def _set_options(spec: mujoco.MjSpec, settings: MujocoSettings) -> None:
@@ -99,7 +99,7 @@ def _set_options(spec: mujoco.MjSpec, settings: MujocoSettings) -> None:
     spec.stat.extent = 10.0
 
 
-def _contact(prepared: Prepared, settings: MujocoSettings, friction: float) -> dict[str, object]:
+def _contact(prepared: PreparedCase, settings: MujocoSettings, friction: float) -> dict[str, object]:
     rolling = prepared.case.contact.rolling_friction / 2
     return {
         "friction": [friction, max(rolling, 1e-6), max(rolling, 1e-6)],
@@ -109,7 +109,7 @@ def _contact(prepared: Prepared, settings: MujocoSettings, friction: float) -> d
     }
 
 
-def _add_plate(spec: mujoco.MjSpec, prepared: Prepared, settings: MujocoSettings) -> None:
+def _add_plate(spec: mujoco.MjSpec, prepared: PreparedCase, settings: MujocoSettings) -> None:
     spec.worldbody.add_geom(
         type=mujoco.mjtGeom.mjGEOM_PLANE,
         size=[0.0, 0.0, 1.0],
@@ -121,7 +121,7 @@ def _add_plate(spec: mujoco.MjSpec, prepared: Prepared, settings: MujocoSettings
 
 
 def _add_walls(
-    spec: mujoco.MjSpec, prepared: Prepared, settings: MujocoSettings, radius: float, height: float
+    spec: mujoco.MjSpec, prepared: PreparedCase, settings: MujocoSettings, radius: float, height: float
 ) -> None:
     frame = spec.worldbody.add_body(name="cylinder", mocap=True)
     half_width = (radius + WALL_THICKNESS) * np.tan(np.pi / N_WALLS)
@@ -145,7 +145,7 @@ def _add_walls(
 
 def _add_particles(
     spec: mujoco.MjSpec,
-    prepared: Prepared,
+    prepared: PreparedCase,
     settings: MujocoSettings,
     sizes: FloatArray,
     places: FloatArray,
@@ -180,7 +180,7 @@ def _add_particles(
         )
 
 
-def adhesion(prepared: Prepared) -> FloatArray:
+def adhesion(prepared: PreparedCase) -> FloatArray:
     """Each particle's share of the pull-off force 3/2 pi w R* at a contact point, in the solver's unit.
 
     The shares of two particles add up to the force exactly if they are equally large (R* = d/4); polyhedra

@@ -2,7 +2,10 @@
 
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from regolith_studio.dataset.parameters import check_limits
+from regolith_studio.dem.case import PreparedCase
 
 
 @dataclass(frozen=True)
@@ -17,13 +20,13 @@ class MujocoSettings:
         Time constant of a contact in time steps: how soft the constraints are.
     iterations, tolerance
         Of the conjugate-gradient solver.
-    fastest
+    max_fill_speed
         Speed limit while the cylinder is being filled, in sqrt(g d).
-    calm
+    rest_energy
         Mean kinetic energy of a particle, in units of its weight times d, below which a heap is at rest.
-    calm_time
+    rest_time
         How long it must stay so.
-    longest_rest
+    max_rest_time
         When waiting for rest ends.
     snapshots
         Pictures of a run.
@@ -44,15 +47,33 @@ class MujocoSettings:
     tolerance: float = field(
         default=1e-5, metadata={"label": "Tolerance", "minimum": 1e-12, "maximum": 1e-2, "decimals": 12}
     )
-    fastest: float = field(default=6.0, metadata={"label": "Filling speed", "minimum": 0.1, "maximum": 100.0})
-    calm: float = field(
+    max_fill_speed: float = field(
+        default=6.0, metadata={"label": "Filling speed", "minimum": 0.1, "maximum": 100.0}
+    )
+    rest_energy: float = field(
         default=2e-4, metadata={"label": "Rest: energy", "minimum": 1e-9, "maximum": 0.1, "decimals": 9}
     )
-    calm_time: float = field(default=3.0, metadata={"label": "Rest: time", "minimum": 0.1, "maximum": 1000.0})
-    longest_rest: float = field(
+    rest_time: float = field(default=3.0, metadata={"label": "Rest: time", "minimum": 0.1, "maximum": 1000.0})
+    max_rest_time: float = field(
         default=60.0, metadata={"label": "Longest wait", "minimum": 1.0, "maximum": 1e5}
     )
     snapshots: int = field(default=120, metadata={"label": "Snapshots", "minimum": 2, "maximum": 10_000})
 
     def __post_init__(self) -> None:
         check_limits(self, "MuJoCo setting")
+
+
+FALL = 25.0
+SETTLE = 6.0
+REST = 18.0
+
+
+def lift_duration(prepared: PreparedCase) -> float:
+    """Until the rim is above the pile, which is about 0.6 of the filling's height."""
+    speed = prepared.case.test.lift_speed / np.sqrt(prepared.case.test.gravity * prepared.mean_diameter)
+    return float(0.75 * prepared.fill_height / prepared.mean_diameter / speed)
+
+
+def expected_duration(prepared: PreparedCase) -> float:
+    """Of the whole test."""
+    return FALL + SETTLE + lift_duration(prepared) + REST

@@ -6,13 +6,12 @@ from dataclasses import dataclass, field
 import mujoco
 import numpy as np
 
-from regolith_studio.dem.case import Prepared
-from regolith_studio.dem.checking import checked, filling_of
-from regolith_studio.dem.engine import Checks, Ending, Moment
-from regolith_studio.dem.engines.mujoco.model import Built, Units, build
-from regolith_studio.dem.engines.mujoco.phases import expected_duration
-from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
-from regolith_studio.dem.pile import Pile
+from regolith_studio.dem.case import PreparedCase
+from regolith_studio.dem.engine import RunChecks, SimulationResult
+from regolith_studio.dem.engines.mujoco.model import BuiltModel, Units, build_model
+from regolith_studio.dem.engines.mujoco.settings import MujocoSettings, expected_duration
+from regolith_studio.dem.run_checks import check_run, measure_filling
+from regolith_studio.dem.snapshot import ParticleState, Snapshot
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.arrays import FloatArray
 
@@ -26,9 +25,9 @@ CLEAR = 0.5
 class _Run:
     """MuJoCo's state with what is noted on the way."""
 
-    prepared: Prepared
+    prepared: PreparedCase
     settings: MujocoSettings
-    built: Built
+    built: BuiltModel
     data: mujoco.MjData
     units: Units
     phase: str = "fill"
@@ -58,7 +57,7 @@ class _Run:
         return float(self.data.mocap_pos[0, 2])
 
 
-def simulate(prepared: Prepared, settings: MujocoSettings) -> Generator[Moment, None, Ending]:
+def simulate(prepared: PreparedCase, settings: MujocoSettings) -> Generator[Snapshot, None, SimulationResult]:
     """Run the test.
 
     Raises
@@ -67,29 +66,29 @@ def simulate(prepared: Prepared, settings: MujocoSettings) -> Generator[Moment, 
         If the solver diverges.
     """
     mujoco.set_mju_user_warning(_be_silent)
-    built = build(prepared, settings)
+    built = build_model(prepared, settings)
     run = _Run(prepared, settings, built, mujoco.MjData(built.model), Units.of(prepared))
-    yield _moment(run)
+    yield _snapshot(run)
     yield from _fill(run)
     yield from _lift(run)
     yield from _rest(run)
-    return Ending(_pile(run), _checks(run), run.steps, run.time * run.units.time)
+    return SimulationResult(_particles(run), _checks(run), run.steps, run.time * run.units.time)
 
 
 def _be_silent(_message: str) -> None:
     """MuJoCo would write a file into the current folder; what it warns of is looked at after every look."""
 
 
-def _fill(run: _Run) -> Generator[Moment, None, None]:
+def _fill(run: _Run) -> Generator[Snapshot, None, None]:
     """Let the particles fall, with a limit on their speed, until they lie still in the cylinder."""
     run.built.model.geom_surfacevel[run.built.walls] = 0.0
-    yield from _advance(run, _limit_speed, _is_calm, 40.0 + 2.0 * run.built.top / run.settings.fastest)
+    yield from _advance(run, _limit_speed, _is_calm, 40.0 + 2.0 * run.built.top / run.settings.max_fill_speed)
     run.phase, run.calm_since = "settle", None
-    yield from _advance(run, None, _is_calm, run.settings.longest_rest)
-    run.fill = filling_of(run.prepared, _pile(run))
+    yield from _advance(run, None, _is_calm, run.settings.max_rest_time)
+    run.fill = measure_filling(run.prepared, _particles(run))
 
 
-def _lift(run: _Run) -> Generator[Moment, None, None]:
+def _lift(run: _Run) -> Generator[Snapshot, None, None]:
     """Raise the walls at constant speed; their surface moves with them, as friction must feel."""
     run.phase = "lift"
     speed = run.prepared.case.test.lift_speed / run.units.speed
@@ -104,10 +103,10 @@ def _lift(run: _Run) -> Generator[Moment, None, None]:
     run.built.model.geom_surfacevel[run.built.walls] = 0.0
 
 
-def _rest(run: _Run) -> Generator[Moment, None, None]:
+def _rest(run: _Run) -> Generator[Snapshot, None, None]:
     """Wait until the heap stays calm."""
     run.phase, run.calm_since = "rest", None
-    yield from _advance(run, None, _is_calm, run.settings.longest_rest)
+    yield from _advance(run, None, _is_calm, run.settings.max_rest_time)
 
 
 def _advance(
@@ -115,7 +114,7 @@ def _advance(
     each_step: Callable[[_Run], None] | None,
     done: Callable[[_Run], bool],
     longest: float,
-) -> Generator[Moment, None, None]:
+) -> Generator[Snapshot, None, None]:
     """Step until `done` or `longest` is over; `done` is asked and energies are noted once a look."""
     per_look = max(1, round(LOOK / run.settings.time_step))
     end = run.time + longest
@@ -133,7 +132,7 @@ def _advance(
             _note_energy(run)
         if run.time >= run.next_picture:
             run.next_picture = run.time + run.expected / run.settings.snapshots
-            yield _moment(run)
+            yield _snapshot(run)
         if done(run):
             return
 
@@ -141,18 +140,18 @@ def _advance(
 def _limit_speed(run: _Run) -> None:
     velocity = run.data.qvel.reshape(-1, 6)[:, :3]
     speed = np.linalg.norm(velocity, axis=1)
-    fast = speed > run.settings.fastest
-    velocity[fast] *= (run.settings.fastest / speed[fast])[:, None]
+    fast = speed > run.settings.max_fill_speed
+    velocity[fast] *= (run.settings.max_fill_speed / speed[fast])[:, None]
 
 
 def _is_calm(run: _Run) -> bool:
     """Whether the mean kinetic energy has been small for long enough."""
-    if run.data.energy[1] / len(run.prepared) > run.settings.calm:
+    if run.data.energy[1] / len(run.prepared) > run.settings.rest_energy:
         run.calm_since = None
         return False
     if run.calm_since is None:
         run.calm_since = run.time
-    return run.time - run.calm_since >= run.settings.calm_time
+    return run.time - run.calm_since >= run.settings.rest_time
 
 
 def _is_clear(run: _Run) -> bool:
@@ -175,16 +174,16 @@ def _check_state(run: _Run) -> None:
         )
 
 
-def _moment(run: _Run) -> Moment:
+def _snapshot(run: _Run) -> Snapshot:
     share = min(0.99, run.time / run.expected)
     simulated = run.time * run.units.time
-    return Moment(_pile(run), share, f"{run.phase}, {simulated:.2f} s simulated")
+    return Snapshot(_particles(run), share, f"{run.phase}, {simulated:.2f} s simulated")
 
 
-def _pile(run: _Run) -> Pile:
+def _particles(run: _Run) -> ParticleState:
     state = run.data.qpos.reshape(-1, 7)
     gone = run.phase == "rest"
-    return Pile(
+    return ParticleState(
         points=state[:, :3] * run.units.length,
         diameters=run.prepared.diameters,
         orientations=state[:, 3:],
@@ -195,15 +194,15 @@ def _pile(run: _Run) -> Pile:
     )
 
 
-def _checks(run: _Run) -> Checks:
+def _checks(run: _Run) -> RunChecks:
     full = (mujoco.mjtWarning.mjWARN_CONTACTFULL, mujoco.mjtWarning.mjWARN_CNSTRFULL)
     crowded = any(run.data.warning[each].number for each in full)
-    return checked(
+    return check_run(
         run.points[:, 2],
         np.maximum(-run.data.contact.dist, 0.0),
         energy_gain=run.energy_gain,
         kinetic_energy=float(run.data.energy[1]) / len(run.prepared),
-        at_rest=run.calm_since is not None and run.time - run.calm_since >= run.settings.calm_time,
+        at_rest=run.calm_since is not None and run.time - run.calm_since >= run.settings.rest_time,
         filling=run.fill,
         problems=["MuJoCo had no room for all contacts."] if crowded else [],
     )

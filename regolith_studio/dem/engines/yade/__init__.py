@@ -3,14 +3,15 @@
 from collections.abc import Generator
 from dataclasses import dataclass
 
-from regolith_studio.dem.case import Prepared
-from regolith_studio.dem.engine import Ending, Found, Moment, Representation
+from regolith_studio.dem.case import PreparedCase
+from regolith_studio.dem.engine import Availability, EngineCapabilities, SimulationResult
 from regolith_studio.dem.engines.yade.settings import YadeSettings
+from regolith_studio.dem.snapshot import Snapshot
 from regolith_studio.errors import InputError
 
 SECONDS_PER_PARTICLE_AND_STEP = 4e-4
 """Processor time at 150 packed particles of 8 facets, on a machine that others used too."""
-REPRESENTS = Representation(
+REPRESENTS = EngineCapabilities(
     shape="the convex polyhedra themselves",
     normal="force in proportion to the overlapping volume: neither Hertz nor restitution",
     tangential="Coulomb friction while sliding, one coefficient (the static one), no memory at rest",
@@ -30,23 +31,25 @@ class YadeEngine:
     order: int = 2
     licence: str = "GPL-2.0, run as a separate program"
     Settings: type[YadeSettings] = YadeSettings
-    represents: Representation = REPRESENTS
+    capabilities: EngineCapabilities = REPRESENTS
 
-    def find(self) -> Found:
+    def find(self) -> Availability:
         """Whether the program is on the path."""
         from regolith_studio.dem.engines.yade.program import find_yade
 
         return find_yade()
 
-    def seconds(self, prepared: Prepared, settings: YadeSettings) -> float:
+    def seconds(self, prepared: PreparedCase, settings: YadeSettings) -> float:
         """From the cost of a step and the expected length of the phases."""
-        from regolith_studio.dem.engines.yade.order import TIME, time_step
-        from regolith_studio.dem.engines.yade.phases import expected_duration
+        from regolith_studio.dem.engines.yade.input_files import TIME, time_step
+        from regolith_studio.dem.engines.yade.settings import expected_duration
 
         steps = expected_duration(prepared) * TIME / time_step(prepared, settings)
         return 3.0 + SECONDS_PER_PARTICLE_AND_STEP * len(prepared) * steps
 
-    def simulate(self, prepared: Prepared, settings: YadeSettings) -> Generator[Moment, None, Ending]:
+    def simulate(
+        self, prepared: PreparedCase, settings: YadeSettings
+    ) -> Generator[Snapshot, None, SimulationResult]:
         """Fill, settle, lift, rest.
 
         Raises

@@ -6,7 +6,7 @@ import shutil
 from functools import cache
 from pathlib import Path
 
-from regolith_studio.dem.engine import Found
+from regolith_studio.dem.engine import Availability
 from regolith_studio.resources import resource
 
 MISSING = "YADE is not installed; install the package yade of your Linux distribution."
@@ -16,10 +16,10 @@ _HIDDEN = ("LD_LIBRARY_PATH", "PYTHONPATH", "PYTHONHOME", "VIRTUAL_ENV", "DISPLA
 """Of this program's environment, out of reach of YADE's own Python."""
 
 
-def find_yade() -> Found:
+def find_yade() -> Availability:
     """Whether YADE can be started, without starting it."""
     program = _program()
-    return Found(problem=MISSING) if program is None else Found(_version(program))
+    return Availability(problem=MISSING) if program is None else Availability(_version(program))
 
 
 def command(folder: Path) -> tuple[list[str], dict[str, str]]:

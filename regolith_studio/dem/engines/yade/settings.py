@@ -2,7 +2,10 @@
 
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from regolith_studio.dataset.parameters import check_limits
+from regolith_studio.dem.case import PreparedCase
 
 
 @dataclass(frozen=True)
@@ -17,11 +20,11 @@ class YadeSettings:
         Time step as a share of the time in which the smallest particle would swing on a flat contact.
     damping
         YADE's local damping: this share of every force that speeds a particle up is left out.
-    staves
+    n_segments
         Flat blocks that the cylinder is made of.
-    fastest
+    max_fill_speed
         Speed limit while the cylinder is being filled, in sqrt(g d).
-    calm, calm_time, longest_rest
+    rest_energy, rest_time, max_rest_time
         Mean kinetic energy of a particle in m g d below which a heap is at rest, how long it must stay so,
         and when waiting for it ends.
     restarts
@@ -42,13 +45,17 @@ class YadeSettings:
         default=0.35, metadata={"label": "Step, share of a swing", "minimum": 0.01, "maximum": 0.5}
     )
     damping: float = field(default=0.4, metadata={"label": "Damping", "minimum": 0.0, "maximum": 0.9})
-    staves: int = field(default=24, metadata={"label": "Blocks of the cylinder", "minimum": 8, "maximum": 96})
-    fastest: float = field(default=4.0, metadata={"label": "Filling speed", "minimum": 0.1, "maximum": 100.0})
-    calm: float = field(
+    n_segments: int = field(
+        default=24, metadata={"label": "Blocks of the cylinder", "minimum": 8, "maximum": 96}
+    )
+    max_fill_speed: float = field(
+        default=4.0, metadata={"label": "Filling speed", "minimum": 0.1, "maximum": 100.0}
+    )
+    rest_energy: float = field(
         default=5e-3, metadata={"label": "Rest: energy", "minimum": 1e-9, "maximum": 0.1, "decimals": 9}
     )
-    calm_time: float = field(default=2.0, metadata={"label": "Rest: time", "minimum": 0.1, "maximum": 1000.0})
-    longest_rest: float = field(
+    rest_time: float = field(default=2.0, metadata={"label": "Rest: time", "minimum": 0.1, "maximum": 1000.0})
+    max_rest_time: float = field(
         default=20.0, metadata={"label": "Longest wait", "minimum": 1.0, "maximum": 1e5}
     )
     restarts: int = field(default=20, metadata={"label": "Restarts", "minimum": 0, "maximum": 1000})
@@ -56,3 +63,13 @@ class YadeSettings:
 
     def __post_init__(self) -> None:
         check_limits(self, "YADE setting")
+
+
+FALL, SETTLE, REST = 18.0, 4.0, 12.0
+
+
+def expected_duration(prepared: PreparedCase) -> float:
+    """Of the whole test; the rim must rise above the pile, which is about 0.6 of the filling's height."""
+    speed = prepared.case.test.lift_speed / np.sqrt(prepared.case.test.gravity * prepared.mean_diameter)
+    lift = 0.75 * prepared.fill_height / prepared.mean_diameter / speed
+    return float(FALL + SETTLE + lift + REST)

@@ -11,15 +11,14 @@ from pathlib import Path
 
 import numpy as np
 
-from regolith_studio.dem.case import Prepared
-from regolith_studio.dem.checking import checked, filling_of
-from regolith_studio.dem.engine import Checks, Ending, Moment
-from regolith_studio.dem.engines.yade.order import LENGTH, State, order, read_state
-from regolith_studio.dem.engines.yade.phases import expected_duration
+from regolith_studio.dem.case import PreparedCase
+from regolith_studio.dem.engine import RunChecks, SimulationResult
+from regolith_studio.dem.engines.yade.input_files import LENGTH, YadeState, input_document, read_yade_state
 from regolith_studio.dem.engines.yade.program import command
-from regolith_studio.dem.engines.yade.settings import YadeSettings
-from regolith_studio.dem.penetration import penetration_depths
-from regolith_studio.dem.pile import Pile
+from regolith_studio.dem.engines.yade.settings import YadeSettings, expected_duration
+from regolith_studio.dem.overlap_depth import overlap_depths
+from regolith_studio.dem.run_checks import check_run, measure_filling
+from regolith_studio.dem.snapshot import ParticleState, Snapshot
 from regolith_studio.errors import RegolithError
 
 GLANCE = 0.1
@@ -28,11 +27,11 @@ GLANCE = 0.1
 
 @dataclass(eq=False)
 class _Run:
-    prepared: Prepared
+    prepared: PreparedCase
     settings: YadeSettings
     duration: float
-    states: list[State] = field(default_factory=list)
-    pile: Pile | None = None
+    states: list[YadeState] = field(default_factory=list)
+    particles: ParticleState | None = None
     fill: tuple[float, float] = (0.0, 0.0)
     crashes: int = 0
     earlier_steps: int = 0
@@ -43,11 +42,11 @@ class _Run:
         return float(np.sqrt(self.prepared.mean_diameter / self.prepared.case.test.gravity))
 
     @property
-    def last(self) -> State | None:
+    def last(self) -> YadeState | None:
         return self.states[-1] if self.states else None
 
 
-def simulate(prepared: Prepared, settings: YadeSettings) -> Generator[Moment, None, Ending]:
+def simulate(prepared: PreparedCase, settings: YadeSettings) -> Generator[Snapshot, None, SimulationResult]:
     """Write the order, run YADE, read its states; after a crash go on from the last one.
 
     Raises
@@ -64,17 +63,17 @@ def simulate(prepared: Prepared, settings: YadeSettings) -> Generator[Moment, No
                 break
             _bear(run, code, folder)
     assert run.last is not None
-    assert run.pile is not None
+    assert run.particles is not None
     steps = run.earlier_steps + run.last.steps
-    return Ending(run.pile, _checks(run), steps, run.last.time * run.second, _notes(run))
+    return SimulationResult(run.particles, _checks(run), steps, run.last.time * run.second, _notes(run))
 
 
-def _attempt(run: _Run, folder: Path) -> Generator[Moment, None, int]:
+def _attempt(run: _Run, folder: Path) -> Generator[Snapshot, None, int]:
     """One process of YADE's, from the last state on; its exit code."""
-    plan = order(run.prepared, run.settings, run.duration, run.last)
-    (folder / "order.json").write_text(json.dumps(plan), encoding="utf-8")
+    plan = input_document(run.prepared, run.settings, run.duration, run.last)
+    (folder / "input.json").write_text(json.dumps(plan), encoding="utf-8")
     words, environment = command(folder)
-    with (folder / "said.txt").open("wb") as said:
+    with (folder / "output.txt").open("wb") as said:
         child = subprocess.Popen(
             words,
             cwd=folder,
@@ -88,7 +87,7 @@ def _attempt(run: _Run, folder: Path) -> Generator[Moment, None, int]:
         while True:
             ended = child.poll() is not None
             while (path := folder / f"state.{number:06d}.json").exists():
-                yield _moment(run, read_state(path, len(run.prepared)))
+                yield _snapshot(run, read_yade_state(path, len(run.prepared)))
                 path.unlink()
                 number += 1
             if ended:
@@ -108,7 +107,7 @@ def _bear(run: _Run, code: int, folder: Path) -> None:
         With YADE's own last words where it said any.
     """
     run.crashes += 1
-    said = (folder / "said.txt").read_text(errors="replace").splitlines()
+    said = (folder / "output.txt").read_text(errors="replace").splitlines()
     errors = [line.strip() for line in said if "Error" in line or "ERROR" in line or "FATAL" in line]
     how = f"was ended by signal {-code}" if code < 0 else f"ended with code {code}"
     if code >= 0 and errors:
@@ -123,10 +122,10 @@ def _bear(run: _Run, code: int, folder: Path) -> None:
     run.earlier_steps += run.last.steps
 
 
-def _moment(run: _Run, state: State) -> Moment:
+def _snapshot(run: _Run, state: YadeState) -> Snapshot:
     run.states.append(state)
     length = run.prepared.mean_diameter
-    run.pile = Pile(
+    run.particles = ParticleState(
         points=state.rows[:, :3] / LENGTH * length,
         diameters=run.prepared.diameters,
         orientations=state.rows[:, 3:7],
@@ -136,9 +135,9 @@ def _moment(run: _Run, state: State) -> Moment:
         phase=state.phase,
     )
     if state.phase in ("fill", "settle"):
-        run.fill = filling_of(run.prepared, run.pile)
+        run.fill = measure_filling(run.prepared, run.particles)
     share = min(0.99, state.time / run.duration)
-    return Moment(run.pile, share, f"{state.phase}, {run.pile.time:.2f} s simulated")
+    return Snapshot(run.particles, share, f"{state.phase}, {run.particles.time:.2f} s simulated")
 
 
 def _notes(run: _Run) -> tuple[str, ...]:
@@ -152,7 +151,7 @@ def _notes(run: _Run) -> tuple[str, ...]:
     return law, f"YADE crashed {times} and went on from its last snapshot."
 
 
-def _energy_gain(states: list[State]) -> float:
+def _energy_gain(states: list[YadeState]) -> float:
     """Largest rise of motion and height between two states of one phase without moving walls or falls."""
     gain = 0.0
     for before, after in pairwise(states):
@@ -161,15 +160,15 @@ def _energy_gain(states: list[State]) -> float:
     return gain
 
 
-def _checks(run: _Run) -> Checks:
+def _checks(run: _Run) -> RunChecks:
     assert run.last is not None
-    assert run.pile is not None
+    assert run.particles is not None
     length = run.prepared.mean_diameter
-    return checked(
-        run.pile.points[:, 2] / length,
-        penetration_depths(run.prepared, run.pile) / length,
+    return check_run(
+        run.particles.points[:, 2] / length,
+        overlap_depths(run.prepared, run.particles) / length,
         energy_gain=_energy_gain(run.states),
         kinetic_energy=run.last.kinetic,
-        at_rest=run.last.calm,
+        at_rest=run.last.at_rest,
         filling=run.fill,
     )

@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 from PySide6.QtWidgets import QFileDialog, QInputDialog, QWidget
 
-from regolith_studio.dem.pile import Pile, read_pile
-from regolith_studio.dem.repose import ReposeMeasurement, measurement_document
+from regolith_studio.dem.angle_of_repose import ReposeMeasurement, measurement_document
+from regolith_studio.dem.snapshot import ParticleState, read_particle_state
 from regolith_studio.errors import RegolithError
 from regolith_studio.io.atomic import staged_folder
 from regolith_studio.io.json_text import json_bytes
@@ -22,7 +22,9 @@ POSITIONS = mark(
 UNITS = ("m", "cm", "mm", "um")
 
 
-def export_measurement(parent: QWidget, toast: Toast, pile: Pile, measured: ReposeMeasurement) -> None:
+def export_measurement(
+    parent: QWidget, toast: Toast, pile: ParticleState, measured: ReposeMeasurement
+) -> None:
     """Ask for a folder and write ``repose.json``, ``sections.png`` and ``sections.svg``."""
     name = FolderDialog.ask(parent, tr("Export figure and JSON"))
     if not name:
@@ -38,14 +40,14 @@ def export_measurement(parent: QWidget, toast: Toast, pile: Pile, measured: Repo
     toast.note(tr("Figure and JSON are in {name}.", name=name))
 
 
-def read_other(parent: QWidget, toast: Toast) -> Pile | None:
+def read_other(parent: QWidget, toast: Toast) -> ParticleState | None:
     """Ask for a file of positions, its unit, and a diameter if it has none; or ``None``."""
     name, _ = QFileDialog.getOpenFileName(parent, tr("Measure positions"), "", tr(POSITIONS))
     if not name:
         return None
     try:
         if name.endswith(".npz"):
-            return read_pile(Path(name))
+            return read_particle_state(Path(name))
         unit, sure = QInputDialog.getItem(parent, tr("Unit"), tr("Length unit of the file:"), UNITS, 0, False)
         if not sure:
             return None
@@ -71,4 +73,6 @@ def read_other(parent: QWidget, toast: Toast) -> Pile | None:
         toast.note(note)
     n = len(found)
     still = np.tile([1.0, 0.0, 0.0, 0.0], (n, 1))
-    return Pile(found.points, diameters, still, np.zeros(n, dtype=np.int64), 0.0, float("inf"), "imported")
+    return ParticleState(
+        found.points, diameters, still, np.zeros(n, dtype=np.int64), 0.0, float("inf"), "imported"
+    )

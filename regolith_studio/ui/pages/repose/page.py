@@ -9,14 +9,13 @@ from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QFileDialog, QHBoxLayout, QWidget
 
 from regolith_studio.dataset.parameters import LiftingCylinderTest
-from regolith_studio.dem.case import Prepared
-from regolith_studio.dem.consequences import consequences
-from regolith_studio.dem.engine import Moment
+from regolith_studio.dem.angle_of_repose import ReposeMeasurement
+from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engines import engine_named
-from regolith_studio.dem.evaluation.refusal import NoPile
-from regolith_studio.dem.pile import Pile, read_pile
-from regolith_studio.dem.repose import ReposeMeasurement
-from regolith_studio.dem.run_folder import FINAL, RunSummary, find_runs, read_shapes, snapshot_files
+from regolith_studio.dem.evaluation.errors import NotAPileError
+from regolith_studio.dem.run_io import FINAL, RunSummary, find_runs, read_shapes, snapshot_files
+from regolith_studio.dem.scaling_report import scaling_report
+from regolith_studio.dem.snapshot import ParticleState, Snapshot, read_particle_state
 from regolith_studio.errors import RegolithError
 from regolith_studio.jobs.dataset_jobs import DatasetOptions, build_dataset_folder
 from regolith_studio.jobs.events import Failed, Job
@@ -51,7 +50,7 @@ class ReposePage(PageWidget):
         self.setObjectName("repose")
         self._context = context
         self._folder = Path(context.recall("folder", str(user_data_path("regolith-studio") / "repose")))
-        self._pile: Pile | None = None
+        self._pile: ParticleState | None = None
         self._measured: ReposeMeasurement | None = None
         self._running = False
 
@@ -227,7 +226,7 @@ class ReposePage(PageWidget):
             self.setup.show_consequences([words])
             return
 
-        def show(drawn: tuple[Prepared, Pile]) -> None:
+        def show(drawn: tuple[PreparedCase, ParticleState]) -> None:
             self._show_preview(order, *drawn)
 
         job = Job(preview_repose, (dataset, order.case))
@@ -239,10 +238,10 @@ class ReposePage(PageWidget):
             lane=PREVIEW,
         )
 
-    def _show_preview(self, order: Any, prepared: Prepared, pile: Pile) -> None:
+    def _show_preview(self, order: Any, prepared: PreparedCase, pile: ParticleState) -> None:
         seconds = engine_named(order.engine).seconds(prepared, order.settings)
         time = tr("About {time} on one core.", time=duration_text(seconds))
-        self.setup.show_consequences([time, *consequences(prepared).sentences])
+        self.setup.show_consequences([time, *scaling_report(prepared).sentences])
         self.player.set_scene(prepared.shapes, order.case.shapes == "spheres", order.case.test)
         self.player.show_moment(
             pile,
@@ -253,8 +252,8 @@ class ReposePage(PageWidget):
     # --- a run ---------------------------------------------------------------------------------
 
     def _show_moment(self, moment: Any) -> None:
-        if isinstance(moment, Moment):
-            self.player.show_moment(moment.pile, tr("Running"), moment.message)
+        if isinstance(moment, Snapshot):
+            self.player.show_moment(moment.particles, tr("Running"), moment.message)
 
     def _finished(self, run: ReposeRun) -> None:
         self._set_running(False)
@@ -298,7 +297,7 @@ class ReposePage(PageWidget):
             self.player.show_run(
                 [*files, final] if final.exists() else files, run.folder.name, checks_text(run)
             )
-            pile = read_pile(final) if final.exists() else None
+            pile = read_particle_state(final) if final.exists() else None
         except (RegolithError, TypeError) as error:
             self._context.toast.problem(str(error))
             return
@@ -306,10 +305,10 @@ class ReposePage(PageWidget):
             self._measure(pile)
         else:
             self._show_measurement(
-                NoPile(tr("This run was not finished: {state}.", state=run.document["state"]))
+                NotAPileError(tr("This run was not finished: {state}.", state=run.document["state"]))
             )
 
-    def _measure(self, pile: Pile) -> None:
+    def _measure(self, pile: ParticleState) -> None:
         self._pile = pile
         self._measure_again()
 
@@ -323,8 +322,8 @@ class ReposePage(PageWidget):
             return
         self._context.start(tr("Measuring the pile"), job, self._show_measurement, lane=MEASURE)
 
-    def _show_measurement(self, measured: ReposeMeasurement | NoPile) -> None:
-        if isinstance(measured, NoPile) or self._pile is None:
+    def _show_measurement(self, measured: ReposeMeasurement | NotAPileError) -> None:
+        if isinstance(measured, NotAPileError) or self._pile is None:
             self._measured = None
             self.verdict.setText(tr("There is no angle of repose."))
             for plot in (self.x_z, self.y_z):

@@ -8,7 +8,7 @@ from PySide6.QtCore import QSignalBlocker, Qt, QTimer
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QSlider, QVBoxLayout, QWidget
 
 from regolith_studio.dataset.parameters import LiftingCylinderTest
-from regolith_studio.dem.pile import Pile, read_pile
+from regolith_studio.dem.snapshot import ParticleState, read_particle_state
 from regolith_studio.errors import FileError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.scene import heap
@@ -35,7 +35,7 @@ class RunPlayer(QWidget):
         self._spheres = False
         self._test = LiftingCylinderTest()
         self._files: list[Path] = []
-        self.pile: Pile | None = None
+        self.pile: ParticleState | None = None
         self.slider = QSlider(Qt.Orientation.Horizontal)
         self.slider.setObjectName("repose_time")
         self.slider.setAccessibleName(tr("Time of the run"))
@@ -78,7 +78,7 @@ class RunPlayer(QWidget):
             corners = heap.framing_corners(test.diameter, test.height)
             self.frame.view.set_pose(framing_pose(corners, "isometric", aspect, 0.95))
 
-    def show_moment(self, pile: Pile, title: str, detail: str = "") -> None:
+    def show_moment(self, pile: ParticleState, title: str, detail: str = "") -> None:
         """Show a state that is not in a file: a preview, or the latest of a running simulation."""
         self.stop()
         self._set_files([])
@@ -136,12 +136,12 @@ class RunPlayer(QWidget):
 
     def _show_file(self, number: int) -> None:
         try:
-            self._show(read_pile(self._files[number]))
+            self._show(read_particle_state(self._files[number]))
         except FileError as error:
             self.stop()
             self.clock.setText(str(error))
 
-    def _show(self, pile: Pile) -> None:
+    def _show(self, pile: ParticleState) -> None:
         self.pile = pile
         self.clock.setText(f"{pile.time:.2f} s  {tr(pile.phase)}")
         self._draw()

@@ -16,7 +16,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from regolith_studio.dem.run_folder import RunSummary
+from regolith_studio.dem.run_io import RunSummary
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
@@ -43,7 +43,7 @@ HEADINGS = (
     mark("Gravity"),
     mark("Seed"),
     mark("Engine"),
-    mark("Checks"),
+    mark("RunChecks"),
 )
 
 

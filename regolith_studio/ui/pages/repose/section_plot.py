@@ -6,7 +6,7 @@ from PySide6.QtCore import QPointF, Signal
 
 from regolith_studio.dem.evaluation.profile import Discs, project
 from regolith_studio.dem.evaluation.section import Section
-from regolith_studio.dem.pile import Pile
+from regolith_studio.dem.snapshot import ParticleState
 from regolith_studio.studies.repose_figures import framed
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.plots.base import Numbers, Plot
@@ -29,7 +29,7 @@ class SectionPlot(Plot):
     cutDragged = Signal(str, float)  # noqa: N815
 
     def __init__(self, axis: str) -> None:
-        self._pile: Pile | None = None
+        self._pile: ParticleState | None = None
         self._section: Section | None = None
         self._items: list[pg.GraphicsObject] = []
         self._cuts: dict[str, pg.InfiniteLine] = {}
@@ -46,7 +46,7 @@ class SectionPlot(Plot):
         """The line of a cut, ``low`` or ``high``."""
         return self._cuts[name]
 
-    def show_section(self, pile: Pile, section: Section) -> None:
+    def show_section(self, pile: ParticleState, section: Section) -> None:
         """Draw a section of a pile."""
         self._pile, self._section = pile, section
         two, one = section.asymmetric, section.symmetric
@@ -98,7 +98,7 @@ class SectionPlot(Plot):
             xRange=(-MILLIMETRE * reach, MILLIMETRE * reach), yRange=(0.0, MILLIMETRE * top), padding=0.02
         )
 
-    def _draw_particles(self, pile: Pile, section: Section) -> None:
+    def _draw_particles(self, pile: ParticleState, section: Section) -> None:
         discs = self._discs = project(pile.points, pile.diameters, 0.0, np.radians(section.azimuth))
         grains = pg.ScatterPlotItem(
             x=MILLIMETRE * discs.u,

@@ -38,7 +38,7 @@ COHESION = {
 }
 
 LINES, MAX_LINES = 6, 11
-"""Visible lines of the consequences, in low and in high windows."""
+"""Visible lines of the scaling_report, in low and in high windows."""
 
 
 class SetupPanel(QWidget):
@@ -85,8 +85,8 @@ class SetupPanel(QWidget):
         self.contact = PresetForm(ContactParameters, "contact", tr("Table 1 of the paper"))
         self.evaluation = SettingsForm(EvaluationSettings)
         self._numerics = {key: SettingsForm(engine.Settings) for key, engine in ENGINES.items()}
-        self.consequences = remark()
-        self.consequences.setObjectName("repose_consequences")
+        self.scaling_report = remark()
+        self.scaling_report.setObjectName("repose_consequences")
         self.problem = remark(role="warning")
         self.problem.hide()
         self.run = _button(tr("Run the test"), "repose_run", tr("Fill, lift, measure"))
@@ -146,8 +146,8 @@ class SetupPanel(QWidget):
         self.evaluationChanged.emit()
 
     def show_consequences(self, sentences: list[str], problem: str = "") -> None:
-        """Show the consequences of the values, or why they are invalid."""
-        self.consequences.setText("<br>".join(sentences))
+        """Show the scaling_report of the values, or why they are invalid."""
+        self.scaling_report.setText("<br>".join(sentences))
         self.problem.setText(problem)
         self.problem.setVisible(bool(problem))
         self.run.setEnabled(self._dataset is not None and not problem)
@@ -209,7 +209,7 @@ class SetupPanel(QWidget):
         form.addRow(tr("Gravity of"), self.gravity)
         column.addLayout(form)
         column.addWidget(self.run)
-        column.addWidget(FixedHeightText((self.problem, self.consequences), LINES, MAX_LINES))
+        column.addWidget(FixedHeightText((self.problem, self.scaling_report), LINES, MAX_LINES))
         column.addWidget(Collapsible(tr("Test (Table 2)"), self.test))
         column.addWidget(Collapsible(tr("Contact (Table 1)"), self.contact))
         column.addWidget(Collapsible(tr("Evaluation (section 3.3)"), self.evaluation))

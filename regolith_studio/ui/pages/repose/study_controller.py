@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from pathlib import Path
 
-from regolith_studio.dem.run_folder import RunSummary
+from regolith_studio.dem.run_io import RunSummary
 from regolith_studio.errors import RegolithError
 from regolith_studio.jobs.events import Failed, Job
 from regolith_studio.jobs.repose_jobs import SHAPE_KEYS, ReposeStudyRequest, run_repose_study

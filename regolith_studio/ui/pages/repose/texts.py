@@ -1,7 +1,7 @@
 """Texts of the page: checks of a run, durations, result."""
 
-from regolith_studio.dem.repose import ReposeMeasurement
-from regolith_studio.dem.run_folder import RunSummary
+from regolith_studio.dem.angle_of_repose import ReposeMeasurement
+from regolith_studio.dem.run_io import RunSummary
 from regolith_studio.ui.translation import tr
 
 
@@ -12,7 +12,7 @@ def checks_text(run: RunSummary) -> str:
         return str(run.document.get("problem") or run.document["state"])
     if checks["problems"]:
         return " ".join(checks["problems"])
-    overlap = 100 * checks["largest_overlap"]
+    overlap = 100 * checks["max_overlap"]
     return tr(
         "Checked: {count:,} particles, overlap at most {overlap:.1f} % of d",
         count=checks["particles_out"],

@@ -7,9 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from regolith_studio.dem.evaluation.interval import bootstrap_interval
+from regolith_studio.dem.evaluation.errors import HEAP_SHARE, NotAPileError
 from regolith_studio.dem.evaluation.profile import base_level, project, surface_profile
-from regolith_studio.dem.evaluation.refusal import HEAP_SHARE, NoPile
 from regolith_studio.dem.evaluation.section import Section, evaluate_section
 from regolith_studio.dem.evaluation.settings import EvaluationSettings
 from regolith_studio.errors import InputError
@@ -90,7 +89,7 @@ def measure_repose(
 
     Raises
     ------
-    NoPile
+    NotAPileError
         If the particles form no pile: too few, a layer, a column, scattered, without straight flanks.
     InputError
         If the numbers are no positions or diameters.
@@ -98,7 +97,7 @@ def measure_repose(
     settings = settings or EvaluationSettings()
     where, sizes = _checked(points, diameters)
     if len(where) < settings.min_particles:
-        raise NoPile(
+        raise NotAPileError(
             f"{len(where)} particles are too few for a pile; at least {settings.min_particles} are needed.",
             "too few particles",
         )
@@ -110,7 +109,7 @@ def measure_repose(
     for number, azimuth in enumerate(azimuths):
         try:
             sections.append(_section(where, sizes, level, azimuth, mean_diameter, settings))
-        except NoPile as refusal:
+        except NotAPileError as refusal:
             if number < 2:
                 raise
             warnings.append(f"Left out: {refusal}")
@@ -145,11 +144,11 @@ def _section(
 ) -> Section:
     discs = project(points, diameters, base, np.radians(azimuth), settings.slab * mean_diameter)
     if not len(discs.u):
-        raise NoPile(f"The slice at {azimuth:g} degrees holds no particle.", "scattered")
+        raise NotAPileError(f"The slice at {azimuth:g} degrees holds no particle.", "scattered")
     profile = surface_profile(discs, mean_diameter, settings)
     inside = (discs.u >= profile.u[profile.first]) & (discs.u <= profile.u[profile.last])
     if inside.mean() < HEAP_SHARE:
-        raise NoPile(
+        raise NotAPileError(
             f"The particles lie scattered: only {100 * inside.mean():.0f} % of them are in the heap.",
             "scattered",
         )
@@ -171,7 +170,9 @@ def _summary(
         + [each.asymmetric.left.angle for each in by_azimuth]
     )
     if len(sections) < n_asked / 2:
-        raise NoPile(f"Only {len(sections)} of {n_asked} sections through the heap have two straight flanks.")
+        raise NotAPileError(
+            f"Only {len(sections)} of {n_asked} sections through the heap have two straight flanks."
+        )
     return ReposeMeasurement(
         sections=tuple(sections),
         paper_asymmetric=_spread(_flanks(sections[:2])),
@@ -242,3 +243,34 @@ def _section_document(section: Section) -> dict[str, Any]:
         "cuts": [section.low, section.high],
         "points_used": int(section.used.sum()),
     }
+
+
+RESAMPLES = 2000
+NEIGHBOURHOOD = 45.0
+"""Degrees over which neighbouring directions see largely the same grains, and are drawn together."""
+
+
+def bootstrap_interval(flanks: FloatArray, confidence: float, seed: int) -> tuple[float, float]:
+    """Interval of the mean angle by a circular block bootstrap.
+
+    Parameters
+    ----------
+    flanks
+        Angle of the flank in each of equally spaced directions around the full circle, shape (k,);
+        neighbours are correlated, hence the blocks.
+    confidence
+        Such as 0.95.
+
+    Returns
+    -------
+    tuple
+        Lower and upper end.
+    """
+    n = len(flanks)
+    block = max(1, min(n, round(NEIGHBOURHOOD / 360.0 * n)))
+    generator = np.random.default_rng(np.random.SeedSequence(seed))
+    starts = generator.integers(n, size=(RESAMPLES, -(-n // block)))
+    picks = ((starts[:, :, None] + np.arange(block)) % n).reshape(RESAMPLES, -1)[:, :n]
+    tail = (1.0 - confidence) / 2
+    low, high = np.quantile(flanks[picks].mean(axis=1), [tail, 1.0 - tail])
+    return float(low), float(high)

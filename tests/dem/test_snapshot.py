@@ -5,13 +5,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from regolith_studio.dem.pile import Pile, pile_bytes, read_pile
+from regolith_studio.dem.snapshot import ParticleState, particle_state_bytes, read_particle_state
 from regolith_studio.errors import FileError
 
 
-def _pile() -> Pile:
+def _pile() -> ParticleState:
     generator = np.random.default_rng(0)
-    return Pile(
+    return ParticleState(
         generator.normal(size=(5, 3)),
         generator.uniform(1e-3, 2e-3, 5),
         np.tile([1.0, 0, 0, 0], (5, 1)),
@@ -24,8 +24,8 @@ def _pile() -> Pile:
 
 def test_that_a_pile_comes_back_from_its_file(tmp_path: Path) -> None:
     pile = _pile()
-    (tmp_path / "p.npz").write_bytes(pile_bytes(pile))
-    back = read_pile(tmp_path / "p.npz")
+    (tmp_path / "p.npz").write_bytes(particle_state_bytes(pile))
+    back = read_particle_state(tmp_path / "p.npz")
     assert back.points == pytest.approx(pile.points, rel=1e-6)
     assert np.array_equal(back.diameters, pile.diameters)
     assert (back.time, back.wall, back.phase) == (1.5, 0.02, "lift")
@@ -35,16 +35,16 @@ def test_that_a_pile_comes_back_from_its_file(tmp_path: Path) -> None:
 def test_that_another_file_is_refused_in_one_sentence(tmp_path: Path) -> None:
     path = tmp_path / "p.npz"
     with pytest.raises(FileError, match="cannot be read"):
-        read_pile(path)
+        read_particle_state(path)
     path.write_bytes(b"nothing of ours")
     with pytest.raises(FileError, match="no particles"):
-        read_pile(path)
-    path.write_bytes(pile_bytes(_pile())[:200])
+        read_particle_state(path)
+    path.write_bytes(particle_state_bytes(_pile())[:200])
     with pytest.raises(FileError, match="no particles"):
-        read_pile(path)
+        read_particle_state(path)
     np.savez(path, other=np.zeros(3))
     with pytest.raises(FileError, match="no particles"):
-        read_pile(path)
+        read_particle_state(path)
     np.savez(path, points_m=np.array([object()]))
     with pytest.raises(FileError, match="no particles"):
-        read_pile(path)
+        read_particle_state(path)

@@ -3,14 +3,20 @@
 import io
 import os
 import shutil
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from regolith_studio.dem.case import Prepared
-from regolith_studio.dem.pile import Pile, pile_bytes
+import regolith_studio
+from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest, missing_in_paper
+from regolith_studio.dem.angle_of_repose import ReposeMeasurement, measurement_document
+from regolith_studio.dem.case import PreparedCase, ReposeCase
+from regolith_studio.dem.engine import Engine, RunChecks, SimulationResult
+from regolith_studio.dem.evaluation.errors import NotAPileError
+from regolith_studio.dem.scaling_report import scaling_report
+from regolith_studio.dem.snapshot import ParticleState, particle_state_bytes
 from regolith_studio.errors import FileError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.io.json_text import canonical_json, parse_strict_json
@@ -60,12 +66,12 @@ def claim_folder(folder: Path, overwrite: bool) -> None:
         raise FileError(f"The folder {folder} cannot be written ({error.strerror}).") from error
 
 
-def save_snapshot(folder: Path, number: int, pile: Pile) -> Path:
+def save_snapshot(folder: Path, number: int, particles: ParticleState) -> Path:
     """Write one snapshot, whole or not at all."""
-    return _write(folder / SNAPSHOTS / f"{number:06d}.npz", pile_bytes(pile))
+    return _write(folder / SNAPSHOTS / f"{number:06d}.npz", particle_state_bytes(particles))
 
 
-def save_shapes(folder: Path, prepared: Prepared) -> Path:
+def save_shapes(folder: Path, prepared: PreparedCase) -> Path:
     """The unit-volume shapes of a run, so that it can be replayed without its dataset."""
     buffer = io.BytesIO()
     shapes: dict[str, Any] = {f"shape_{k:05d}": shape for k, shape in enumerate(prepared.shapes)}
@@ -73,7 +79,7 @@ def save_shapes(folder: Path, prepared: Prepared) -> Path:
     return _write(folder / SHAPES, buffer.getvalue())
 
 
-def save_ending(folder: Path, document: dict[str, Any], final: Pile | None) -> None:
+def save_result(folder: Path, document: dict[str, Any], final: ParticleState | None) -> None:
     """Write the result; the document comes last, so that it never names what is not there.
 
     Raises
@@ -83,7 +89,7 @@ def save_ending(folder: Path, document: dict[str, Any], final: Pile | None) -> N
     """
     try:
         if final is not None:
-            _write(folder / FINAL, pile_bytes(final))
+            _write(folder / FINAL, particle_state_bytes(final))
         _write(folder / DOCUMENT, canonical_json(document).encode("utf-8"))
     except OSError as error:
         raise FileError(f"The result could not be written to {folder} ({error.strerror}).") from error
@@ -147,3 +153,98 @@ def _write(path: Path, content: bytes) -> Path:
         fresh.unlink(missing_ok=True)
         raise
     return path
+
+
+def run_document(
+    prepared: PreparedCase,
+    engine: Engine,
+    settings: Any,
+    *,
+    state: str,
+    seconds: float,
+    ending: SimulationResult | None = None,
+    measured: ReposeMeasurement | NotAPileError | None = None,
+    problem: str | None = None,
+    n_snapshots: int = 0,
+) -> dict[str, Any]:
+    """The document. SI units, angles in degrees.
+
+    Parameters
+    ----------
+    state
+        ``finished``, ``stopped`` by the user, or ``failed``.
+    seconds
+        That the run took.
+    measured
+        The angle, or why there is none.
+    problem
+        The sentence of a run that failed.
+    """
+    case = prepared.case
+    return {
+        "format": FORMAT,
+        "schema_version": SCHEMA_VERSION,
+        "state": state,
+        "problem": problem,
+        "dataset": {"name": prepared.dataset_name, "sha256": prepared.dataset_hash or None},
+        "engine": {
+            "key": engine.key,
+            "label": engine.label,
+            "version": engine.find().version,
+            "settings": asdict(settings),
+            "capabilities": asdict(engine.capabilities),
+        },
+        "software": {"regolith-studio": regolith_studio.__version__},
+        "length_unit": "m",
+        "case": case_document(case),
+        "not_given_in_the_paper": [
+            *missing_in_paper(LiftingCylinderTest),
+            *missing_in_paper(ContactParameters),
+        ],
+        "particles": {
+            "mass": prepared.mass,
+            "mean_facets": prepared.mean_facets,
+            "surface_energy": prepared.surface_energy,
+            **_plain(asdict(scaling_report(prepared))),
+        },
+        "run": {
+            "seconds": round(seconds, 3),
+            "steps": ending.steps if ending else None,
+            "simulated_time": ending.simulated_time if ending else None,
+            "n_snapshots": n_snapshots,
+            "notes": list(ending.notes) if ending else [],
+        },
+        "checks": _checks(ending.checks) if ending else None,
+        "measurement": _measurement(measured),
+    }
+
+
+def case_document(case: ReposeCase) -> dict[str, Any]:
+    """What was chosen, as plain JSON."""
+    return {
+        "test": asdict(case.test),
+        "contact": asdict(case.contact),
+        "n_particles": case.n_particles,
+        "coarse_graining_asked": case.coarse_graining or None,
+        "shapes": case.shapes,
+        "cohesion": case.cohesion,
+        "seed": case.seed,
+    }
+
+
+def _measurement(measured: ReposeMeasurement | NotAPileError | None) -> dict[str, Any] | None:
+    match measured:
+        case ReposeMeasurement():
+            return measurement_document(measured)
+        case NotAPileError():
+            return {"status": measured.status, "angle_deg": None, "reason": str(measured)}
+        case _:
+            return None
+
+
+def _checks(checks: RunChecks) -> dict[str, Any]:
+    return _plain(asdict(checks)) | {"passed": not checks.problems}
+
+
+def _plain(fields: dict[str, Any]) -> dict[str, Any]:
+    return {name: list(value) if isinstance(value, tuple) else value for name, value in fields.items()}

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from regolith_studio.dataset.parameters import PAPER_COARSE_GRAINING, PAPER_FILL_HEIGHT
-from regolith_studio.dem.case import Prepared
+from regolith_studio.dem.case import PreparedCase
 
 
 @dataclass(frozen=True)
-class Consequences:
+class ScalingReport:
     """Of a prepared case, before it runs. SI units.
 
     Parameters
@@ -55,7 +55,7 @@ def rayleigh_time(diameter: float, density: float, youngs_modulus: float, poisso
     return float(np.pi * diameter / 2 * np.sqrt(density / shear) / (0.1631 * poissons_ratio + 0.8766))
 
 
-def consequences(prepared: Prepared) -> Consequences:
+def scaling_report(prepared: PreparedCase) -> ScalingReport:
     """What this case stands for."""
     test, contact = prepared.case.test, prepared.case.contact
     mean, factor = prepared.mean_diameter, prepared.coarse_graining
@@ -71,7 +71,7 @@ def consequences(prepared: Prepared) -> Consequences:
     )
     smallest = float(prepared.diameters.min())
     rayleigh = rayleigh_time(smallest, contact.density, contact.youngs_modulus, contact.poissons_ratio)
-    return Consequences(
+    return ScalingReport(
         mean_diameter=mean,
         coarse_graining=factor,
         diameters_across=test.diameter / mean,
@@ -82,7 +82,7 @@ def consequences(prepared: Prepared) -> Consequences:
     )
 
 
-def _sentences(prepared: Prepared, bonds: tuple[float, float, float]) -> list[str]:
+def _sentences(prepared: PreparedCase, bonds: tuple[float, float, float]) -> list[str]:
     test, mean, factor = prepared.case.test, prepared.mean_diameter, prepared.coarse_graining
     said = [
         f"{len(prepared):,} particles of {1e3 * mean:.2g} mm stand for {1e3 * test.mass:.3g} g: "

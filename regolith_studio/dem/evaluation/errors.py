@@ -15,7 +15,7 @@ HEAP_SHARE = 0.6
 """Least share of the particles that must lie in the heap."""
 
 
-class NoPile(InputError):
+class NotAPileError(InputError):
     """The particles form no pile whose angle could be measured.
 
     Parameters

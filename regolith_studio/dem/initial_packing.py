@@ -3,8 +3,8 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from regolith_studio.dem.case import Prepared
-from regolith_studio.dem.pile import Pile
+from regolith_studio.dem.case import PreparedCase
+from regolith_studio.dem.snapshot import ParticleState
 from regolith_studio.geometry.arrays import FloatArray
 
 HEADROOM = 1.02
@@ -15,16 +15,16 @@ SIGHT = 600
 """Particles placed before that a new one can touch."""
 
 
-def loose_column(prepared: Prepared) -> Pile:
+def loose_column(prepared: PreparedCase) -> ParticleState:
     """Where a simulation begins; the same for the same case."""
     places, _ = start_places(
         enclosing_radii(prepared), prepared.case.test.diameter / 2, _generator(prepared, 0)
     )
     turns = Rotation.random(len(prepared), random_state=_generator(prepared, 1)).as_quat(scalar_first=True)
-    return Pile(places, prepared.diameters, turns, prepared.class_index, 0.0, 0.0, "fill")
+    return ParticleState(places, prepared.diameters, turns, prepared.class_index, 0.0, 0.0, "fill")
 
 
-def enclosing_radii(prepared: Prepared) -> FloatArray:
+def enclosing_radii(prepared: PreparedCase) -> FloatArray:
     """Radius of each particle's enclosing ball about its centre in metres, shape (n,)."""
     if prepared.case.shapes == "spheres":
         return np.asarray(prepared.diameters / 2)
@@ -69,5 +69,5 @@ def _resting_heights(seats: FloatArray, size: float, others: FloatArray, sizes: 
     return np.asarray(np.maximum(touching.max(axis=1, initial=size), size))
 
 
-def _generator(prepared: Prepared, stream: int) -> np.random.Generator:
+def _generator(prepared: PreparedCase, stream: int) -> np.random.Generator:
     return np.random.default_rng(np.random.SeedSequence(prepared.case.seed, spawn_key=(2, stream)))

@@ -4,32 +4,32 @@ import numpy as np
 from scipy.spatial import ConvexHull, cKDTree
 from scipy.spatial.transform import Rotation
 
-from regolith_studio.dem.case import Prepared
-from regolith_studio.dem.filling import enclosing_radii
-from regolith_studio.dem.pile import Pile
+from regolith_studio.dem.case import PreparedCase
+from regolith_studio.dem.initial_packing import enclosing_radii
+from regolith_studio.dem.snapshot import ParticleState
 from regolith_studio.geometry.arrays import FloatArray
 
 PARALLEL = 1e-9
 """Edges whose unit directions cross by less give no direction of their own."""
 
 
-def penetration_depths(prepared: Prepared, pile: Pile) -> FloatArray:
+def overlap_depths(prepared: PreparedCase, particles: ParticleState) -> FloatArray:
     """Depth of every pair of particles that overlap, in metres, shape (m,).
 
     By separating axes: two convex polyhedra overlap by the least overlap of their shadows over the normals
     of both and the cross products of their edges.
     """
     forms = [_normals_and_edges(shape) for shape in prepared.shapes]
-    turns = Rotation.from_quat(pile.orientations, scalar_first=True)
+    turns = Rotation.from_quat(particles.orientations, scalar_first=True)
     reach, scales = enclosing_radii(prepared), prepared.scales
-    pairs = cKDTree(pile.points).query_pairs(2.0 * float(reach.max()), output_type="ndarray")
-    apart = np.linalg.norm(pile.points[pairs[:, 0]] - pile.points[pairs[:, 1]], axis=1)
+    pairs = cKDTree(particles.points).query_pairs(2.0 * float(reach.max()), output_type="ndarray")
+    apart = np.linalg.norm(particles.points[pairs[:, 0]] - particles.points[pairs[:, 1]], axis=1)
     pairs = pairs[apart < reach[pairs].sum(axis=1)]
 
     def placed(k: int) -> tuple[FloatArray, FloatArray, FloatArray]:
         kind = int(prepared.class_index[k])
         normals, edges = forms[kind]
-        corners = turns[k].apply(prepared.shapes[kind] * scales[k]) + pile.points[k]
+        corners = turns[k].apply(prepared.shapes[kind] * scales[k]) + particles.points[k]
         return corners, turns[k].apply(normals), turns[k].apply(edges)
 
     depths = [depth for a, b in pairs.tolist() if (depth := _depth(placed(a), placed(b))) > 0.0]

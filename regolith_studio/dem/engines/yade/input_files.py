@@ -13,9 +13,9 @@ from typing import Any
 
 import numpy as np
 
-from regolith_studio.dem.case import Prepared
+from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engines.yade.settings import YadeSettings
-from regolith_studio.dem.filling import enclosing_radii, loose_column
+from regolith_studio.dem.initial_packing import enclosing_radii, loose_column
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.arrays import FloatArray
 
@@ -35,7 +35,7 @@ once whichever way a contact slides (its law keeps one shear force for all conta
 
 
 @dataclass(frozen=True, eq=False)
-class State:
+class YadeState:
     """One state of YADE's, in mean diameters and sqrt(d/g); energies in m g d.
 
     Parameters
@@ -44,7 +44,7 @@ class State:
         Which snapshot it is, and where the test stands.
     kinetic, potential
         Mean energies of a particle.
-    last, calm
+    last, at_rest
         Whether the test is over, and whether it ended at rest.
     rows
         Place, turn (w, x, y, z), velocity and spin of each particle in the solver's units, shape (n, 13).
@@ -58,11 +58,13 @@ class State:
     kinetic: float
     potential: float
     last: bool
-    calm: bool
+    at_rest: bool
     rows: FloatArray
 
 
-def order(prepared: Prepared, settings: YadeSettings, duration: float, after: State | None) -> dict[str, Any]:
+def input_document(
+    prepared: PreparedCase, settings: YadeSettings, duration: float, after: YadeState | None
+) -> dict[str, Any]:
     """What YADE is told; from the loose column at the start, or from where it crashed.
 
     Parameters
@@ -94,7 +96,7 @@ def order(prepared: Prepared, settings: YadeSettings, duration: float, after: St
             "radius": test.diameter / 2 / prepared.mean_diameter * LENGTH,
             "height": height * LENGTH,
             "thickness": 2.0 * LENGTH,
-            "staves": settings.staves,
+            "n_segments": settings.n_segments,
         },
         "number": 0 if after is None else after.number + 1,
         "phase": "fill" if after is None else after.phase,
@@ -103,12 +105,12 @@ def order(prepared: Prepared, settings: YadeSettings, duration: float, after: St
         "plan": {
             "look": LOOK * TIME,
             "picture": duration / settings.snapshots * TIME,
-            "fastest": settings.fastest * LENGTH / TIME,
-            "calm": settings.calm * WEIGHT * LENGTH,
-            "calm_time": settings.calm_time * TIME,
-            "longest_fill": (10.0 + 1.5 * height / settings.fastest) * TIME,
-            "longest_rest": settings.longest_rest * TIME,
-            "longest_lift": (2.0 * height / speed + 10.0) * TIME,
+            "max_fill_speed": settings.max_fill_speed * LENGTH / TIME,
+            "rest_energy": settings.rest_energy * WEIGHT * LENGTH,
+            "rest_time": settings.rest_time * TIME,
+            "max_fill_time": (10.0 + 1.5 * height / settings.max_fill_speed) * TIME,
+            "max_rest_time": settings.max_rest_time * TIME,
+            "max_lift_time": (2.0 * height / speed + 10.0) * TIME,
             "lift_speed": float(speed) * LENGTH / TIME,
             "reach": float(enclosing_radii(prepared).max() / prepared.mean_diameter + 0.5) * LENGTH,
         },
@@ -120,14 +122,14 @@ def young_modulus(settings: YadeSettings) -> float:
     return float(2 * settings.stiffness * WEIGHT / LENGTH**3)
 
 
-def time_step(prepared: Prepared, settings: YadeSettings) -> float:
+def time_step(prepared: PreparedCase, settings: YadeSettings) -> float:
     """In the solver's seconds: a share of 1/omega of the smallest particle on a flat neighbour."""
     smallest = float(prepared.diameters.min()) / prepared.mean_diameter * LENGTH
     stiffness = young_modulus(settings) / 2 * CONTACT_AREA * smallest**2
     return float(settings.step_share * np.sqrt(DENSITY * np.pi / 6 * smallest**3 / stiffness))
 
 
-def _particles(prepared: Prepared, after: State | None) -> list[dict[str, Any]]:
+def _particles(prepared: PreparedCase, after: YadeState | None) -> list[dict[str, Any]]:
     if after is None:
         column = loose_column(prepared)
         places = column.points / prepared.mean_diameter * LENGTH
@@ -148,7 +150,7 @@ def _particles(prepared: Prepared, after: State | None) -> list[dict[str, Any]]:
     ]
 
 
-def read_state(path: Path, count: int) -> State:
+def read_yade_state(path: Path, count: int) -> YadeState:
     """A state that YADE wrote.
 
     Raises
@@ -161,7 +163,7 @@ def read_state(path: Path, count: int) -> State:
     if rows.shape != (count, 13) or not np.isfinite(rows).all():
         raise RegolithError("YADE lost particles; take a smaller step (step_share).")
     energy = WEIGHT * LENGTH
-    return State(
+    return YadeState(
         number=int(path.stem.split(".")[1]),
         phase=found["phase"],
         time=found["time"] / TIME,
@@ -170,6 +172,6 @@ def read_state(path: Path, count: int) -> State:
         kinetic=found["kinetic"] / energy,
         potential=found["potential"] / energy,
         last=bool(found["last"]),
-        calm=bool(found["calm"]),
+        at_rest=bool(found["at_rest"]),
         rows=rows,
     )

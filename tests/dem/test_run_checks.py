@@ -5,23 +5,23 @@ import pytest
 
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dem.case import ReposeCase, prepare
-from regolith_studio.dem.checking import checked, filling_of
-from regolith_studio.dem.pile import Pile
+from regolith_studio.dem.run_checks import check_run, measure_filling
+from regolith_studio.dem.snapshot import ParticleState
 
 SOUND = {"energy_gain": 0.0, "kinetic_energy": 1e-5, "at_rest": True, "filling": (0.03, 0.55)}
 
 
 def test_that_a_sound_run_has_nothing_to_say() -> None:
-    checks = checked(np.array([0.5, 1.4]), np.array([0.001, 0.003]), **SOUND)
+    checks = check_run(np.array([0.5, 1.4]), np.array([0.001, 0.003]), **SOUND)
     assert checks.problems == ()
     assert (checks.particles_in, checks.particles_out) == (2, 2)
-    assert (checks.mean_overlap, checks.largest_overlap) == pytest.approx((0.002, 0.003))
-    assert checked(np.array([0.5]), np.empty(0), **SOUND).mean_overlap == 0.0
+    assert (checks.mean_overlap, checks.max_overlap) == pytest.approx((0.002, 0.003))
+    assert check_run(np.array([0.5]), np.empty(0), **SOUND).mean_overlap == 0.0
 
 
 def test_that_every_failed_check_is_a_sentence() -> None:
     wrong = SOUND | {"energy_gain": 0.2, "at_rest": False}
-    checks = checked(np.array([0.5, -3.0]), np.array([0.05]), **wrong, problems=["The solver was hot."])
+    checks = check_run(np.array([0.5, -3.0]), np.array([0.05]), **wrong, problems=["The solver was hot."])
     first, lost, overlap, energy, moving = checks.problems
     assert first == "The solver was hot."
     assert lost == "1 of 2 particles fell through the plate."
@@ -36,6 +36,8 @@ def test_that_a_filling_is_as_solid_as_its_volume_over_the_cylinder_s(boxes: Dat
     heights = np.linspace(0.0, top, n) - prepared.diameters / 2
     points = np.column_stack([np.zeros((n, 2)), heights])
     turns = np.tile([1.0, 0, 0, 0], (n, 1))
-    height, share = filling_of(prepared, Pile(points, prepared.diameters, turns, prepared.class_index))
+    height, share = measure_filling(
+        prepared, ParticleState(points, prepared.diameters, turns, prepared.class_index)
+    )
     assert height == pytest.approx(0.98 * top, rel=1e-3)
     assert share == pytest.approx(0.015 / 3075 / (np.pi * 0.01**2 * height))

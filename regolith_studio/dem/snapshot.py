@@ -17,7 +17,7 @@ LARGEST = 2_000_000_000
 
 
 @dataclass(frozen=True, eq=False)
-class Pile:
+class ParticleState:
     """Particles at one moment, in SI units, z up, the plate at z = 0.
 
     Parameters
@@ -52,15 +52,34 @@ class Pile:
             object.__setattr__(self, name, locked_floats(getattr(self, name), shape, name))
         object.__setattr__(self, "class_index", locked_integers(self.class_index, (n,), "class_index"))
 
-    def __reduce__(self) -> tuple[Callable[..., "Pile"], tuple[Any, ...]]:
+    def __reduce__(self) -> tuple[Callable[..., "ParticleState"], tuple[Any, ...]]:
         fields = (self.points, self.diameters, self.orientations, self.class_index)
-        return Pile, (*fields, self.time, self.wall, self.phase)
+        return ParticleState, (*fields, self.time, self.wall, self.phase)
 
     def __len__(self) -> int:
         return len(self.points)
 
 
-def pile_bytes(pile: Pile) -> bytes:
+@dataclass(frozen=True, eq=False)
+class Snapshot:
+    """One moment of a running simulation.
+
+    Parameters
+    ----------
+    particles
+        Where they are.
+    share
+        Of the work that is done, 0 to 1.
+    message
+        One line on the progress.
+    """
+
+    particles: ParticleState
+    share: float
+    message: str
+
+
+def particle_state_bytes(pile: ParticleState) -> bytes:
     """The content of a ``.npz`` file."""
     buffer = io.BytesIO()
     np.savez_compressed(
@@ -76,7 +95,7 @@ def pile_bytes(pile: Pile) -> bytes:
     return buffer.getvalue()
 
 
-def read_pile(path: Path) -> Pile:
+def read_particle_state(path: Path) -> ParticleState:
     """The particles of a ``.npz`` file that this program wrote.
 
     Raises
@@ -89,7 +108,7 @@ def read_pile(path: Path) -> Pile:
             if sum(entry.file_size for entry in archive.infolist()) > LARGEST:
                 raise FileError(f"{path.name} would unpack to more than {LARGEST // 10**9} GB.")
         with np.load(path, allow_pickle=False) as content:
-            return Pile(
+            return ParticleState(
                 content["points_m"].astype(np.float64),
                 content["diameters_m"],
                 content["orientations"].astype(np.float64),

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from regolith_studio.dem.case import Prepared
-from regolith_studio.dem.engine import Checks
-from regolith_studio.dem.pile import Pile
+from regolith_studio.dem.case import PreparedCase
+from regolith_studio.dem.engine import RunChecks
+from regolith_studio.dem.snapshot import ParticleState
 from regolith_studio.geometry.arrays import FloatArray
 
 LARGEST_OVERLAP = 0.02
@@ -15,7 +15,7 @@ LARGEST_GAIN = 0.05
 """Energy that may appear between two looks, in m g d a particle: rounding of the solver."""
 
 
-def checked(
+def check_run(
     heights: FloatArray,
     overlaps: FloatArray,
     *,
@@ -24,7 +24,7 @@ def checked(
     at_rest: bool,
     filling: tuple[float, float],
     problems: Sequence[str] = (),
-) -> Checks:
+) -> RunChecks:
     """What was verified, with a sentence for each check that failed.
 
     Parameters
@@ -48,11 +48,11 @@ def checked(
         said.append(f"The energy rose by {energy_gain:.2g} m g d a particle out of nothing.")
     if not at_rest:
         said.append("The heap was still moving at the end.")
-    return Checks(
+    return RunChecks(
         particles_in=len(heights),
         particles_out=kept,
         mean_overlap=float(overlaps.mean()) if len(overlaps) else 0.0,
-        largest_overlap=largest,
+        max_overlap=largest,
         energy_gain=energy_gain,
         kinetic_energy=kinetic_energy,
         at_rest=at_rest,
@@ -62,8 +62,8 @@ def checked(
     )
 
 
-def filling_of(prepared: Prepared, pile: Pile) -> tuple[float, float]:
+def measure_filling(prepared: PreparedCase, particles: ParticleState) -> tuple[float, float]:
     """Height of a filling in metres, and its solid fraction."""
-    height = float(np.quantile(pile.points[:, 2] + pile.diameters / 2, 0.98))
+    height = float(np.quantile(particles.points[:, 2] + particles.diameters / 2, 0.98))
     volume = prepared.mass / prepared.case.contact.density
     return height, volume / (prepared.case.test.area * height)

@@ -7,21 +7,21 @@ from scipy.spatial.transform import Rotation
 
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.parameters import LiftingCylinderTest
-from regolith_studio.dem.case import Prepared, ReposeCase, prepare
-from regolith_studio.dem.penetration import penetration_depths
-from regolith_studio.dem.pile import Pile
+from regolith_studio.dem.case import PreparedCase, ReposeCase, prepare
+from regolith_studio.dem.overlap_depth import overlap_depths
+from regolith_studio.dem.snapshot import ParticleState
 
 
-def pair(boxes: Dataset) -> Prepared:
+def pair(boxes: Dataset) -> PreparedCase:
     """Ten particles, of which the tests look at two."""
     return prepare(boxes, ReposeCase(LiftingCylinderTest(mass=1e-4), n_particles=10, seed=1))
 
 
-def placed(prepared: Prepared, points: np.ndarray, turns: Rotation) -> Pile:
+def placed(prepared: PreparedCase, points: np.ndarray, turns: Rotation) -> ParticleState:
     """The first two particles like this, the others far away."""
     far = np.arange(8)[:, None] * np.ones(3) + 10.0
     others = np.tile([1.0, 0, 0, 0], (8, 1))
-    return Pile(
+    return ParticleState(
         np.vstack([points, far]),
         prepared.diameters,
         np.vstack([turns.as_quat(scalar_first=True), others]),
@@ -29,7 +29,7 @@ def placed(prepared: Prepared, points: np.ndarray, turns: Rotation) -> Pile:
     )
 
 
-def corners(prepared: Prepared, pile: Pile, k: int) -> np.ndarray:
+def corners(prepared: PreparedCase, pile: ParticleState, k: int) -> np.ndarray:
     turn = Rotation.from_quat(pile.orientations[k], scalar_first=True)
     return turn.apply(prepared.shapes[prepared.class_index[k]] * prepared.scales[k]) + pile.points[k]
 
@@ -45,10 +45,10 @@ def test_that_the_depth_is_the_way_out_of_the_hull_of_differences(boxes: Dataset
     differences = ConvexHull((one[:, None] - other[None]).reshape(-1, 3))
     expected = -differences.equations[:, 3].max()
     assert expected > 0.0
-    assert penetration_depths(prepared, pile) == pytest.approx([expected], rel=1e-9)
+    assert overlap_depths(prepared, pile) == pytest.approx([expected], rel=1e-9)
 
 
 def test_that_bodies_that_are_apart_have_no_depth(boxes: Dataset) -> None:
     prepared = pair(boxes)
     points = np.array([[0, 0, 0], [2.0 * prepared.scales.max(), 0, 0]])
-    assert len(penetration_depths(prepared, placed(prepared, points, Rotation.identity(2)))) == 0
+    assert len(overlap_depths(prepared, placed(prepared, points, Rotation.identity(2)))) == 0

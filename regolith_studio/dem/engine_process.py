@@ -1,0 +1,190 @@
+"""Runs an engine in a child process, so that neither a crash nor its memory affects the program.
+
+The child, ``python -m regolith_studio.dem.engine_process``, reads one pickled task from its standard input
+and writes pickled snapshots to its standard output: at the end a result, or a message where it failed. When
+its input is closed, the parent is gone, and the child ends itself with everything that it has started.
+"""
+
+import contextlib
+import os
+import pickle
+import queue
+import signal
+import subprocess
+import sys
+import threading
+from collections.abc import Generator
+from pathlib import Path
+from typing import Any, BinaryIO
+
+from regolith_studio.dem.case import PreparedCase
+from regolith_studio.dem.engine import SimulationResult
+from regolith_studio.dem.engines import engine_named
+from regolith_studio.dem.run_io import save_snapshot
+from regolith_studio.dem.snapshot import Snapshot
+from regolith_studio.errors import EnvironmentProblem, RegolithError
+
+POLL_INTERVAL = 0.2
+"""Seconds without a message after which ``None`` is yielded, so that the caller can cancel."""
+_THREAD_LIMITS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
+
+
+class EngineError(RegolithError):
+    """An engine ended before its work was done; its snapshots are in the run's folder."""
+
+
+def run_engine(
+    key: str, prepared: PreparedCase, settings: Any, folder: Path
+) -> Generator[Snapshot | None, None, SimulationResult]:
+    """Snapshots of a run as they come, ``None`` while there is none; closing the generator ends the child.
+
+    Every snapshot is saved in the folder before it is yielded.
+
+    Raises
+    ------
+    EnvironmentProblem
+        If the engine is not installed.
+    EngineError
+        If it crashed, diverged, or could not write.
+    """
+    engine = engine_named(key)
+    if problem := engine.find().problem:
+        raise EnvironmentProblem(problem)
+    child = _start((key, prepared, settings, folder))
+    messages: queue.SimpleQueue[Any] = queue.SimpleQueue()
+    reader = threading.Thread(
+        target=_listen, args=(child.stdout, messages), name=f"engine {key}", daemon=True
+    )
+    reader.start()
+    last = "none"
+    try:
+        while True:
+            try:
+                message = messages.get(timeout=POLL_INTERVAL)
+            except queue.Empty:
+                yield None
+                continue
+            match message:
+                case Snapshot():
+                    last = f"{message.particles.time:.2f} s"
+                    yield message
+                case SimulationResult():
+                    return message
+                case str():
+                    raise EngineError(message)
+                case _:
+                    raise EngineError(_exit_message(engine.label, child.wait(), last))
+    finally:
+        _end(child)
+        reader.join()
+        if child.stdout is not None:
+            child.stdout.close()
+
+
+def _start(task: tuple[Any, ...]) -> subprocess.Popen[bytes]:
+    """The child with its task; it leads a process group, so that everything in it can be ended together."""
+    child = subprocess.Popen(
+        [sys.executable, "-P", "-m", "regolith_studio.dem.engine_process"],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        env=os.environ | dict.fromkeys(_THREAD_LIMITS, "1") | {"PYTHONPATH": _path()},
+        start_new_session=True,
+        creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
+    )
+    assert child.stdin is not None
+    with contextlib.suppress(OSError):  # it died at once: the reader thread reports it
+        pickle.dump(task, child.stdin, protocol=pickle.HIGHEST_PROTOCOL)
+        child.stdin.flush()
+    return child
+
+
+def _path() -> str:
+    """Where the child finds this program, also in a checkout that is not installed."""
+    own = str(Path(__file__).resolve().parents[2])
+    return os.pathsep.join(part for part in (own, os.environ.get("PYTHONPATH", "")) if part)
+
+
+def _listen(source: BinaryIO, messages: "queue.SimpleQueue[Any]") -> None:
+    """Put the child's messages into the queue; ``None`` when its output ends."""
+    try:
+        while True:
+            messages.put(pickle.load(source))
+    except (EOFError, OSError, ValueError, pickle.UnpicklingError):
+        messages.put(None)
+
+
+def _end(child: subprocess.Popen[bytes]) -> None:
+    """End the child and what it started, and wait for it."""
+    if child.poll() is None and hasattr(os, "killpg"):
+        with contextlib.suppress(OSError):
+            os.killpg(child.pid, signal.SIGKILL)
+    if child.poll() is None:
+        child.kill()
+    child.wait()
+    if child.stdin is not None:
+        with contextlib.suppress(OSError):
+            child.stdin.close()
+
+
+def _exit_message(label: str, code: int, last: str) -> str:
+    how = f"was ended by signal {-code}" if code < 0 else f"ended with code {code}"
+    return f"The engine {label} {how}; the last snapshot ({last}) is kept."
+
+
+def main() -> None:
+    """Read the task and run it."""
+    source, target = _private_pipes()
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    key, prepared, settings, folder = pickle.load(source)
+    threading.Thread(target=_end_with_parent, args=(source,), name="parent", daemon=True).start()
+    run_task(target, key, prepared, settings, folder)
+
+
+def run_task(target: BinaryIO, key: str, prepared: PreparedCase, settings: Any, folder: Path) -> None:
+    """Simulate; every snapshot is saved before it is sent; the last message is a result or a sentence."""
+    try:
+        steps = engine_named(key).simulate(prepared, settings)
+        for number in range(10**9):
+            try:
+                snapshot = next(steps)
+            except StopIteration as end:
+                _send(target, end.value)
+                return
+            save_snapshot(folder, number, snapshot.particles)
+            _send(target, snapshot)
+    except RegolithError as error:
+        _send(target, str(error))
+    except MemoryError:
+        _send(target, "The simulation needs more memory than this machine has; take fewer particles.")
+    except OSError as error:
+        _send(target, f"The simulation could not go on: {error.strerror or error}. What was saved is kept.")
+    except Exception as error:  # noqa: BLE001 (the parent must be told)
+        _send(target, f"The engine failed ({type(error).__name__}: {error}). What was saved is kept.")
+
+
+def _send(target: BinaryIO, message: Any) -> None:
+    pickle.dump(message, target, protocol=pickle.HIGHEST_PROTOCOL)
+    target.flush()
+
+
+def _end_with_parent(source: BinaryIO) -> None:
+    with contextlib.suppress(OSError):
+        source.read(1)
+    if hasattr(os, "killpg") and os.getpgrp() == os.getpid():
+        os.killpg(os.getpid(), signal.SIGKILL)
+    os._exit(1)
+
+
+def _private_pipes() -> tuple[BinaryIO, BinaryIO]:
+    """The pipes to the parent; what an engine prints goes to the null device."""
+    source, target = os.dup(0), os.dup(1)
+    nothing = os.open(os.devnull, os.O_RDWR)
+    for number in (0, 1, 2):
+        os.dup2(nothing, number)
+    os.close(nothing)
+    return os.fdopen(source, "rb"), os.fdopen(target, "wb")
+
+
+if __name__ == "__main__":
+    main()
