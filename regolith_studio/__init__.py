@@ -1,6 +1,6 @@
 """Regolith Studio: from X-ray micro-CT to DEM-ready particles whose geometry is right.
 
-The doors for notebooks; each leads to the folder of its name and is opened when first used::
+Functions for notebooks, each imported from the folder of its name when first used::
 
     import regolith_studio as rs
 
@@ -44,7 +44,7 @@ __all__ = [
     "write_dataset",
 ]
 
-_DOORS = {
+_LAZY_EXPORTS = {
     "GaussianRadiusModel": "shape_models.models.gaussian_field:GaussianRadiusModel",
     "LossWeights": "coarsening.weights:LossWeights",
     "build_dataset": "dataset.build:build_dataset",
@@ -62,9 +62,9 @@ _DOORS = {
 
 
 def __getattr__(name: str) -> Any:
-    if name not in _DOORS:
+    if name not in _LAZY_EXPORTS:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    module, attribute = _DOORS[name].split(":")
+    module, attribute = _LAZY_EXPORTS[name].split(":")
     value = getattr(import_module(f"{__name__}.{module}"), attribute)
     globals()[name] = value
     return value

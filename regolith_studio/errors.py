@@ -1,15 +1,15 @@
-"""Every error that a user can cause and mend.
+"""Errors that a user can cause and repair; each message is one plain sentence.
 
 RegolithError
 ├── InputError            a value or a setting that cannot be used
 │   ├── GeometryError     a mesh or half-spaces that enclose no proper volume
 │   └── FileError         a file that cannot be read, or is not what it claims to be
 ├── DatasetError          a dataset folder that is broken, or cannot be written
-├── EnvironmentProblem    something that this machine lacks: a display, a program, memory
-└── Cancelled             the user stopped the work
+├── MissingRequirement    something that this machine lacks: a display, a program, memory
+└── JobCancelled          the user stopped the work
 
-The message of each is one plain sentence: what is wrong, with which value, and what would be
-right. Wrong use by a programmer stays a ``ValueError`` or ``TypeError``.
+A message says what is wrong, with which value, and what was expected. Wrong use by a programmer stays a
+``ValueError`` or ``TypeError``.
 """
 
 import errno
@@ -39,18 +39,18 @@ class DatasetError(RegolithError):
     """A dataset folder that is broken, or cannot be written."""
 
 
-class EnvironmentProblem(RegolithError):
+class MissingRequirement(RegolithError):
     """Something that this machine lacks."""
 
 
-class Cancelled(RegolithError):
+class JobCancelled(RegolithError):
     """The user stopped the work."""
 
 
-def of_the_system(error: OSError) -> str:
+def format_os_error(error: OSError) -> str:
     """What the operating system has refused, a full disk say, in a sentence."""
     place = error.filename or "the files"
-    return f"The system does not let the program go on with {place} ({reason_of(error)})."
+    return f"Cannot access {place}: {os_error_reason(error)}."
 
 
 _REASONS = {
@@ -68,12 +68,12 @@ _REASONS = {
 }
 
 
-def reason_of(error: OSError) -> str:
+def os_error_reason(error: OSError) -> str:
     """Why the operating system refuses a file, in words; its own where there are none here."""
     return _REASONS.get(error.errno or 0, error.strerror or str(error))
 
 
-_MUST = {
+VALIDATION_MESSAGES = {
     "missing": "is missing",
     "extra_forbidden": "is not known here",
     "string_type": "must be text",
@@ -114,7 +114,7 @@ _KIND_OF_A_UNION = re.compile(r"(str|int|float|bool|list|dict|tuple|none)$|.*[\[
 _LONGEST_VALUE = 40
 
 
-def of_the_entry(problems: Sequence[Mapping[str, Any]]) -> str:
+def format_validation_error(problems: Sequence[Mapping[str, Any]]) -> str:
     """Words for the entry of a document that pydantic refuses: where it stands, and what it must be.
 
     Parameters
@@ -130,7 +130,7 @@ def of_the_entry(problems: Sequence[Mapping[str, Any]]) -> str:
     if kind == "json_invalid":
         return _where_json_ends(str(given.get("error", "")))
     place = _place(problem["loc"])
-    words = _MUST[kind].format(**given) if kind in _MUST else "cannot be used"
+    words = VALIDATION_MESSAGES[kind].format(**given) if kind in VALIDATION_MESSAGES else "cannot be used"
     if kind == "value_error":
         return words if not place else f"{place}: {words[:1].lower()}{words[1:]}"
     value = "" if kind in _SHOW_NO_VALUE else f", not {_shown(problem.get('input'))}"

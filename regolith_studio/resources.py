@@ -3,7 +3,7 @@
 from functools import cache
 from pathlib import Path
 
-from regolith_studio.errors import EnvironmentProblem
+from regolith_studio.errors import MissingRequirement
 
 _PACKAGE = Path(__file__).resolve().parent
 
@@ -14,13 +14,13 @@ def resource_folder() -> Path:
 
     Raises
     ------
-    EnvironmentProblem
+    MissingRequirement
         If the installation holds no resources.
     """
     for folder in (_PACKAGE / "_resources", _PACKAGE.parent / "resources"):
         if folder.is_dir():
             return folder
-    raise EnvironmentProblem(
+    raise MissingRequirement(
         f"The installation in {_PACKAGE} lacks its folder of resources; install the program again."
     )
 
@@ -30,10 +30,10 @@ def resource(*parts: str) -> Path:
 
     Raises
     ------
-    EnvironmentProblem
+    MissingRequirement
         If there is no such file or folder.
     """
     path = resource_folder().joinpath(*parts)
     if not path.exists():
-        raise EnvironmentProblem(f"The shipped file {'/'.join(parts)} is missing; install the program again.")
+        raise MissingRequirement(f"The shipped file {'/'.join(parts)} is missing; install the program again.")
     return path

@@ -1,13 +1,21 @@
 """``check``: versions, OpenGL, display, engines, and what is missing."""
 
+import json
+import os
+import platform
+import subprocess
+import sys
+from importlib.metadata import PackageNotFoundError, requires, version
+from typing import Any
+
 import typer
 
+from regolith_studio import __version__
 from regolith_studio.cli.options import Json
 
 
 def check(json: Json = False) -> None:
     """Print versions, the OpenGL renderer, the display, the DEM engines found and what is missing."""
-    from regolith_studio.cli.machine import examine_machine
     from regolith_studio.cli.terminal import print_json
 
     report = examine_machine()
@@ -21,3 +29,130 @@ def check(json: Json = False) -> None:
             typer.echo(f"  {key:<24}{value}" if key else f"  {value}")
         if not content:
             typer.echo("  nothing")
+
+
+_PATIENCE = 60
+_OPENGL_QUESTION = """
+import json, os, sys
+os.environ.setdefault("PYVISTA_OFF_SCREEN", "true")
+import pyvista
+from regolith_studio.scene import stage
+stage.choose_off_screen_window()
+plotter = pyvista.Plotter(off_screen=True, window_size=[64, 64])
+plotter.add_mesh(pyvista.Sphere())
+plotter.screenshot(return_img=True)
+lines = plotter.render_window.ReportCapabilities().splitlines()
+found = dict(line.split(":", 1) for line in lines if line.startswith("OpenGL") and ":" in line)
+answer = {key: value.strip() for key, value in found.items()}
+answer["window"] = type(plotter.render_window).__name__
+plotter.close()
+print(json.dumps(answer))
+"""
+_DISPLAY_QUESTION = """
+import json, sys
+from PySide6.QtGui import QGuiApplication
+application = QGuiApplication(sys.argv[:1])
+screen = application.primaryScreen()
+size = screen.size()
+print(json.dumps({
+    "platform": application.platformName(),
+    "screen": f"{size.width()} x {size.height()}",
+    "scale": screen.devicePixelRatio(),
+}))
+"""
+
+
+def examine_machine() -> dict[str, Any]:
+    """Versions, machine, OpenGL, display, DEM engines, and sentences about what is missing."""
+    missing: list[str] = []
+    opengl = _ask_child(_OPENGL_QUESTION)
+    if "problem" in opengl:
+        missing.append(f"Three-dimensional pictures cannot be drawn: {opengl['problem']}")
+    display = _display()
+    if "problem" in display:
+        missing.append(f"The window cannot open: {display['problem']}")
+    packages = _packages()
+    missing += [f"The package {name} is not installed." for name, found in packages.items() if not found]
+    engines = _engines()
+    missing += _plugin_problems()
+    return {
+        "program": {"regolith-studio": __version__, "python": platform.python_version()},
+        "packages": {name: found or "missing" for name, found in packages.items()},
+        "machine": {"system": platform.platform(), "cores": os.cpu_count(), "executable": sys.executable},
+        "opengl": opengl,
+        "display": display,
+        "engines": engines,
+        "missing": missing,
+    }
+
+
+def _engines() -> dict[str, str]:
+    """Versions of the engines that can simulate the angle of repose, or why one cannot be used."""
+    from regolith_studio.dem.engines import engine_rows
+
+    return {row["key"]: row["problem"] or row["version"] for row in engine_rows()}
+
+
+def _plugin_problems() -> tuple[str, ...]:
+    """What other packages offer and cannot be used, but for pages, which need Qt."""
+    from regolith_studio.coarsening.methods import METHODS
+    from regolith_studio.dataset.exporters import EXPORTERS
+    from regolith_studio.dem.engines import ENGINES
+    from regolith_studio.readers.formats import MESH_FORMATS
+    from regolith_studio.readers.position_formats import POSITION_FORMATS
+    from regolith_studio.readers.volume_formats import VOLUME_FORMATS
+    from regolith_studio.registry import plugin_problems
+    from regolith_studio.shape_models.models import MODELS
+
+    for kinds in (METHODS, EXPORTERS, ENGINES, MODELS, MESH_FORMATS, POSITION_FORMATS, VOLUME_FORMATS):
+        len(kinds)
+    return plugin_problems()
+
+
+def _packages() -> dict[str, str | None]:
+    """Versions of what the program is built on; ``None`` where one is missing."""
+    try:
+        wanted = [line for line in requires("regolith-studio") or [] if "extra ==" not in line]
+    except PackageNotFoundError:
+        wanted = ["numpy", "scipy", "numba", "trimesh", "pyshtools", "pyvista", "PySide6-Essentials"]
+    return {name: _version(name) for name in sorted({_name(line) for line in wanted}, key=str.lower)}
+
+
+def _name(requirement: str) -> str:
+    for at, character in enumerate(requirement):
+        if not (character.isalnum() or character in "-_."):
+            return requirement[:at]
+    return requirement
+
+
+def _version(name: str) -> str | None:
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return None
+
+
+def _display() -> dict[str, Any]:
+    """What Qt finds; on Linux it aborts the process without a display, so that is looked at before."""
+    named = {key: os.environ[key] for key in ("DISPLAY", "WAYLAND_DISPLAY") if os.environ.get(key)}
+    if sys.platform.startswith("linux") and not named:
+        return {"problem": "there is no display (neither DISPLAY nor WAYLAND_DISPLAY is set)."}
+    return named | _ask_child(_DISPLAY_QUESTION)
+
+
+def _ask_child(question: str) -> dict[str, Any]:
+    """The JSON that a child process prints in answer, or ``problem`` with one sentence."""
+    try:
+        child = subprocess.run(
+            [sys.executable, "-c", question], capture_output=True, text=True, timeout=_PATIENCE, check=False
+        )
+    except subprocess.TimeoutExpired:
+        return {"problem": f"no answer came within {_PATIENCE} s."}
+    if child.returncode < 0:
+        return {"problem": f"the attempt ended with signal {-child.returncode}."}
+    lines = child.stdout.strip().splitlines()
+    if child.returncode or not lines:
+        reason = (child.stderr.strip().splitlines() or ["no reason was given"])[-1]
+        return {"problem": f"{reason}."}
+    answer: dict[str, Any] = json.loads(lines[-1])
+    return answer

@@ -2,12 +2,21 @@
 
 import typer
 
-from regolith_studio.cli.grouping import grouped
-from regolith_studio.cli.option_groups import CoarseningOptions, FinenessOptions, ReadingOptions
-from regolith_studio.cli.options import Folder, Jobs, Json, Meshes, Preset, Seed
+from regolith_studio.cli.dataclass_options import with_dataclass_options
+from regolith_studio.cli.inputs import ReadingOptions
+from regolith_studio.cli.options import (
+    CoarseningOptions,
+    FinenessOptions,
+    Folder,
+    Jobs,
+    Json,
+    Meshes,
+    Preset,
+    Seed,
+)
 
 
-@grouped
+@with_dataclass_options
 def coarsen(
     *,
     meshes: Meshes,
@@ -22,7 +31,7 @@ def coarsen(
 ) -> None:
     """Coarsen meshes to convex polyhedra that keep the chosen descriptors (section 2.4)."""
     from regolith_studio.cli.inputs import exit_code
-    from regolith_studio.cli.terminal import complain, follow, print_json, print_table
+    from regolith_studio.cli.terminal import print_errors, print_json, print_table, run_with_progress
     from regolith_studio.io.atomic import staged_folder
     from regolith_studio.jobs.coarsening_jobs import coarsen_sample
     from regolith_studio.session.outputs.coarsening import coarsening_document, error_table, write_coarsening
@@ -30,17 +39,17 @@ def coarsen(
     wish = how.choices(preset, seed=seed, **fineness.changes)
     order = wish.order
     loaded = reading.read(meshes)
-    done = follow(coarsen_sample(loaded.particles, order, jobs))
+    done = run_with_progress(coarsen_sample(loaded.particles, order, jobs))
     with staged_folder(output) as stage:
         write_coarsening(stage, order, done)
     failed = [each for each in done if each.coarsened is None]
-    complain(f"{each.name}: {each.problem}" for each in failed)
+    print_errors(f"{each.name}: {each.problem}" for each in failed)
     if json:
         print_json(coarsening_document(order, done))
     else:
         if len(done) > len(failed):
             print_table(error_table(done))
         results = [(each.name, each.coarsened) for each in done if each.coarsened]
-        complain(f"{name}: {coarse.reason}" for name, coarse in results if coarse.reason)
+        print_errors(f"{name}: {coarse.reason}" for name, coarse in results if coarse.reason)
         typer.echo(f"{len(done) - len(failed)} of {len(done)} particles coarsened in {output}")
     raise typer.Exit(exit_code(meshes, loaded, len(failed)))

@@ -20,10 +20,10 @@ from regolith_studio.cli import (
     warm_up,
     window,
 )
-from regolith_studio.cli.whole_help import WholeHelp
+from regolith_studio.cli.command_group import CommandGroup
 
 app = typer.Typer(
-    cls=WholeHelp,
+    cls=CommandGroup,
     name="regolith-studio",
     help="From X-ray micro-CT to DEM-ready regolith particles whose geometry is right.",
     epilog="Without a command the window opens. Lengths are in micrometres unless a unit is given.",

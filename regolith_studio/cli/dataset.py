@@ -5,25 +5,27 @@ from typing import Annotated
 
 import typer
 
-from regolith_studio.cli.grouping import grouped
-from regolith_studio.cli.option_groups import CoarseningOptions, FinenessOptions, ReadingOptions
+from regolith_studio.cli.command_group import CommandGroup
+from regolith_studio.cli.dataclass_options import with_dataclass_options
+from regolith_studio.cli.inputs import ReadingOptions
 from regolith_studio.cli.options import (
+    CoarseningOptions,
+    FinenessOptions,
     Folder,
     Jobs,
     Json,
     Meshes,
     Preset,
     Seed,
-    as_bad_use,
-    usable_file,
+    check_writable_file,
+    usage_errors,
     values,
 )
-from regolith_studio.cli.whole_help import WholeHelp
 
 DatasetFolder = Annotated[Path, typer.Argument(metavar="FOLDER", help="A dataset folder.")]
 
 app = typer.Typer(
-    cls=WholeHelp,
+    cls=CommandGroup,
     help="Datasets for DEM programs (section 2.5).",
     no_args_is_help=True,
     rich_markup_mode=None,
@@ -31,7 +33,7 @@ app = typer.Typer(
 
 
 @app.command("build")
-@grouped
+@with_dataclass_options
 def build(
     *,
     meshes: Meshes,
@@ -72,7 +74,7 @@ def build(
 ) -> None:
     """Coarsen the meshes, or N that stand for all of them, and write a dataset folder."""
     from regolith_studio.cli.inputs import exit_code
-    from regolith_studio.cli.terminal import complain, follow, print_json
+    from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress
     from regolith_studio.dataset.size_parsing import parse_sizes
     from regolith_studio.io.atomic import write_bytes
     from regolith_studio.io.tables import csv_text
@@ -86,20 +88,20 @@ def build(
     from regolith_studio.studies.representatives import quality_table
 
     wish = how.choices(preset, seed=seed, **fineness.changes)
-    with as_bad_use():
+    with usage_errors():
         parse_sizes(sizes)
         chosen = RepresentativesRequest.of(representatives or 10, weighting, size_importance, seed)
     check_place(output, overwrite)
     loaded = reading.read(meshes)
     if quality_curve is not None:
-        population = follow(measure_population(loaded.particles, jobs))
-        curve = follow(measure_quality(population, chosen))
+        population = run_with_progress(measure_population(loaded.particles, jobs))
+        curve = run_with_progress(measure_quality(population, chosen))
         write_bytes(quality_curve, csv_text(quality_table(curve)).encode("utf-8"))
     known = None if wish.preset_modified else wish.preset
     options = DatasetOptions(name, known, overwrite, jobs, chosen if representatives else None, sizes)
-    built = follow(build_dataset_folder(loaded.particles, wish.order, output, options))
+    built = run_with_progress(build_dataset_folder(loaded.particles, wish.order, output, options))
     failed = [each for each in built.outcomes if each.coarsened is None]
-    complain(f"{each.name}: {each.problem}" for each in failed)
+    print_errors(f"{each.name}: {each.problem}" for each in failed)
     if json:
         print_json({"folder": str(output)} | coarsening_document(wish.order, built.outcomes))
     else:
@@ -138,12 +140,12 @@ def list_(
     seed: Seed = 0,
 ) -> None:
     """List the datasets below a folder, each with what was exported and simulated from it."""
-    from regolith_studio.cli.terminal import follow, print_json
+    from regolith_studio.cli.terminal import print_json, run_with_progress
     from regolith_studio.dataset.catalog import provenance_tree
     from regolith_studio.jobs.dataset_jobs import list_library
 
     del jobs, seed  # taken by every command
-    tree = provenance_tree(entry for entry in follow(list_library(root)) if entry.matches(words))
+    tree = provenance_tree(entry for entry in run_with_progress(list_library(root)) if entry.matches(words))
     names = ("kind", "name", "folder", "sha256", "detail", "problem")
     if json:
         rows = [
@@ -163,7 +165,11 @@ def sample(
     output: Annotated[
         Path | None,
         typer.Option(
-            "--output", "-o", help="CSV file; the terminal if left out.", metavar="FILE", callback=usable_file
+            "--output",
+            "-o",
+            help="CSV file; the terminal if left out.",
+            metavar="FILE",
+            callback=check_writable_file,
         ),
     ] = None,
     json: Json = False,
@@ -232,20 +238,20 @@ def export(
     seed: Seed = 0,
 ) -> None:
     """Write a dataset for DEM programs, one folder a format; what a format loses is said."""
-    from regolith_studio.cli.terminal import complain, follow, print_json
+    from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress
     from regolith_studio.dataset.export import ExportOptions
     from regolith_studio.jobs.dataset_jobs import chosen_exporters, export_dataset_folder
 
     del jobs  # taken by every command
-    with as_bad_use():
+    with usage_errors():
         chosen = chosen_exporters([key.strip() for key in to.split(",") if key.strip()])
         changes: dict[str, object] = dict(values(set_, "setting"))
         settings = ExportOptions(coarse_graining_factor=coarse_graining, n_particles=particles, seed=seed)
         settings = settings.replaced(**changes)
     keys = [each.key for each in chosen]
-    done = follow(export_dataset_folder(folder, keys, output, settings, lossy))
+    done = run_with_progress(export_dataset_folder(folder, keys, output, settings, lossy))
     for each in chosen:
-        complain(f"{each.label} does not carry: {lost}." for lost in each.loses)
+        print_errors(f"{each.label} does not carry: {lost}." for lost in each.loses)
     if json:
         print_json(
             [

@@ -20,16 +20,16 @@ def demo(
     seed: Seed = 0,
 ) -> None:
     """Run the whole chain on the shipped particles: dataset, picture, Fig. 3, Fig. 8, summary page."""
-    from regolith_studio.cli.terminal import complain, follow, print_json
+    from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress
     from regolith_studio.session.outputs.summary import write_summary
     from regolith_studio.session.recipe import Outputs, recipe_of
     from regolith_studio.session.run_recipe import run_recipe
 
     everything = Outputs(fits=True, lmax_study=True, coarsening_study=True, summary=False)
-    done = follow(run_recipe(recipe_of(seed=seed, outputs=everything), Path(), output, jobs))
+    done = run_with_progress(run_recipe(recipe_of(seed=seed, outputs=everything), Path(), output, jobs))
     done.summary.pictures = _pictures(done)
     write_summary(output, done.recipe, done.summary, done.studies, done.problems)
-    complain(done.problems)
+    print_errors(done.problems)
     if json:
         print_json({"folder": str(output), "files": done.files, "problems": list(done.problems)})
     else:
@@ -39,8 +39,8 @@ def demo(
 
 def _pictures(done: "RecipeRun") -> tuple[tuple[str, str], ...]:
     """The three views of the first particle; where nothing can be drawn, a sentence in their place."""
-    from regolith_studio.cli.picture import draw_three_views
-    from regolith_studio.cli.terminal import follow
+    from regolith_studio.cli.offscreen_process import draw_three_views
+    from regolith_studio.cli.terminal import run_with_progress
     from regolith_studio.errors import RegolithError
     from regolith_studio.jobs.coarsening_jobs import coarsen_particle
 
@@ -48,7 +48,7 @@ def _pictures(done: "RecipeRun") -> tuple[tuple[str, str], ...]:
     if index is None:
         return ()
     particle = done.items.members[index].particle()
-    first = follow(coarsen_particle(particle, done.choices.order, index))
+    first = run_with_progress(coarsen_particle(particle, done.choices.order, index))
     try:
         draw_three_views(particle, first, done.choices, done.folder / PICTURE)
     except RegolithError as error:

@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from regolith_studio.cli.grouping import grouped
-from regolith_studio.cli.option_groups import ReadingOptions
+from regolith_studio.cli.dataclass_options import with_dataclass_options
+from regolith_studio.cli.inputs import ReadingOptions
 from regolith_studio.cli.options import Jobs, Json, Meshes, Seed
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ Csv = Annotated[
 ]
 
 
-@grouped
+@with_dataclass_options
 def describe(
     *,
     meshes: Meshes,
@@ -53,14 +53,14 @@ def describe(
     if weighting not in ("number", "volume"):
         raise typer.BadParameter(f"Particles weigh by number or by volume, not by {weighting!r}.")
     start_reader()
-    from regolith_studio.cli.terminal import complain, follow, print_json, print_table
+    from regolith_studio.cli.terminal import print_errors, print_json, print_table, run_with_progress
     from regolith_studio.jobs.particle_jobs import measure_sample
     from regolith_studio.session.outputs.descriptors import described, short_table
     from regolith_studio.session.results import ParticleEntry
 
     del seed  # taken by every command; nothing here is random
     loaded = reading.read(meshes)
-    facts = follow(measure_sample(loaded.particles, workers=jobs))
+    facts = run_with_progress(measure_sample(loaded.particles, workers=jobs))
     pairs = list(zip(loaded.particles, facts, strict=True))
     entries = [
         ParticleEntry(p.name, p, each.health, each.descriptors, visibility=each.visibility)
@@ -78,7 +78,7 @@ def describe(
             typer.echo()
             print_table(spread)
         for particle, each in pairs:
-            complain(f"{particle.name}: {note}" for note in (*particle.notes, each.problem) if note)
+            print_errors(f"{particle.name}: {note}" for note in (*particle.notes, each.problem) if note)
     raise typer.Exit(exit_code(meshes, loaded, sum(bool(each.problem) for each in facts)))
 
 

@@ -5,7 +5,7 @@ import sys
 import traceback
 from collections.abc import Sequence
 
-from regolith_studio.errors import Cancelled, RegolithError, of_the_system
+from regolith_studio.errors import JobCancelled, RegolithError, format_os_error
 
 DONE, BAD_INPUT, BAD_USE, INTERRUPTED = 0, 1, 2, 130
 STOPPED = "Stopped."
@@ -24,12 +24,12 @@ def run(arguments: Sequence[str]) -> int:
         if end.code == INTERRUPTED:  # so typer ends at Ctrl+C, without a word
             return _say(STOPPED, INTERRUPTED)
         return end.code if isinstance(end.code, int) else DONE
-    except (KeyboardInterrupt, Cancelled):
+    except (KeyboardInterrupt, JobCancelled):
         return _say(STOPPED, INTERRUPTED)
     except RegolithError as error:
         return _say(str(error), BAD_INPUT)
     except OSError as error:
-        return _say(of_the_system(error), BAD_INPUT)
+        return _say(format_os_error(error), BAD_INPUT)
     except MemoryError:
         return _say("The work needs more memory than this machine has.", BAD_INPUT)
     except Exception as error:  # noqa: BLE001  the last one who can turn it into a sentence

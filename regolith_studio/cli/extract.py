@@ -5,12 +5,12 @@ from typing import Annotated
 
 import typer
 
-from regolith_studio.cli.grouping import grouped
-from regolith_studio.cli.options import Folder, Jobs, Json, Seed, as_bad_use
+from regolith_studio.cli.dataclass_options import with_dataclass_options
+from regolith_studio.cli.options import Folder, Jobs, Json, Seed, usage_errors
 from regolith_studio.cli.volume_options import GrainOptions, VolumeOptions
 
 
-@grouped
+@with_dataclass_options
 def extract(
     *,
     volume: Annotated[
@@ -34,19 +34,19 @@ def extract(
 
     Writes one STL a particle, particles.csv and extraction.json with all settings.
     """
-    from regolith_studio.cli.terminal import follow, print_json
+    from regolith_studio.cli.terminal import print_json, run_with_progress
     from regolith_studio.io.atomic import staged_folder
     from regolith_studio.jobs.extraction_settings import read_grain_settings
     from regolith_studio.jobs.volume_jobs import extract_measured
     from regolith_studio.session.outputs.extraction import ExtractionFolder
 
     del seed  # taken by every command; nothing here is random
-    with as_bad_use():
+    with usage_errors():
         given = contents.of(volume)
         settings = read_grain_settings(recipe) if recipe else grains.recipe
     with staged_folder(output) as stage:
         folder = ExtractionFolder(stage)
-        done = follow(extract_measured(given, settings, output.parent, folder.add, jobs))
+        done = run_with_progress(extract_measured(given, settings, output.parent, folder.add, jobs))
         document = folder.finish(given, settings, done)
     if json:
         print_json(document)

@@ -5,9 +5,20 @@ from typing import Annotated
 
 import typer
 
-from regolith_studio.cli.grouping import grouped
-from regolith_studio.cli.option_groups import ExpansionOptions, ReadingOptions
-from regolith_studio.cli.options import Jobs, Json, Level, LMax, Meshes, Seed, as_bad_use, usable, usable_file
+from regolith_studio.cli.dataclass_options import with_dataclass_options
+from regolith_studio.cli.inputs import ReadingOptions
+from regolith_studio.cli.options import (
+    ExpansionOptions,
+    Jobs,
+    Json,
+    Level,
+    LMax,
+    Meshes,
+    Seed,
+    check_writable,
+    check_writable_file,
+    usage_errors,
+)
 
 Stem = Annotated[
     Path,
@@ -17,18 +28,21 @@ Stem = Annotated[
         help="Writes FIT.json and FIT.npz.",
         metavar="FIT",
         show_default=False,
-        callback=usable_file,
+        callback=check_writable_file,
     ),
 ]
 Surfaces = Annotated[
     Path | None,
     typer.Option(
-        "--surfaces", help="Folder for the surface of each fit as STL.", metavar="DIR", callback=usable
+        "--surfaces",
+        help="Folder for the surface of each fit as STL.",
+        metavar="DIR",
+        callback=check_writable,
     ),
 ]
 
 
-@grouped
+@with_dataclass_options
 def fit(
     *,
     meshes: Meshes,
@@ -44,24 +58,24 @@ def fit(
 ) -> None:
     """Fit spherical harmonics to meshes; write coefficients and spectrum."""
     from regolith_studio.cli.inputs import exit_code
-    from regolith_studio.cli.terminal import complain, follow, print_json
+    from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress
     from regolith_studio.jobs.particle_jobs import FitRequest, fit_sample
     from regolith_studio.session.choices import Choices
     from regolith_studio.session.outputs.fits import FittedSample, fits_document, write_fits, write_surfaces
 
-    with as_bad_use():
+    with usage_errors():
         Choices(l_max=l_max, seed=seed, level=level)
         order = FitRequest(l_max, radii.fit_options)
     stem = output.with_suffix("") if output.suffix in (".json", ".npz") else output
     loaded = reading.read(meshes)
-    sample = FittedSample.of(loaded.particles, follow(fit_sample(loaded.particles, order, jobs)))
-    complain(f"{name}: {sentence}" for name, sentence in sample.failed)
+    sample = FittedSample.of(loaded.particles, run_with_progress(fit_sample(loaded.particles, order, jobs)))
+    print_errors(f"{name}: {sentence}" for name, sentence in sample.failed)
     holes: dict[str, str] = {}
     if sample.fits:
         paths = write_fits(stem, sample)
         if surfaces is not None:
             holes = write_surfaces(surfaces, sample, level)
-            complain(f"{name}: {sentence}" for name, sentence in holes.items())
+            print_errors(f"{name}: {sentence}" for name, sentence in holes.items())
         if json:
             print_json(fits_document(sample) | {"arrays": paths[1].name})
         else:

@@ -5,9 +5,17 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from regolith_studio.cli.grouping import grouped
-from regolith_studio.cli.option_groups import ExpansionOptions, ReadingOptions
-from regolith_studio.cli.options import Degrees, Folder, Json, Meshes, as_bad_use, whole_numbers
+from regolith_studio.cli.dataclass_options import with_dataclass_options
+from regolith_studio.cli.inputs import ReadingOptions
+from regolith_studio.cli.options import (
+    Degrees,
+    ExpansionOptions,
+    Folder,
+    Json,
+    Meshes,
+    usage_errors,
+    whole_numbers,
+)
 
 if TYPE_CHECKING:
     from regolith_studio.geometry.mesh import Mesh
@@ -18,7 +26,7 @@ Animation = Annotated[
 ]
 
 
-@grouped
+@with_dataclass_options
 def gallery(
     *,
     meshes: Meshes,
@@ -31,30 +39,32 @@ def gallery(
 ) -> None:
     """Draw each particle and its fits at several l_max (Fig. 2)."""
     from regolith_studio.cli.inputs import exit_code
-    from regolith_studio.cli.picture import draw_apart
-    from regolith_studio.cli.terminal import complain, follow, print_json
+    from regolith_studio.cli.offscreen_process import draw_in_process
+    from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress
     from regolith_studio.harmonics.fit import HarmonicFit
     from regolith_studio.io.atomic import staged_folder
     from regolith_studio.jobs.particle_jobs import FIT_DEGREE, FitRequest, fit_sample
 
     wanted = whole_numbers(degrees, 0, FIT_DEGREE)
-    with as_bad_use():
+    with usage_errors():
         order = FitRequest(max(wanted), radii.fit_options)
     loaded = reading.read(meshes)
-    fits = follow(fit_sample(loaded.particles, order))
+    fits = run_with_progress(fit_sample(loaded.particles, order))
     drawn: list[str] = []
     failed = 0
     with staged_folder(output) as stage:
         for particle, fit in zip(loaded.particles, fits, strict=True):
             if not isinstance(fit, HarmonicFit):
-                complain([f"{particle.name}: {fit}"])
+                print_errors([f"{particle.name}: {fit}"])
                 failed += 1
                 continue
             names = [f"{particle.name}_degrees.png"]
-            draw_apart(_draw_picture, (particle.mesh, fit, wanted), stage / names[0])
+            draw_in_process(_draw_picture, (particle.mesh, fit, wanted), stage / names[0])
             if animation:
                 names.append(f"{particle.name}_degrees.gif")
-                draw_apart(_draw_animation, (particle.mesh, fit, range(order.l_max + 1)), stage / names[1])
+                draw_in_process(
+                    _draw_animation, (particle.mesh, fit, range(order.l_max + 1)), stage / names[1]
+                )
             drawn += names
     if json:
         print_json({"folder": str(output), "files": drawn})

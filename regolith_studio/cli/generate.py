@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from regolith_studio.cli.grouping import grouped
-from regolith_studio.cli.option_groups import ReadingOptions
+from regolith_studio.cli.dataclass_options import with_dataclass_options
+from regolith_studio.cli.inputs import ReadingOptions
 from regolith_studio.cli.options import (
     Folder,
     Jobs,
@@ -14,7 +14,7 @@ from regolith_studio.cli.options import (
     Level,
     Seed,
     Settings,
-    as_bad_use,
+    usage_errors,
     values,
 )
 
@@ -64,7 +64,7 @@ ModelFile = Annotated[
 ]
 
 
-@grouped
+@with_dataclass_options
 def generate(
     *,
     sources: Sources,
@@ -84,21 +84,21 @@ def generate(
     seed: Seed = 0,
 ) -> None:
     """Draw virtual particles with the shapes and sizes of a sample (section 2.3)."""
-    from regolith_studio.cli.terminal import complain, follow, print_json
+    from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress
     from regolith_studio.io.atomic import staged_folder
     from regolith_studio.jobs.model_jobs import GenerationRequest, draw, fit_model, groups_of
     from regolith_studio.session.choices import Choices
     from regolith_studio.session.outputs.virtual_particles import Generated, write_document
 
-    with as_bad_use():
+    with usage_errors():
         Choices(level=level)
         order = GenerationRequest(model, tuple(values(set_, "setting").items()), l_max, n, seed, size_range)
         if format_ not in ("stl", "npz"):
             raise typer.BadParameter(f"The format must be stl or npz, got {format_!r}.")
     source = shape_source(sources, reading, order, jobs)
-    complain(source.notes)
-    fitted = _named(follow(fit_model(source, order)), names)
-    draws = follow(draw(fitted, order))
+    print_errors(source.notes)
+    fitted = _named(run_with_progress(fit_model(source, order)), names)
+    draws = run_with_progress(draw(fitted, order))
     made = Generated(source, order, fitted, draws, groups_of(draws, fitted))
     with staged_folder(output) as stage:
         extra = _write(stage, made, format_, level, jobs)
@@ -125,7 +125,7 @@ def shape_source(
     FileError
         If nothing can be read.
     """
-    from regolith_studio.cli.terminal import follow
+    from regolith_studio.cli.terminal import run_with_progress
     from regolith_studio.jobs.model_jobs import fit_request_for, sample_of_meshes
     from regolith_studio.readers.shape_files import is_shape_source, read_shape_source
 
@@ -135,7 +135,7 @@ def shape_source(
     if named:
         return read_shape_source(named[0])
     loaded = reading.read([Path(source) for source in sources])
-    found: ShapeSource = follow(sample_of_meshes(loaded.particles, fit_request_for(order), jobs))
+    found: ShapeSource = run_with_progress(sample_of_meshes(loaded.particles, fit_request_for(order), jobs))
     return found
 
 
@@ -146,19 +146,19 @@ def _named(fitted: Any, names: str) -> Any:
     wanted = [name.strip() for name in names.split(",")]
     if not hasattr(fitted, "renamed"):
         raise typer.BadParameter(f"Only a mixture has parts with names, and the model is {fitted.key}.")
-    with as_bad_use():
+    with usage_errors():
         return fitted.renamed(wanted)
 
 
 def _write(stage: Path, made: Any, format_: str, level: int, jobs: int) -> dict[str, Any]:
-    from regolith_studio.cli.terminal import follow
+    from regolith_studio.cli.terminal import run_with_progress
     from regolith_studio.jobs.model_jobs import write_meshes
     from regolith_studio.session.outputs import virtual_particles
 
     if format_ == "npz":
         virtual_particles.write_coefficients(stage, made)
         return {"files": [virtual_particles.ARRAYS, virtual_particles.TABLE]}
-    facts = follow(write_meshes(made.draws, made.groups, level, stage, jobs))
+    facts = run_with_progress(write_meshes(made.draws, made.groups, level, stage, jobs))
     virtual_particles.write_table_of_meshes(stage, made, facts)
     return {"level": level, "files": ["*.stl", virtual_particles.TABLE]}
 

@@ -3,15 +3,28 @@
 import contextlib
 import threading
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from regolith_studio.cli.options import as_bad_use
-from regolith_studio.cli.terminal import complain, follow
+from regolith_studio.cli.options import Repair, Unit, usage_errors
+from regolith_studio.cli.terminal import print_errors, run_with_progress
 from regolith_studio.errors import RegolithError
 
 if TYPE_CHECKING:
     from regolith_studio.readers.particles import LoadedParticles
+
+
+@dataclass(frozen=True)
+class ReadingOptions:
+    """How meshes are read."""
+
+    unit: Unit = "um"
+    repair: Repair = True
+
+    def read(self, paths: Sequence[Path]) -> "LoadedParticles":
+        """The particles in files and folders; see :func:`read_inputs`."""
+        return read_inputs(paths, self.unit, self.repair)
 
 
 def read_inputs(paths: Sequence[Path], unit: str, repair: bool = True) -> "LoadedParticles":
@@ -25,10 +38,10 @@ def read_inputs(paths: Sequence[Path], unit: str, repair: bool = True) -> "Loade
     from regolith_studio.jobs.particle_jobs import load_particles
     from regolith_studio.readers.units import unit_factor
 
-    with as_bad_use():
+    with usage_errors():
         unit_factor(unit)
-    loaded: LoadedParticles = follow(load_particles(tuple(paths), unit, repair))
-    complain(problem.with_path for problem in loaded.problems)
+    loaded: LoadedParticles = run_with_progress(load_particles(tuple(paths), unit, repair))
+    print_errors(problem.with_path for problem in loaded.problems)
     return loaded
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from regolith_studio.cli.options import Folder, Jobs, Json, as_bad_use
+from regolith_studio.cli.options import Folder, Jobs, Json, usage_errors
 
 if TYPE_CHECKING:
     from regolith_studio.jobs.executor import Executor, ExecutorSettings
@@ -59,7 +59,7 @@ def run(
     ] = None,
 ) -> None:
     """Do all that a recipe asks for: descriptors, fits, meshes, dataset, studies, summary."""
-    from regolith_studio.cli.terminal import complain, follow, print_json
+    from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress
     from regolith_studio.jobs.executor import ExecutorSettings
     from regolith_studio.session.recipe import read_recipe
     from regolith_studio.session.run_recipe import run_recipe
@@ -67,11 +67,13 @@ def run(
     wish = read_recipe(recipe)
     if seed is not None:
         wish = wish.model_copy(update={"seed": seed})
-    with as_bad_use():
+    with usage_errors():
         settings = ExecutorSettings(runner, jobs, address, tls)
     with contextlib.closing(_open_executor(settings)) as executor:
-        done = follow(run_recipe(wish, recipe.parent, output, executor, resume, chunk), logged=True)
-    complain(done.problems)
+        done = run_with_progress(
+            run_recipe(wish, recipe.parent, output, executor, resume, chunk), logged=True
+        )
+    print_errors(done.problems)
     if json:
         print_json({"folder": str(output), "files": done.files, "problems": list(done.problems)})
     else:
@@ -81,9 +83,11 @@ def run(
 
 def _open_executor(settings: "ExecutorSettings") -> "Executor":
     """Who is to work."""
-    from regolith_studio.cli.terminal import complain
+    from regolith_studio.cli.terminal import print_errors
 
-    with as_bad_use():
+    with usage_errors():
         executor = settings.open()
-    complain([f"{executor.workers} workers; dashboard {executor.dashboard}"] if executor.dashboard else [])
+    print_errors(
+        [f"{executor.workers} workers; dashboard {executor.dashboard}"] if executor.dashboard else []
+    )
     return executor

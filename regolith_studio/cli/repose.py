@@ -5,22 +5,31 @@ from typing import Annotated, Any
 
 import typer
 
-from regolith_studio.cli import repose_runs
-from regolith_studio.cli.options import Jobs, Json, Seed, Settings, as_bad_use, usable
-from regolith_studio.cli.repose_options import evaluation_settings
-from regolith_studio.cli.whole_help import WholeHelp
+from regolith_studio.cli.command_group import CommandGroup
+from regolith_studio.cli.dataclass_options import with_dataclass_options
+from regolith_studio.cli.options import (
+    Folder,
+    Jobs,
+    Json,
+    Seed,
+    Settings,
+    check_writable,
+    usage_errors,
+    values,
+)
+from regolith_studio.cli.repose_options import CaseOptions, Particles, evaluation_settings
 
 app = typer.Typer(
-    cls=WholeHelp,
+    cls=CommandGroup,
     help="The angle of repose: simulate a lifting cylinder, measure a pile.",
     no_args_is_help=True,
     rich_markup_mode=None,
 )
-app.command("run")(repose_runs.run)
-app.command("study")(repose_runs.study)
 Figures = Annotated[
     Path | None,
-    typer.Option("--output", "-o", help="Folder for the JSON and Fig. 9.", metavar="DIR", callback=usable),
+    typer.Option(
+        "--output", "-o", help="Folder for the JSON and Fig. 9.", metavar="DIR", callback=check_writable
+    ),
 ]
 PositionUnit = Annotated[
     str, typer.Option("--unit", help="Length unit of files that have none: m mm um cm nm.", metavar="U")
@@ -61,8 +70,7 @@ def measure(
     seed: Seed = 0,
 ) -> None:
     """Measure the angle of repose of a pile: both sections and both models of the paper."""
-    from regolith_studio.cli.repose_words import in_words
-    from regolith_studio.cli.terminal import complain, print_json
+    from regolith_studio.cli.terminal import print_errors, print_json
     from regolith_studio.dem.angle_of_repose import measure_repose, measurement_document
 
     del jobs  # taken by every command
@@ -78,7 +86,7 @@ def measure(
         with staged_folder(output) as stage:
             (stage / "repose.json").write_bytes(json_bytes(document))
             write_section_figure(points, diameters, measurement, stage)
-    complain(measurement.warnings)
+    print_errors(measurement.warnings)
     if json:
         print_json(document)
     else:
@@ -93,7 +101,7 @@ def positions_in(file: Path, unit: str, diameter: float) -> tuple[Any, Any]:
     FileError
         If the file holds no positions, or no diameters and none is given.
     """
-    from regolith_studio.cli.terminal import complain
+    from regolith_studio.cli.terminal import print_errors
     from regolith_studio.dem.snapshot import read_particle_state
     from regolith_studio.errors import FileError
     from regolith_studio.readers.positions import read_positions
@@ -102,12 +110,153 @@ def positions_in(file: Path, unit: str, diameter: float) -> tuple[Any, Any]:
     if file.suffix.lower() == ".npz":
         pile = read_particle_state(file)
         return pile.points, pile.diameters
-    with as_bad_use():
+    with usage_errors():
         metres = unit_factor(unit) * 1e-6
     found = read_positions(file, unit)
-    complain(found.notes)
+    print_errors(found.notes)
     if diameter > 0.0:
         return found.points, diameter * metres
     if found.diameters is None:
         raise FileError(f"{file.name} holds no diameters; name one for all particles with --diameter.")
     return found.points, found.diameters
+
+
+@app.command("run")
+@with_dataclass_options
+def run(
+    *,
+    dataset: Annotated[Path, typer.Argument(metavar="DATASET", help="A dataset folder.")],
+    output: Folder,
+    particles: Particles = 300,
+    how: CaseOptions,
+    coarse_graining: Annotated[
+        float,
+        typer.Option(
+            "--coarse-graining", help="Factor on sizes; by itself, what the mass asks.", metavar="F"
+        ),
+    ] = 0.0,
+    spheres: Annotated[bool, typer.Option("--spheres", help="Balls instead of the polyhedra.")] = False,
+    cohesion: Annotated[str, typer.Option("--cohesion", help="none, given or scaled.", metavar="C")] = "none",
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace an earlier run.")] = False,
+    json: Json = False,
+    jobs: Jobs = 1,
+    seed: Seed = 0,
+) -> None:
+    """Simulate the lifting cylinder with particles of a dataset and measure the pile (section 2.6)."""
+    from dataclasses import replace
+
+    from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress
+    from regolith_studio.jobs.repose_jobs import simulate_repose
+
+    del jobs  # a run is one process
+    order = how.order(
+        n_particles=particles,
+        coarse_graining=coarse_graining,
+        shapes="spheres" if spheres else "polyhedra",
+        cohesion=cohesion,
+        seed=seed,
+    )
+    done = run_with_progress(simulate_repose(dataset, output, replace(order, overwrite=overwrite)))
+    print_errors(run_remarks(done.document))
+    if json:
+        print_json(done.document)
+    else:
+        typer.echo(run_in_words(done.document))
+
+
+@app.command("study")
+@with_dataclass_options
+def study(
+    *,
+    datasets: Annotated[list[Path], typer.Argument(metavar="DATASET...", help="Dataset folders.")],
+    output: Folder,
+    vary: Annotated[
+        str,
+        typer.Option(
+            "--vary",
+            help="A value of Table 1 or 2 in SI, shapes, cohesion, n_particles; else the datasets differ.",
+            metavar="KEY=V1,V2",
+        ),
+    ] = "",
+    repeats: Annotated[int, typer.Option("--repeats", min=1, help="Seeds a value.", metavar="N")] = 1,
+    particles: Particles = 1000,
+    how: CaseOptions,
+    json: Json = False,
+    jobs: Jobs = 1,
+    seed: Seed = 0,
+) -> None:
+    """Angle of repose against one value or one dataset against others; goes on where it was stopped."""
+    from regolith_studio.cli.terminal import print_json, print_table, run_with_progress
+    from regolith_studio.jobs.repose_jobs import ReposeVariant, study_repose, with_value
+    from regolith_studio.studies.repose import repose_table, write_repose_study
+
+    del jobs  # one run after the other, so that what is there already is known
+    key, points = _varied(vary)
+    order = how.order(n_particles=particles, seed=seed)
+    rows = []
+    for folder in datasets:
+        name = (key if len(datasets) == 1 else f"{key} {folder.name}") if points else "dataset"
+        with usage_errors():
+            rows += [ReposeVariant(name, point, folder, with_value(order, key, point)) for point in points]
+        if not points:
+            rows.append(ReposeVariant(name, folder.name, folder, order))
+    done = run_with_progress(study_repose(rows, output, repeats))
+    files = [path.name for path in write_repose_study(done, output)]
+    if json:
+        print_json({"folder": str(output), "files": files})
+    else:
+        print_table(repose_table(done))
+
+
+def _varied(text: str) -> tuple[str, list[Any]]:
+    """Name and values of ``KEY=V1,V2``."""
+    if not text:
+        return "", []
+    key, equals, points = text.partition("=")
+    if not equals or not all(point.strip() for point in points.split(",")):
+        raise typer.BadParameter(f"Write what varies as KEY=V1,V2, got {text!r}.")
+    return key, [values([f"{key}={point}"], "value")[key] for point in points.split(",")]
+
+
+def in_words(document: dict[str, Any]) -> str:
+    """A measurement."""
+    paper = document["paper_sections"]
+    low, high = document["interval_deg"]
+    lines = [
+        f"angle of repose      {document['angle_deg']:.1f} deg ({low:.1f} to {high:.1f}, "
+        f"{100 * document['settings']['confidence']:g} % interval, {len(document['sections'])} sections)"
+    ]
+    for section in document["sections"][:2]:
+        two = section["asymmetric"]
+        lines.append(
+            f"section {section['plane']}          left {two['left_deg']:.1f}  right {two['right_deg']:.1f}  "
+            f"symmetric {section['symmetric']['angle_deg']:.1f}"
+        )
+    lines.append(
+        f"these two sections   asymmetric {paper['asymmetric']['mean_deg']:.1f}  "
+        f"symmetric {paper['symmetric']['mean_deg']:.1f}"
+    )
+    return "\n".join(lines)
+
+
+def run_remarks(document: dict[str, Any]) -> list[str]:
+    """Sentences about a run that its user should read."""
+    return [
+        *document["particles"]["sentences"],
+        *document["run"]["notes"],
+        *document["checks"]["problems"],
+    ]
+
+
+def run_in_words(document: dict[str, Any]) -> str:
+    """The result of a run."""
+    checks, measurement = document["checks"], document["measurement"]
+    lines = [
+        in_words(measurement) if measurement["status"] == "pile" else measurement["reason"],
+        f"filled to            {100 * checks['fill_height']:.2f} cm, packed {checks['solid_fraction']:.2f}",
+        f"particles            {checks['particles_out']} of {checks['particles_in']}",
+        f"overlap at rest      {100 * checks['max_overlap']:.2f} % of the mean diameter at most",
+        f"energy gained        {checks['energy_gain']:.1e} m g d a particle",
+        f"time                 {document['run']['seconds']:.0f} s",
+    ]
+    return "\n".join(lines)

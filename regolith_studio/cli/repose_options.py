@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from regolith_studio.cli.options import Settings, as_bad_use, values
+from regolith_studio.cli.options import Settings, usage_errors, values
 
 if TYPE_CHECKING:
     from regolith_studio.dem.evaluation.settings import EvaluationSettings
@@ -43,7 +43,7 @@ class CaseOptions:
         from regolith_studio.dem.engines import engine_named
         from regolith_studio.jobs.repose_jobs import ReposeRequest
 
-        with as_bad_use():
+        with usage_errors():
             code = engine_named(self.engine)
         test = filled(LiftingCylinderTest, values(self.test, "value"), "value of the test")
         contact = filled(ContactParameters, values(self.contact, "value"), "contact parameter")
@@ -76,5 +76,5 @@ def filled(kind: type[Any], given: Mapping[str, Any], what: str) -> Any:
         elif default is not dataclasses.MISSING and not isinstance(value, type(default)):
             raise typer.BadParameter(f"The {what} {name} must be like {default!r}, got {value!r}.")
         fitting[name] = value
-    with as_bad_use():
+    with usage_errors():
         return kind(**fitting)

@@ -6,11 +6,14 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from regolith_studio.cli import variations
-from regolith_studio.cli.grouping import grouped
-from regolith_studio.cli.option_groups import FACETS, CoarseningOptions, ExpansionOptions, ReadingOptions
+from regolith_studio.cli.command_group import CommandGroup
+from regolith_studio.cli.dataclass_options import with_dataclass_options
+from regolith_studio.cli.inputs import ReadingOptions
 from regolith_studio.cli.options import (
+    FACETS,
+    CoarseningOptions,
     Degrees,
+    ExpansionOptions,
     Facets,
     Folder,
     Jobs,
@@ -20,20 +23,37 @@ from regolith_studio.cli.options import (
     Meshes,
     Resume,
     Seed,
-    as_bad_use,
+    usage_errors,
     whole_numbers,
 )
-from regolith_studio.cli.variations import BoxMetric, check_box, conclude
-from regolith_studio.cli.whole_help import WholeHelp
 
 if TYPE_CHECKING:
     from regolith_studio.session.choices import Choices
     from regolith_studio.studies.loss_rows import StudyRow
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from regolith_studio.cli.options import Preset
+
+if TYPE_CHECKING:
+    from regolith_studio.jobs.events import Steps
+
 
 Below = Annotated[
     float,
     typer.Option(
         "--below", help="Ask for the smallest l_max with every error below this.", metavar="PERCENT"
+    ),
+]
+
+BoxMetric = Annotated[
+    str,
+    typer.Option(
+        "--box",
+        help="Bounding box of the diameters: exact, or trimesh, the heuristic of the paper's program.",
+        metavar="BOX",
     ),
 ]
 
@@ -75,12 +95,12 @@ DescriptorKeys = Annotated[
 ]
 
 app = typer.Typer(
-    cls=WholeHelp, help="Tables and figures over a sample.", no_args_is_help=True, rich_markup_mode=None
+    cls=CommandGroup, help="Tables and figures over a sample.", no_args_is_help=True, rich_markup_mode=None
 )
 
 
 @app.command("lmax")
-@grouped
+@with_dataclass_options
 def lmax(
     *,
     meshes: Meshes,
@@ -102,7 +122,7 @@ def lmax(
     from regolith_studio.studies.lmax import enough_degrees
 
     wanted = whole_numbers(degrees, 0, L_MAX_LIMIT)
-    with as_bad_use():
+    with usage_errors():
         Choices(level=level, seed=seed)
     loaded = reading.read(meshes)
     study = partial(study_lmax, loaded.particles, jobs, seed, degrees=wanted, level=level)
@@ -114,7 +134,7 @@ def lmax(
 
 
 @app.command("coarsening")
-@grouped
+@with_dataclass_options
 def coarsening(
     *,
     meshes: Meshes,
@@ -143,7 +163,7 @@ def coarsening(
 
 
 @app.command("solids")
-@grouped
+@with_dataclass_options
 def solids(
     *,
     meshes: Meshes,
@@ -170,7 +190,7 @@ def solids(
 
 
 @app.command("population")
-@grouped
+@with_dataclass_options
 def population(
     *,
     sources: SampleSources,
@@ -189,7 +209,7 @@ def population(
 ) -> None:
     """Drawn against measured particles: models fitted to one half, judged on the other (Figs. 4-6)."""
     from regolith_studio.cli.generate import shape_source
-    from regolith_studio.cli.terminal import complain, print_table
+    from regolith_studio.cli.terminal import print_errors, print_table
     from regolith_studio.descriptors.catalogue import CATALOGUE
     from regolith_studio.errors import InputError
     from regolith_studio.jobs.model_jobs import GenerationRequest
@@ -198,10 +218,10 @@ def population(
     from regolith_studio.studies.population import KEYS
     from regolith_studio.studies.population_tables import target_table
 
-    with as_bad_use():
+    with usage_errors():
         order = GenerationRequest(l_max=l_max, seed=seed)
     source = shape_source(sources, reading, order, jobs)
-    complain(source.notes)
+    print_errors(source.notes)
     if not isinstance(source.content, Sample):
         raise InputError(
             f"{source.name} holds no measured particles to judge models on; give a fit, or meshes."
@@ -229,7 +249,7 @@ def _rows(names: Sequence[str] | None, wish: "Choices", weighted: bool) -> "tupl
     from regolith_studio.session.study_requests import CHOSEN, chosen_rows
     from regolith_studio.studies.loss_rows import PAPER_ROWS
 
-    with as_bad_use():
+    with usage_errors():
         return chosen_rows(tuple(names or (*PAPER_ROWS, *((CHOSEN,) if weighted else ()))), wish)
 
 
@@ -237,5 +257,118 @@ def _words(text: str) -> tuple[str, ...]:
     return tuple(word.strip() for word in text.split(",") if word.strip())
 
 
-for _command in (variations.faces, variations.tradeoff, variations.sensitivity):
-    app.command(_command.__name__)(_command)
+Counts = Annotated[str, typer.Option("--facets", help="Numbers of facets, such as 12,20,50.", metavar="LIST")]
+OverlapFactors = Annotated[
+    str,
+    typer.Option(
+        "--factors",
+        help="Factors on the weight of the overlap; the exact method takes conditions on and off instead.",
+        metavar="LIST",
+    ),
+]
+ChangeFactors = Annotated[
+    str, typer.Option("--factors", help="Factors on one weight at a time.", metavar="LIST")
+]
+
+
+@dataclass(frozen=True, kw_only=True)
+class VariedOptions:
+    """What the three studies take besides the values that vary."""
+
+    preset: Preset = ""
+    how: CoarseningOptions
+    box: BoxMetric = "exact"
+    reading: ReadingOptions
+    json: Json = False
+    jobs: Jobs = 1
+    resume: Resume = False
+    seed: Seed = 0
+
+    def run(
+        self, key: str, values: str, meshes: Sequence[Path], output: Path, n_facets: int = FACETS
+    ) -> None:
+        """Do the study of this key and leave the program with its exit code."""
+        from regolith_studio.cli.inputs import exit_code
+        from regolith_studio.jobs.study_jobs import study_coarsening
+        from regolith_studio.session.study_requests import varied_rows
+
+        check_box(self.box)
+        wish = self.how.choices(self.preset, n_facets=n_facets, seed=self.seed)
+        with usage_errors():
+            rows = varied_rows(key, wish, values)
+        loaded = self.reading.read(meshes)
+        order = wish.order
+        study = partial(study_coarsening, loaded.particles, order, self.jobs, rows=rows, box_metric=self.box)
+        conclude(f"{key}_study", study, output, self.json, self.resume)
+        raise typer.Exit(exit_code(meshes, loaded))
+
+
+@app.command("faces")
+@with_dataclass_options
+def faces(
+    *, meshes: Meshes, output: Folder, faces: Counts = "8,12,16,20,30,50", varied: VariedOptions
+) -> None:
+    """RMSRE of the descriptors against the number of facets."""
+    varied.run("faces", faces, meshes, output)
+
+
+@app.command("tradeoff")
+@with_dataclass_options
+def tradeoff(
+    *,
+    meshes: Meshes,
+    output: Folder,
+    facets: Facets = FACETS,
+    factors: OverlapFactors = "0,0.1,0.3,1,3,10,30",
+    varied: VariedOptions,
+) -> None:
+    """Overlap against descriptors: what one costs the other."""
+    varied.run("tradeoff", factors, meshes, output, facets)
+
+
+@app.command("sensitivity")
+@with_dataclass_options
+def sensitivity(
+    *,
+    meshes: Meshes,
+    output: Folder,
+    facets: Facets = FACETS,
+    factors: ChangeFactors = "0,4",
+    varied: VariedOptions,
+) -> None:
+    """What changing one weight of the loss changes in every descriptor."""
+    varied.run("sensitivity", factors, meshes, output, facets)
+
+
+def check_box(box: str) -> None:
+    """Refuse a box metric that there is not."""
+    from regolith_studio.descriptors.shape_cache import BOX_METRICS
+
+    if box not in BOX_METRICS:
+        raise typer.BadParameter(f"The box must be one of {', '.join(BOX_METRICS)}, got {box!r}.")
+
+
+def conclude(kind: str, study: Callable[..., "Steps"], folder: Path, json: bool, resume: bool = False) -> Any:
+    """Follow a study to its end, write its files, print its table (or the list of files).
+
+    Parameters
+    ----------
+    study
+        Makes the steps; is given the `answers` that go to disk as they come.
+    resume
+        Whether to go on with those that are there.
+    """
+    from regolith_studio.cli.terminal import print_json, print_table, run_with_progress
+    from regolith_studio.io.atomic import staged_folder
+    from regolith_studio.jobs.study_checkpoint import StudyCheckpoint
+    from regolith_studio.session.outputs.studies import STUDIES
+
+    with StudyCheckpoint(folder / "journal" / f"{kind}.sqlite", resume) as answers:
+        found = run_with_progress(study(answers=answers))
+        with staged_folder(folder) as stage:
+            files = [path.name for path in STUDIES[kind].write(found, stage)]
+    if json:
+        print_json({"folder": str(folder), "files": files})
+    else:
+        print_table(STUDIES[kind].table(found))
+    return found

@@ -18,7 +18,7 @@ _SILENCE = 30.0
 """Seconds between two lines of progress where there is no terminal."""
 
 
-def follow(steps: "Steps", logged: bool = False) -> Any:
+def run_with_progress(steps: "Steps", logged: bool = False) -> Any:
     """Drive a job to its result; on a terminal with a progress bar that disappears in the end.
 
     Parameters
@@ -43,7 +43,7 @@ def _with_lines(steps: "Steps", silence: float) -> Any:
             return end.value
         if isinstance(step, events.Progress) and time.monotonic() - said > silence:
             said = time.monotonic()
-            complain([f"{step.done:,} of {step.total:,}{': ' if step.message else ''}{step.message}"])
+            print_errors([f"{step.done:,} of {step.total:,}{': ' if step.message else ''}{step.message}"])
 
 
 def _with_bar(steps: "Steps") -> Any:
@@ -91,7 +91,7 @@ def print_table(table: "Table") -> None:
         typer.echo(row.rstrip())
 
 
-def complain(sentences: Iterable[str]) -> None:
+def print_errors(sentences: Iterable[str]) -> None:
     """One line each on stderr."""
     for sentence in sentences:
         typer.echo(sentence, err=True)

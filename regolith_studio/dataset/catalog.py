@@ -11,7 +11,7 @@ from regolith_studio.dataset.export import RECORD
 from regolith_studio.dataset.folder_io import DOCUMENT, dataset_hash, read_document
 from regolith_studio.dataset.schema import CoarseningRecordModel, DatasetDocument
 from regolith_studio.dataset.serialization import shape_of
-from regolith_studio.errors import DatasetError, RegolithError, reason_of
+from regolith_studio.errors import DatasetError, RegolithError, os_error_reason
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.io.json_text import parse_strict_json
 
@@ -181,7 +181,7 @@ def _record(path: Path, format: str) -> dict[str, Any]:
             raise DatasetError(f"{path} is larger than {MAX_RECORD_BYTES // 1_000_000} MB.")
         content = parse_strict_json(path.read_text(encoding="utf-8"), str(path))
     except OSError as error:
-        raise DatasetError(f"{path} cannot be read: {reason_of(error)}.") from error
+        raise DatasetError(f"{path} cannot be read: {os_error_reason(error)}.") from error
     if not isinstance(content, dict) or content.get("format") != format:
         raise DatasetError(f"{path} was not written by Regolith Studio.")
     return content

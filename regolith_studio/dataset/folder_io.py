@@ -7,7 +7,7 @@ from pathlib import Path
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.schema import SCHEMA_VERSION, DatasetDocument
 from regolith_studio.dataset.serialization import dataset_of, document_text, mesh_files, parsed_document
-from regolith_studio.errors import DatasetError, reason_of
+from regolith_studio.errors import DatasetError, os_error_reason
 from regolith_studio.io.atomic import recover_folder, replace_folder
 
 DOCUMENT, README = "dataset.json", "README.txt"
@@ -83,7 +83,7 @@ def _read(path: Path, largest: int) -> bytes:
             raise DatasetError(f"{path} is larger than {largest // 1_000_000} MB.")
         return path.read_bytes()
     except OSError as error:
-        raise DatasetError(f"{path} cannot be read: {reason_of(error)}.") from error
+        raise DatasetError(f"{path} cannot be read: {os_error_reason(error)}.") from error
 
 
 def write_dataset(folder: Path | str, dataset: Dataset, *, overwrite: bool = True) -> Path:

@@ -17,7 +17,7 @@ from regolith_studio.dataset.dataset import (
 )
 from regolith_studio.dataset.schema import FORMAT, SCHEMA_VERSION, DatasetDocument, RepresentativeRecord
 from regolith_studio.dataset.size_distributions import Weighting
-from regolith_studio.errors import DatasetError, FileError, RegolithError, of_the_entry
+from regolith_studio.errors import DatasetError, FileError, RegolithError, format_validation_error
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.particle import Source
@@ -108,7 +108,7 @@ def parsed_document(text: str, where: str) -> DatasetDocument:
         return DatasetDocument.model_validate_json(text)
     except ValidationError as error:
         raise DatasetError(
-            f"{where} breaks the schema: {of_the_entry(error.errors(include_url=False))}."
+            f"{where} breaks the schema: {format_validation_error(error.errors(include_url=False))}."
         ) from error
 
 

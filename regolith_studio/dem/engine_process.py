@@ -22,7 +22,7 @@ from regolith_studio.dem.engine import SimulationResult
 from regolith_studio.dem.engines import engine_named
 from regolith_studio.dem.run_io import save_snapshot
 from regolith_studio.dem.snapshot import Snapshot
-from regolith_studio.errors import EnvironmentProblem, RegolithError
+from regolith_studio.errors import MissingRequirement, RegolithError
 
 POLL_INTERVAL = 0.2
 """Seconds without a message after which ``None`` is yielded, so that the caller can cancel."""
@@ -42,14 +42,14 @@ def run_engine(
 
     Raises
     ------
-    EnvironmentProblem
+    MissingRequirement
         If the engine is not installed.
     EngineError
         If it crashed, diverged, or could not write.
     """
     engine = engine_named(key)
     if problem := engine.find().problem:
-        raise EnvironmentProblem(problem)
+        raise MissingRequirement(problem)
     child = _start((key, prepared, settings, folder))
     messages: queue.SimpleQueue[Any] = queue.SimpleQueue()
     reader = threading.Thread(

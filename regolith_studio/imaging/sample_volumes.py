@@ -20,7 +20,7 @@ def sample_file(kind: SampleVolume) -> Path:
 
     Raises
     ------
-    EnvironmentProblem
+    MissingRequirement
         If the installation lacks its samples.
     """
     return resource("samples", "ct", f"synthetic-{kind}.tif")
@@ -31,7 +31,7 @@ def sample_volume(kind: SampleVolume = "labels") -> Volume:
 
     Raises
     ------
-    EnvironmentProblem
+    MissingRequirement
         If the installation lacks its samples.
     """
     with tifffile.TiffFile(sample_file(kind)) as file:

@@ -17,7 +17,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from regolith_studio.errors import EnvironmentProblem
+from regolith_studio.errors import MissingRequirement
 from regolith_studio.imaging.volume import VolumeKind
 
 SLAB_VOXELS = 2**24
@@ -131,7 +131,7 @@ class Scratch:
 
         Raises
         ------
-        EnvironmentProblem
+        MissingRequirement
             If the disk has no room for them: a file that outgrows its disk ends the process.
         """
         slices_first = shape[::-1]
@@ -140,7 +140,7 @@ class Scratch:
         needed = math.prod(shape) * np.dtype(dtype).itemsize
         free = shutil.disk_usage(self._folder).free
         if needed > free:
-            raise EnvironmentProblem(
+            raise MissingRequirement(
                 f"{needed / 2**30:.3g} GiB of temporary files do not fit into {self._folder.parent}, "
                 f"which has {free / 2**30:.3g} GiB left."
             )

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from regolith_studio.errors import Cancelled, EnvironmentProblem
+from regolith_studio.errors import JobCancelled, MissingRequirement
 from regolith_studio.io.checkpoint import Checkpoint, CheckpointRecord
 from regolith_studio.jobs.events import Failed, Finished, Job, JobResult, Progress, Step, Stopped
 from regolith_studio.jobs.executor import Executor
@@ -150,9 +150,9 @@ def _records_of(
         case Failed():
             return (yield from _one_by_one(chunk, make_job, executor))
         case Stopped(reason) if reason:
-            raise EnvironmentProblem(reason)
+            raise MissingRequirement(reason)
         case _:
-            raise Cancelled("The work was stopped.")
+            raise JobCancelled("The work was stopped.")
 
 
 def _one_by_one(

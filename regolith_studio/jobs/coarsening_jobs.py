@@ -12,7 +12,7 @@ from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.coarsening.stopping_criteria import Trial, fewest_facets
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import LossWeights
-from regolith_studio.errors import Cancelled
+from regolith_studio.errors import JobCancelled
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.coefficients import ShCoefficients
@@ -159,7 +159,7 @@ def _particle_result(at: int, particle: Particle, result: JobResult) -> Coarsene
         case Failed(sentence):
             return CoarsenedParticle(particle.name, at, None, sentence, notes=particle.notes)
         case _:
-            raise Cancelled("The coarsening was stopped.")
+            raise JobCancelled("The coarsening was stopped.")
 
 
 @lru_cache(maxsize=4)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-from regolith_studio.errors import Cancelled, EnvironmentProblem, InputError, RegolithError
+from regolith_studio.errors import InputError, JobCancelled, MissingRequirement, RegolithError
 from regolith_studio.jobs.events import (
     Event,
     Failed,
@@ -162,7 +162,7 @@ class ExecutorSettings:
 
         Raises
         ------
-        InputError, EnvironmentProblem
+        InputError, MissingRequirement
             As :class:`~regolith_studio.jobs.runners.dask_cluster.DaskRunner`.
         """
         if self.runner == "processes":
@@ -241,7 +241,7 @@ def value_of(result: JobResult) -> Any:
     ------
     RegolithError
         If it failed.
-    Cancelled
+    JobCancelled
         If it was stopped.
     """
     match result:
@@ -250,9 +250,9 @@ def value_of(result: JobResult) -> Any:
         case Failed(sentence):
             raise RegolithError(sentence)
         case Stopped(reason) if reason:
-            raise EnvironmentProblem(reason)
+            raise MissingRequirement(reason)
         case _:
-            raise Cancelled("The work was stopped.")
+            raise JobCancelled("The work was stopped.")
 
 
 def _put_result(answers: "queue.SimpleQueue[tuple[int, JobResult]]", number: int) -> Callable[[Event], None]:

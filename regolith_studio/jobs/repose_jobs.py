@@ -27,7 +27,7 @@ from regolith_studio.dem.run_io import (
     snapshot_files,
 )
 from regolith_studio.dem.snapshot import ParticleState, Snapshot
-from regolith_studio.errors import EnvironmentProblem, FileError, InputError, RegolithError
+from regolith_studio.errors import FileError, InputError, MissingRequirement, RegolithError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
 from regolith_studio.jobs.dataset_jobs import DatasetOptions, build_dataset_folder
@@ -101,7 +101,7 @@ def simulate_prepared(prepared: PreparedCase, folder: Path, request: ReposeReque
     engine = engine_named(request.engine)
     settings = engine.Settings() if request.settings is None else request.settings
     if problem := engine.find().problem:
-        raise EnvironmentProblem(problem)
+        raise MissingRequirement(problem)
     claim_folder(folder, request.overwrite)
     save_shapes(folder, prepared)
     record = _RunWriter(prepared, engine, settings, folder)

@@ -11,7 +11,7 @@ from typing import IO, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from regolith_studio.errors import FileError, reason_of
+from regolith_studio.errors import FileError, os_error_reason
 from regolith_studio.readers.error_messages import message_about
 from regolith_studio.readers.sandbox.parent import checked_size
 
@@ -40,7 +40,7 @@ def read_bytes(path: Path, largest: int | None = None) -> bytes:
     try:
         return path.read_bytes()
     except OSError as error:
-        raise FileError(message_about(path, f"cannot be read: {reason_of(error)}.")) from None
+        raise FileError(message_about(path, f"cannot be read: {os_error_reason(error)}.")) from None
 
 
 def read_npz(path: Path) -> tuple[dict[str, NDArray[Any]], str]:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 
-from regolith_studio.errors import EnvironmentProblem, FileError, GeometryError
+from regolith_studio.errors import FileError, GeometryError, MissingRequirement
 from regolith_studio.geometry import repair as mending
 from regolith_studio.geometry.merge_vertices import merged_vertices
 from regolith_studio.geometry.mesh import Mesh
@@ -317,7 +317,7 @@ def sample_particles() -> list[Particle]:
 def _read() -> tuple[Particle, ...]:
     try:
         folder = resource("samples", "particles")
-    except EnvironmentProblem:
+    except MissingRequirement:
         return ()
     files = sorted(folder.glob("*.stl"))
     if not files:

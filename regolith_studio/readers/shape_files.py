@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
-from regolith_studio.errors import FileError, InputError, of_the_entry
+from regolith_studio.errors import FileError, InputError, format_validation_error
 from regolith_studio.harmonics import io as fit_io
 from regolith_studio.harmonics.coefficients import CONVENTION, ShCoefficients
 from regolith_studio.harmonics.fit import HarmonicFit
@@ -257,5 +257,5 @@ def check_document(
     try:
         kind.model_validate(document)
     except ValidationError as error:
-        reason = of_the_entry(error.errors(include_url=False))
+        reason = format_validation_error(error.errors(include_url=False))
         raise FileError(message_about(path, f"is a broken {called}: {reason}.")) from None

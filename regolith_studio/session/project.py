@@ -7,7 +7,7 @@ from typing import Any, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from regolith_studio.errors import FileError, of_the_entry
+from regolith_studio.errors import FileError, format_validation_error
 from regolith_studio.io.atomic import write_bytes
 from regolith_studio.readers.file_bytes import read_bytes
 from regolith_studio.session.recipe import LARGEST, SAMPLE, Recipe
@@ -92,7 +92,7 @@ def read_project(path: Path) -> Project:
     try:
         return Project.model_validate_json(read_bytes(path, LARGEST))
     except ValidationError as error:
-        reason = of_the_entry(error.errors(include_url=False))
+        reason = format_validation_error(error.errors(include_url=False))
         raise FileError(f"{path} is not a project of this program: {reason}.") from error
 
 

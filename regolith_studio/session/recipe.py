@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 
 from regolith_studio.coarsening.coarsen import DEFAULT_METHOD, DEFAULT_PRESET
 from regolith_studio.coarsening.weights import LossWeights
-from regolith_studio.errors import FileError, InputError, of_the_entry
+from regolith_studio.errors import FileError, InputError, format_validation_error
 from regolith_studio.harmonics.fit import DEFAULT_FIT_OPTIONS
 from regolith_studio.readers.file_bytes import read_bytes
 from regolith_studio.session.choices import L_MAX_LIMIT, LEVEL_LIMITS, Choices, Scalar
@@ -352,9 +352,8 @@ def read_recipe(path: Path) -> Recipe:
     try:
         return Recipe.model_validate_json(read_bytes(path, LARGEST))
     except ValidationError as error:
-        raise FileError(
-            f"{path} is not a recipe of this program: {of_the_entry(error.errors(include_url=False))}."
-        ) from error
+        reason = format_validation_error(error.errors(include_url=False))
+        raise FileError(f"{path} is not a recipe of this program: {reason}.") from error
 
 
 def recipe_schema() -> dict[str, Any]:
@@ -376,4 +375,6 @@ def recipe_of(**entries: Any) -> Recipe:
     try:
         return Recipe(**entries)
     except ValidationError as error:
-        raise InputError(f"This is not a recipe: {of_the_entry(error.errors(include_url=False))}.") from error
+        raise InputError(
+            f"This is not a recipe: {format_validation_error(error.errors(include_url=False))}."
+        ) from error

@@ -15,7 +15,7 @@ from typing import Annotated, Self
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from regolith_studio.errors import FileError, InputError, of_the_entry, reason_of
+from regolith_studio.errors import FileError, InputError, format_validation_error, os_error_reason
 from regolith_studio.resources import resource
 from regolith_studio.shape_models.models.log_field import LogField, LogFieldModel, LogFieldSettings
 from regolith_studio.shape_models.sample import Sample
@@ -75,7 +75,7 @@ class MaterialCard(BaseModel):
             )
         except ValidationError as error:
             raise InputError(
-                f"The sample makes no card: {of_the_entry(error.errors(include_url=False))}."
+                f"The sample makes no card: {format_validation_error(error.errors(include_url=False))}."
             ) from error
 
     def model(self, l_max: int = 10) -> LogField:
@@ -117,7 +117,7 @@ def read_card(path: Path) -> MaterialCard:
     try:
         return card_from(path.read_bytes(), path.name)
     except OSError as error:
-        raise FileError(f"{path.name} cannot be read: {reason_of(error)}.") from error
+        raise FileError(f"{path.name} cannot be read: {os_error_reason(error)}.") from error
 
 
 def card_from(content: bytes, name: str) -> MaterialCard:
@@ -134,7 +134,7 @@ def card_from(content: bytes, name: str) -> MaterialCard:
         return MaterialCard.model_validate_json(content)
     except ValidationError as error:
         raise FileError(
-            f"{name} is no material card: {of_the_entry(error.errors(include_url=False))}."
+            f"{name} is no material card: {format_validation_error(error.errors(include_url=False))}."
         ) from error
 
 

@@ -16,7 +16,7 @@ def icon(name: str, colour: str, faint: str | None = None) -> QIcon:
 
     Raises
     ------
-    EnvironmentProblem
+    MissingRequirement
         If there is no such icon.
     """
     made = QIcon()
@@ -32,7 +32,7 @@ def pixmap(name: str, colour: str, size: int) -> QPixmap:
 
     Raises
     ------
-    EnvironmentProblem
+    MissingRequirement
         If there is no such icon.
     """
     coloured, drawing = _drawing(name, size)

@@ -12,7 +12,7 @@ from PySide6.QtGui import QColor, QFont, QIcon, QPainter, QPixmap, QSurfaceForma
 from PySide6.QtWidgets import QApplication, QLabel
 
 from regolith_studio import __version__
-from regolith_studio.errors import EnvironmentProblem
+from regolith_studio.errors import MissingRequirement
 from regolith_studio.resources import resource
 from regolith_studio.ui.icons import pixmap
 from regolith_studio.ui.views.factory import surface_format
@@ -41,7 +41,7 @@ def run(paths: Sequence[str | Path] = (), unit: str | None = None) -> int:
 
     Raises
     ------
-    EnvironmentProblem
+    MissingRequirement
         If there is no display.
     """
     check_display()
@@ -77,7 +77,7 @@ def check_display(environment: Mapping[str, str] | None = None, platform: str = 
 
     Raises
     ------
-    EnvironmentProblem
+    MissingRequirement
         If there is no display.
     """
     given = os.environ if environment is None else environment
@@ -86,7 +86,7 @@ def check_display(environment: Mapping[str, str] | None = None, platform: str = 
     if given.get("QT_QPA_PLATFORM", "").split(":")[0] in _WITHOUT_DISPLAY:
         return
     if not (given.get("DISPLAY") or given.get("WAYLAND_DISPLAY")):
-        raise EnvironmentProblem(
+        raise MissingRequirement(
             "There is no display to open a window on (DISPLAY and WAYLAND_DISPLAY are not set); "
             "the commands work without one, for example: regolith-studio demo -o DIR"
         )

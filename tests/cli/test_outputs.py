@@ -68,7 +68,7 @@ def test_that_a_full_disk_is_a_sentence_of_the_system(
     def full(*_: object, **__: object) -> Steps:
         raise OSError(errno.ENOSPC, "No space left on device", "out/a.stl")
 
-    sentence = "The system does not let the program go on with out/a.stl (the disk is full)."
+    sentence = "Cannot access out/a.stl: the disk is full."
     monkeypatch.setattr("regolith_studio.cli.commands.app", full)
     assert run(["describe"]) == 1
     assert capsys.readouterr().err == f"{sentence}\n"

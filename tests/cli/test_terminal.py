@@ -15,10 +15,10 @@ def story() -> Steps:
 def test_that_a_log_gets_a_line_now_and_then(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    assert terminal.follow(story()) == 7
+    assert terminal.run_with_progress(story()) == 7
     assert capsys.readouterr().err == ""
     monkeypatch.setattr(terminal, "_SILENCE", -1.0)
-    assert terminal.follow(story()) == 7
+    assert terminal.run_with_progress(story()) == 7
     assert capsys.readouterr().err == ""
-    assert terminal.follow(story(), logged=True) == 7
+    assert terminal.run_with_progress(story(), logged=True) == 7
     assert capsys.readouterr().err == "1,500 of 2,000: 5 a second, 1 min 40 s left\n"

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from regolith_studio.errors import EnvironmentProblem
+from regolith_studio.errors import MissingRequirement
 from regolith_studio.imaging.slabs import Scratch, slab_ranges, thick_slabs
 
 
@@ -63,6 +63,6 @@ def test_that_a_full_disk_is_one_sentence_and_no_crash(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(shutil, "disk_usage", lambda _: SimpleNamespace(free=2**20))
-    with Scratch(tmp_path) as scratch, pytest.raises(EnvironmentProblem, match="do not fit"):
+    with Scratch(tmp_path) as scratch, pytest.raises(MissingRequirement, match="do not fit"):
         scratch.zeros((1024, 1024, 2), np.uint8)
     assert not list(tmp_path.iterdir())

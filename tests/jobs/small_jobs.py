@@ -4,7 +4,7 @@ import os
 import time
 from pathlib import Path
 
-from regolith_studio.errors import Cancelled, InputError
+from regolith_studio.errors import InputError, JobCancelled
 from regolith_studio.jobs.events import Progress, Started, Steps
 
 
@@ -32,7 +32,7 @@ def stumble() -> Steps:
 
 def give_up() -> Steps:
     yield Started("Giving up")
-    raise Cancelled("enough")
+    raise JobCancelled("enough")
 
 
 def die() -> Steps:

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from regolith_studio.errors import EnvironmentProblem, InputError
+from regolith_studio.errors import InputError, MissingRequirement
 from regolith_studio.jobs.events import Progress
 from regolith_studio.jobs.executor import Executor
 from regolith_studio.jobs.runners import dask_cluster
@@ -30,7 +30,7 @@ ROOT = Path(__file__).resolve().parents[2]
 def wish(n: int = 12) -> Recipe:
     return recipe_of(
         inputs=[],
-        population={"card": "ma165", "n": n, "l_max": 5},
+        population={"sources": ["ma165"], "n": n, "l_max": 5},
         target="particle",
         method="quadric",
         level=2,
@@ -129,7 +129,7 @@ def test_that_a_cluster_that_goes_away_is_one_sentence_and_the_run_can_go_on(
 ) -> None:
     with cluster() as there, closing(Executor.on_cluster(there.address)) as executor:
         steps = run_recipe(wish(), tmp_path, tmp_path / "out", executor, chunk=2)
-        with pytest.raises(EnvironmentProblem, match="--resume"):  # noqa: PT012
+        with pytest.raises(MissingRequirement, match="--resume"):  # noqa: PT012
             for step in steps:
                 if isinstance(step, Progress) and step.done >= 4:
                     there.scheduler.kill()
@@ -170,7 +170,7 @@ def test_that_an_encrypted_cluster_works_and_lets_no_stranger_in(
     with cluster("tls", *options) as there:
         with closing(Executor.on_cluster(there.address, tls=files)) as executor:
             assert done(tmp_path / "out", executor) == alone
-        with pytest.raises(EnvironmentProblem, match="No cluster answers"):
+        with pytest.raises(MissingRequirement, match="No cluster answers"):
             dask_cluster.DaskRunner(there.address, tls=strangers)
 
 
@@ -193,11 +193,11 @@ def test_that_an_encrypted_address_needs_files_that_are_there(tmp_path: Path) ->
 
 def test_that_a_silent_address_is_one_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(dask_cluster, "ANSWER_SECONDS", 0.3)
-    with pytest.raises(EnvironmentProblem, match="No cluster answers at tcp://127"):
+    with pytest.raises(MissingRequirement, match="No cluster answers at tcp://127"):
         dask_cluster.DaskRunner(f"tcp://127.0.0.1:{free_port()}")
 
 
 def test_that_without_dask_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "distributed", None)
-    with pytest.raises(EnvironmentProblem, match=r"regolith-studio\[cluster\]"):
+    with pytest.raises(MissingRequirement, match=r"regolith-studio\[cluster\]"):
         dask_cluster.DaskRunner()

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from regolith_studio.errors import EnvironmentProblem, InputError
+from regolith_studio.errors import InputError, MissingRequirement
 from regolith_studio.jobs.runners import dask_cluster
 from regolith_studio.jobs.runners.dask_cluster import SchedulerAddress
 
@@ -78,14 +78,14 @@ def test_that_a_greeting_of_a_few_hundred_bytes_is_taken_for_a_scheduler() -> No
 
 @pytest.mark.parametrize("greeting", [b"HTTP/1.1 400 Bad Request\r\n\r\n", b"", b"SSH"])
 def test_that_another_program_at_the_port_is_told_from_a_scheduler(greeting: bytes) -> None:
-    with listener(greeting) as port, pytest.raises(EnvironmentProblem, match="is no Dask scheduler"):
+    with listener(greeting) as port, pytest.raises(MissingRequirement, match="is no Dask scheduler"):
         SchedulerAddress("tcp", "127.0.0.1", port).check()
 
 
 def test_that_a_closed_port_and_an_unknown_machine_are_told_apart() -> None:
     with socket.create_server(("127.0.0.1", 0)) as server:
         port = server.getsockname()[1]
-    with pytest.raises(EnvironmentProblem, match="nothing listens on port"):
+    with pytest.raises(MissingRequirement, match="nothing listens on port"):
         SchedulerAddress("tcp", "127.0.0.1", port).check()
-    with pytest.raises(EnvironmentProblem, match="no machine called no-such-machine"):
+    with pytest.raises(MissingRequirement, match="no machine called no-such-machine"):
         SchedulerAddress("tcp", "no-such-machine.invalid", 8786).check()

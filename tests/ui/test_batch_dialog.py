@@ -21,7 +21,7 @@ from regolith_studio.ui.wiring import Wiring
 
 WISH = recipe_of(
     inputs=[],
-    population={"card": "ma165", "n": 9, "l_max": 5},
+    population={"sources": ["ma165"], "n": 9, "l_max": 5},
     target="particle",
     method="quadric",
     level=2,

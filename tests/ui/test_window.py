@@ -10,7 +10,7 @@ from PySide6.QtGui import QDropEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QLineEdit, QSlider, QWidget
 
-from regolith_studio.errors import EnvironmentProblem, InputError
+from regolith_studio.errors import InputError, MissingRequirement
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.resources import resource
 from regolith_studio.ui.app import make_excepthook, open_window
@@ -307,5 +307,5 @@ def test_that_no_display_is_said_in_one_sentence():
     check_display({"DISPLAY": ":0"}, "linux")
     check_display({"QT_QPA_PLATFORM": "offscreen"}, "linux")
     check_display({}, "darwin")
-    with pytest.raises(EnvironmentProblem, match=r"no display .* demo"):
+    with pytest.raises(MissingRequirement, match=r"no display .* demo"):
         check_display({}, "linux")

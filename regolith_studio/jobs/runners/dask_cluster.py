@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, Self
 from urllib.parse import urlsplit
 
-from regolith_studio.errors import EnvironmentProblem, InputError
+from regolith_studio.errors import InputError, MissingRequirement
 from regolith_studio.jobs.events import Event, Failed, Job, JobResult, Listener, Stopped
 from regolith_studio.jobs.runners.process_pool import cores, memory_limit
 from regolith_studio.jobs.runners.run_job import run_job
@@ -70,7 +70,7 @@ class SchedulerAddress:
 
         Raises
         ------
-        EnvironmentProblem
+        MissingRequirement
             If nothing answers, or something else does.
         """
         deadline = time.monotonic() + ANSWER_SECONDS
@@ -84,18 +84,18 @@ class SchedulerAddress:
             try:
                 return socket.create_connection((self.host, self.port), max(0.1, deadline - time.monotonic()))
             except socket.gaierror as error:
-                raise EnvironmentProblem(
+                raise MissingRequirement(
                     f"No cluster answers at {self}: there is no machine called {self.host}."
                 ) from error
             except ConnectionRefusedError as error:  # it may be about to start
                 if time.monotonic() + 0.2 > deadline:
-                    raise EnvironmentProblem(
+                    raise MissingRequirement(
                         f"No cluster answers at {self}: the machine is there, but nothing listens on port "
                         f"{self.port}."
                     ) from error
                 time.sleep(0.2)
             except OSError as error:
-                raise EnvironmentProblem(
+                raise MissingRequirement(
                     f"No cluster answers at {self} ({error.strerror or error})."
                 ) from error
 
@@ -106,7 +106,7 @@ class SchedulerAddress:
         except OSError:
             greeting = b""
         if len(greeting) < 8 or not 0 < int.from_bytes(greeting, "little") < MAX_GREETING:
-            raise EnvironmentProblem(
+            raise MissingRequirement(
                 f"What answers at {self} is no Dask scheduler; take the scheduler's port (usually 8786), "
                 "not of its dashboard (8787) or of a worker, and tls:// where it is encrypted."
             )
@@ -189,7 +189,7 @@ class DaskRunner:
 
     Raises
     ------
-    EnvironmentProblem
+    MissingRequirement
         If Dask is not installed, nothing answers, or the workers run other versions of what the numbers
         come from.
     InputError
@@ -227,7 +227,7 @@ class DaskRunner:
 
     def submit(self, job: Job, listener: Listener, lane: str = "") -> _DaskHandle:  # noqa: ARG002
         if self._client.status != "running":
-            raise EnvironmentProblem(self._lost_connection())
+            raise MissingRequirement(self._lost_connection())
         handle = _DaskHandle(listener)
         with self._lock:
             self._open.add(handle)
@@ -272,14 +272,14 @@ class DaskRunner:
         try:
             self._client.wait_for_workers(1, timeout=WORKER_SECONDS)
         except TimeoutError as error:
-            raise EnvironmentProblem(
+            raise MissingRequirement(
                 f"The scheduler at {self.address} has no worker; start one with: dask worker {self.address}"
             ) from error
         mine = software_versions()
         for worker, theirs in self._client.run(software_versions).items():
             for package, version in mine.items():
                 if theirs.get(package) != version:
-                    raise EnvironmentProblem(
+                    raise MissingRequirement(
                         f"The worker {worker} has {package} {theirs.get(package, 'not')} and this program "
                         f"{version}: the results would not be the same bytes."
                     )
@@ -323,11 +323,11 @@ def _connect(place: Any, tls: TlsFiles | None) -> Any:
     try:
         return distributed.Client(place, security=security, timeout=CONNECT_SECONDS, set_as_default=False)
     except (OSError, TimeoutError, ValueError, TypeError, MemoryError) as error:
-        raise EnvironmentProblem(f"No cluster answers at {place} ({error}).") from error
+        raise MissingRequirement(f"No cluster answers at {place} ({error}).") from error
 
 
 def _distributed() -> Any:
     try:
         return import_module("distributed")
     except ImportError as error:
-        raise EnvironmentProblem(NEEDED) from error
+        raise MissingRequirement(NEEDED) from error

@@ -3,7 +3,7 @@
 import traceback
 from collections.abc import Callable, Generator
 
-from regolith_studio.errors import Cancelled, RegolithError, of_the_system
+from regolith_studio.errors import JobCancelled, RegolithError, format_os_error
 from regolith_studio.jobs.events import Failed, Finished, Job, JobResult, Listener, Step, Stopped
 
 
@@ -34,7 +34,7 @@ def iterate_job(job: Job) -> Generator[Step, None, JobResult]:
     """Iterate over the steps of `job`; the generator returns the result, whatever the job raised."""
     try:
         return Finished((yield from job.steps()))
-    except Cancelled:
+    except JobCancelled:
         return Stopped()
     except Exception as error:  # noqa: BLE001  whatever a job raises must reach its listener
         return failure(error)
@@ -48,5 +48,5 @@ def failure(error: BaseException) -> Failed:
     if isinstance(error, MemoryError):
         return Failed("The work needs more memory than this machine has.", details)
     if isinstance(error, OSError) and error.errno is not None:
-        return Failed(of_the_system(error), details)
+        return Failed(format_os_error(error), details)
     return Failed(f"The program made a mistake ({type(error).__name__}: {error}).", details)

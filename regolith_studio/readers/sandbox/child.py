@@ -13,7 +13,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from regolith_studio.errors import RegolithError, reason_of
+from regolith_studio.errors import RegolithError, os_error_reason
 from regolith_studio.readers.error_messages import message_about
 from regolith_studio.readers.formats import MESH_FORMATS
 from regolith_studio.readers.sandbox import tasks, volume_tasks
@@ -45,7 +45,7 @@ def answer(request: dict[str, Any]) -> Message:
     except MemoryError:
         return Message({"status": "memory"})
     except OSError as error:
-        sentence = message_about(path, f"cannot be opened: {reason_of(error)}.")
+        sentence = message_about(path, f"cannot be opened: {os_error_reason(error)}.")
         return Message({"status": "refused", "sentence": sentence})
     except Exception as error:  # noqa: BLE001 (whatever a parser trips over is the file's fault)
         sentence = message_about(path, "is damaged in a way that its reader does not know; export it again.")

@@ -11,7 +11,7 @@ import threading
 from pathlib import Path
 from typing import Any
 
-from regolith_studio.errors import EnvironmentProblem, FileError, reason_of
+from regolith_studio.errors import FileError, MissingRequirement, os_error_reason
 from regolith_studio.readers.error_messages import message_about
 from regolith_studio.readers.sandbox.messages import Message, receive, send
 
@@ -171,7 +171,7 @@ class Sandbox:
         if not self._ready:
             if self._exchange(process, None, START_SECONDS).header["status"] != "ready":
                 self.close()
-                raise EnvironmentProblem(
+                raise MissingRequirement(
                     f"The program's reading process does not start with {sys.executable}."
                 )
             self._ready = True
@@ -213,7 +213,9 @@ def checked_size(path: Path, largest: int | None = MAX_FILE_BYTES) -> int:
     try:
         status = path.stat()
     except (OSError, ValueError) as error:
-        reason = reason_of(error) if isinstance(error, OSError) else "its name cannot be the name of a file"
+        reason = (
+            os_error_reason(error) if isinstance(error, OSError) else "its name cannot be the name of a file"
+        )
         raise FileError(message_about(path, f"cannot be opened: {reason}.")) from None
     if stat.S_ISDIR(status.st_mode):
         raise FileError(message_about(path, "is a folder, not a file."))

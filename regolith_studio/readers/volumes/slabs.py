@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from regolith_studio.errors import FileError, reason_of
+from regolith_studio.errors import FileError, os_error_reason
 from regolith_studio.readers.error_messages import message_about
 from regolith_studio.readers.sandbox.parent import (
     BASE_SECONDS,
@@ -107,7 +107,9 @@ class SlabReader:
                 return self.plain.read(z0, z1)
             except (OSError, FileError) as error:
                 reason = (
-                    str(error) if isinstance(error, FileError) else f"cannot be read: {reason_of(error)}."
+                    str(error)
+                    if isinstance(error, FileError)
+                    else f"cannot be read: {os_error_reason(error)}."
                 )
                 raise FileError(message_about(self.path, reason)) from None
         size = (z1 - z0) * self.header.slice_bytes

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from regolith_studio.dataset.streaming import stored_shape
-from regolith_studio.errors import Cancelled
+from regolith_studio.errors import JobCancelled
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.fit import DEFAULT_FIT_OPTIONS, FitOptions, HarmonicFit
 from regolith_studio.harmonics.io import fits_document
@@ -75,7 +75,7 @@ class _Entry:
                 self.failures.append({"stage": stage, "reason": sentence})
                 return None
             case _:
-                raise Cancelled("The work was stopped.")
+                raise JobCancelled("The work was stopped.")
 
 
 def process_particles(items: Sequence[tuple[int, BatchInput]], wish: ParticleTask) -> Steps:

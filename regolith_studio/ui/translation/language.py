@@ -44,7 +44,7 @@ def translation_file(language: str) -> Path:
 
     Raises
     ------
-    EnvironmentProblem
+    MissingRequirement
         If there is none.
     """
     return resource("translations", f"{language}.ts")

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from regolith_studio.errors import EnvironmentProblem
+from regolith_studio.errors import MissingRequirement
 
 if TYPE_CHECKING:
     from regolith_studio.coarsening.result import CoarseningResult
@@ -24,7 +24,7 @@ def draw_three_views(
 
     Raises
     ------
-    EnvironmentProblem
+    MissingRequirement
         If this machine cannot draw.
     """
     from regolith_studio.harmonics.surface import reconstruct
@@ -33,10 +33,10 @@ def draw_three_views(
     if coarse is None:
         raise ValueError("there is no polyhedron to draw")
     fit = reconstruct(choices.fit_options.fit(particle.mesh, choices.l_max), choices.l_max, choices.level)
-    draw_apart(_draw, (particle.mesh, fit, coarse, choices.l_max), path)
+    draw_in_process(_draw, (particle.mesh, fit, coarse, choices.l_max), path)
 
 
-def draw_apart(draw: Callable[..., None], arguments: tuple[Any, ...], path: Path) -> None:
+def draw_in_process(draw: Callable[..., None], arguments: tuple[Any, ...], path: Path) -> None:
     """Call ``draw(*arguments, stage)`` in a fresh process; what it wrote to `stage` becomes `path`.
 
     Parameters
@@ -46,7 +46,7 @@ def draw_apart(draw: Callable[..., None], arguments: tuple[Any, ...], path: Path
 
     Raises
     ------
-    EnvironmentProblem
+    MissingRequirement
         If this machine cannot draw.
     """
     stage = path.with_name(f".{path.stem}-drawn{path.suffix}")
@@ -58,7 +58,7 @@ def draw_apart(draw: Callable[..., None], arguments: tuple[Any, ...], path: Path
         child.join()
     if child.exitcode != 0 or not stage.is_file():
         stage.unlink(missing_ok=True)
-        raise EnvironmentProblem("This machine cannot draw in three dimensions; `check` tells more.")
+        raise MissingRequirement("This machine cannot draw in three dimensions; `check` tells more.")
     stage.replace(path)
 
 

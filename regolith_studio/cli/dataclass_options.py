@@ -1,7 +1,7 @@
 """Options that belong together, taken by a command as one argument.
 
-A group is a frozen dataclass whose fields are annotated as options, or are groups themselves. A command
-with :func:`grouped` above it has each of those fields as an option of its own, where the group stands.
+A group is a frozen dataclass whose fields are annotated as options, or are groups themselves. A command with
+:func:`with_dataclass_options` above it has each of those fields as an option, in the group's place.
 """
 
 import functools
@@ -11,7 +11,7 @@ from dataclasses import MISSING, fields, is_dataclass
 from typing import Any, get_type_hints
 
 
-def grouped(command: Callable[..., None]) -> Callable[..., None]:
+def with_dataclass_options(command: Callable[..., None]) -> Callable[..., None]:
     """The command as typer is to see it: with the options of its groups in their places.
 
     Raises

@@ -8,7 +8,7 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
-from regolith_studio.cli.grouping import grouped
+from regolith_studio.cli.dataclass_options import with_dataclass_options
 
 Number = Annotated[int, typer.Option("--number", help="How many.")]
 Unit = Annotated[str, typer.Option("--unit", help="Of lengths.")]
@@ -33,7 +33,7 @@ def run(command, *words: str):
     return CliRunner().invoke(app, list(words))
 
 
-@grouped
+@with_dataclass_options
 def measure(*, file: str, work: Work, loud: bool = False) -> None:
     """Measure a file."""
     reading = work.reading
@@ -64,7 +64,7 @@ def test_that_an_option_of_a_group_without_a_default_is_required():
     class Sizes:
         number: Number
 
-    @grouped
+    @with_dataclass_options
     def draw(*, sizes: Sizes) -> None:
         typer.echo(sizes.number)
 
@@ -82,4 +82,4 @@ def test_that_two_options_of_one_name_are_a_mistake_of_the_programmer():
     def twice(*, work: Work, unit: Unit = "um") -> None: ...
 
     with pytest.raises(ValueError, match="duplicate parameter name: 'unit'"):
-        grouped(twice)
+        with_dataclass_options(twice)

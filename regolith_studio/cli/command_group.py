@@ -6,7 +6,7 @@ from typing import Any
 from typer.core import TyperGroup
 
 
-class WholeHelp(TyperGroup):
+class CommandGroup(TyperGroup):
     """A group that shows the first paragraph of each command's help whole."""
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
