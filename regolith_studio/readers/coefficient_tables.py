@@ -22,7 +22,7 @@ TableConvention = Literal["auto", "complex", "shtools-4pi", "shtools-ortho"]
 _HEADER_LINES = 2
 """SHTOOLS' files may begin with two."""
 _GUESSED = (
-    "Taken for a table of SHTOOLS in its usual normalisation (4 pi), since commas separate its columns."
+    "Interpreted as a table of SHTOOLS in its usual normalisation (4 pi), since commas separate its columns."
 )
 
 
@@ -48,7 +48,7 @@ def read_coefficients(
     Parameters
     ----------
     path
-        Text with four columns; more are passed over (SHTOOLS adds errors).
+        Text with four columns; more are ignored (SHTOOLS adds errors).
     unit
         Unit of the radius.
     convention
@@ -118,14 +118,14 @@ def _as_predicate(sentence: str) -> str:
     """What the tables' own checks say, behind the file's name."""
     if sentence.startswith(("has ", "does ", "cannot ")):
         return sentence
-    return f"is no proper table of coefficients: {sentence[0].lower()}{sentence[1:]}"
+    return f"is not a valid table of coefficients: {sentence[0].lower()}{sentence[1:]}"
 
 
 TABLE_SUFFIXES = (".anm", ".sh", ".shc")
 """What is a table of coefficients wherever it lies."""
 
 TEXT_SUFFIXES = (".txt", ".dat", ".tab", ".csv")
-"""What may be one where it is named itself; in a folder it is passed over."""
+"""What may be one where it is named itself; in a folder it is ignored."""
 
 _FINE_DEGREE = 16
 """Above it 2,562 vertices would not show what the coefficients hold."""

@@ -61,7 +61,7 @@ def read_npz(path: Path) -> tuple[dict[str, NDArray[Any]], str]:
         raise FileError(message_about(path, "needs more memory than there is.")) from None
     except _BROKEN:
         raise FileError(
-            message_about(path, "is no NPZ archive of arrays, or is damaged; save it again.")
+            message_about(path, "is not an NPZ archive of arrays, or is damaged; save it again.")
         ) from None
     return arrays, hashlib.sha256(packed).hexdigest()
 
@@ -84,7 +84,7 @@ def _arrays(archive: zipfile.ZipFile) -> dict[str, NDArray[Any]]:
 
 
 def _array(stream: IO[bytes], size: int) -> NDArray[Any]:
-    """One array whose header promises exactly as many bytes as there are."""
+    """One array whose header declares exactly as many bytes as there are."""
     version = np.lib.format.read_magic(stream)
     if version not in ((1, 0), (2, 0)):
         raise FileError(f"holds an array of format {version[0]}.{version[1]}; 1.0 and 2.0 are read.")
@@ -94,7 +94,7 @@ def _array(stream: IO[bytes], size: int) -> NDArray[Any]:
         raise FileError(f"holds an array of {dtype}, not of plain numbers or text.")
     promised = prod(shape) * dtype.itemsize
     if promised > size or min(shape, default=0) < 0:
-        raise FileError(f"promises an array of {promised} bytes and holds {size}.")
+        raise FileError(f"declares an array of {promised} bytes and holds {size}.")
     data = stream.read(promised)
     if len(data) != promised:
         raise FileError(f"ends in the middle of an array of {promised} bytes.")

@@ -42,7 +42,7 @@ def number_rows(
     """The rows of a text of numbers with at most `skip_headers` lines of words before them.
 
     Where `with_units` says so, a line of units may follow the header.
-    Up to `numeric_headers` first rows of numbers may have another number of columns; they are passed over.
+    Up to `numeric_headers` first rows of numbers may have another number of columns; they are ignored.
 
     Spaces, tabs, commas and semicolons separate; where semicolons do, a comma is a decimal comma.
     Lines that begin with ``#``, ``%``, ``!`` or ``//`` are comments, the last of which may name the columns.
@@ -55,7 +55,7 @@ def number_rows(
     if not data:
         raise FileError("is empty: it has no bytes at all.")
     if b"\0" in data[:4096]:
-        raise FileError("is no text of numbers: it holds zero bytes.")
+        raise FileError("is not a text of numbers: it holds zero bytes.")
     header: bytes = b""
     below: bytes = b""
     comment: bytes = b""
@@ -76,7 +76,7 @@ def number_rows(
                 continue
             header = line
             if headers > skip_headers:
-                raise FileError(f"is no table of numbers: line {number:,} begins with “{_shown(line)}”.")
+                raise FileError(f"is not a table of numbers: line {number:,} begins with “{_shown(line)}”.")
             continue
         if not words:
             decimal_comma = b";" in line and b"," in line
@@ -124,7 +124,7 @@ def _numbers(words: list[list[bytes]], data: bytes) -> NDArray[np.float64]:
                     f"has “{_shown(word)}” where a number belongs, in row {row + 1:,}, column {column}"
                     f"{' (write decimal points, not commas)' if b',' in data else ''}."
                 ) from None
-    raise FileError("is no table of numbers.")
+    raise FileError("is not a table of numbers.")
 
 
 def _names(line: bytes, width: int) -> tuple[str, ...]:

@@ -197,7 +197,7 @@ def _mesh_or_table(file: MeshFile, unit: str, repair: bool, sandbox: Sandbox | N
             return _read_mesh(file, unit, repair, sandbox)
         except FileError:
             said = str(no_table).removeprefix(f"{display_name(file.path)} ")
-            sentence = f"is no mesh, and as a table of coefficients it {said}"
+            sentence = f"is not a mesh, and as a table of coefficients it {said}"
             raise FileError(message_about(file.path, sentence)) from None
 
 

@@ -64,7 +64,7 @@ def read_header(data: bytes) -> Header:
     Raises
     ------
     FileError
-        If it is not a PLY header, or promises more than the file holds.
+        If it is not a PLY header, or declares more than the file holds.
     """
     if not data[:3] == b"ply" or data[3:4] not in (b"\n", b"\r", b" "):
         raise FileError("is not a PLY: it does not begin with the word “ply”.")
@@ -82,9 +82,9 @@ def read_header(data: bytes) -> Header:
             case ["ply" | "comment" | "obj_info", *_] | []:
                 pass
             case _:
-                raise FileError(f"is not a proper PLY: its header says “{' '.join(line)[:60]}”.")
+                raise FileError(f"is not a valid PLY: its header has “{' '.join(line)[:60]}”.")
     if encoding is None:
-        raise FileError("is not a proper PLY: its header names no format 1.0 (ascii or binary).")
+        raise FileError("is not a valid PLY: its header names no format 1.0 (ascii or binary).")
     tables = tuple(Element(name, count, tuple(properties)) for name, count, properties in elements)
     _check_size(tables, len(data) - body, encoding == "")
     return Header(encoding, tables, body)
@@ -107,7 +107,7 @@ def _header_lines(data: bytes) -> tuple[list[list[str]], int]:
         if line == ["end_header"]:
             return lines, place
         lines.append(line)
-    raise FileError("is not a proper PLY: its header has no line “end_header”.")
+    raise FileError("is not a valid PLY: its header has no line “end_header”.")
 
 
 def _property(words: list[str]) -> Property:
@@ -116,18 +116,18 @@ def _property(words: list[str]) -> Property:
             return Property(name, SCALARS[kind], SCALARS[counter])
         case [kind, name] if kind in SCALARS:
             return Property(name, SCALARS[kind])
-    raise FileError(f"is not a proper PLY: its header has the property “{' '.join(words)[:60]}”.")
+    raise FileError(f"is not a valid PLY: its header has the property “{' '.join(words)[:60]}”.")
 
 
 def _check_size(elements: tuple[Element, ...], held: int, ascii_rows: bool) -> None:
     least = 0
     for element in elements:
         if not element.properties and element.count:
-            raise FileError(f"is not a proper PLY: its element “{element.name}” has no properties.")
+            raise FileError(f"is not a valid PLY: its element “{element.name}” has no properties.")
         least += element.count * element.min_row_bytes(ascii_rows)
         if least > held + 2:
             raise FileError(
-                f"is cut short: it promises {element.count:,} rows of “{element.name}”, "
+                f"is cut short: it declares {element.count:,} rows of “{element.name}”, "
                 f"at least {least:,} bytes, and has {held:,}; copy or export it again."
             )
 
@@ -186,7 +186,7 @@ def ascii_columns(words: list[bytes], place: int, element: Element) -> tuple[Col
         return _walk_words(words, place, element)
     except ValueError:
         raise FileError(
-            f"is not a proper PLY: a row of “{element.name}” holds something else than numbers."
+            f"is not a valid PLY: a row of “{element.name}” holds something else than numbers."
         ) from None
 
 
@@ -221,7 +221,7 @@ def _empty(element: Element) -> Columns:
 
 def _cut_short(element: Element) -> FileError:
     return FileError(
-        f"is cut short: it ends before the {element.count:,} rows of “{element.name}” that it promises; "
+        f"is cut short: it ends before the {element.count:,} rows of “{element.name}” that it declares; "
         "copy or export it again."
     )
 
@@ -251,7 +251,7 @@ def _count_at(data: bytes, place: int, kind: str, element: Element) -> int:
     if place + width + count > len(data):
         raise _cut_short(element)
     if count < 0:
-        raise FileError(f"is not a proper PLY: a row of “{element.name}” has a list of {count:,} values.")
+        raise FileError(f"is not a valid PLY: a row of “{element.name}” has a list of {count:,} values.")
     return count
 
 
@@ -296,7 +296,7 @@ def _walk_words(words: list[bytes], place: int, element: Element) -> tuple[Colum
         place += 1
         if count < 0 or place + count > len(words):
             raise FileError(
-                f"is not a proper PLY: row {row:,} of “{element.name}” promises “{p.name[:30]}” with "
+                f"is not a valid PLY: row {row:,} of “{element.name}” declares “{p.name[:30]}” with "
                 f"{count:,} values, and the file ends before."
             )
         return count

@@ -98,7 +98,7 @@ def read_positions(
         diameters = answer.arrays[1] * (
             unit_factor(header["diameter_unit"] or header["unit"] or unit) * _METRES
         )
-        if fourth_column == "radius" and any("taken for the diameter" in note for note in notes):
+        if fourth_column == "radius" and any("interpreted as the diameter" in note for note in notes):
             diameters = 2.0 * diameters
-            notes = tuple(note.replace("for the diameter", "for the radius") for note in notes)
+            notes = tuple(note.replace("as the diameter", "as the radius") for note in notes)
     return ParticlePositions(points, diameters, path.stem, notes)

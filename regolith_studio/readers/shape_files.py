@@ -29,7 +29,7 @@ REFERENCE_DEGREE = 60
 """Degree of the grid on which a radius is put together that was expanded over an ellipsoid's."""
 
 _NO_SOURCE = (
-    "is no fit, no model of shapes and no material card; “regolith-studio fit” makes a fit of meshes."
+    "is not a fit, a model of shapes or a material card; “regolith-studio fit” makes a fit of meshes."
 )
 
 
@@ -138,7 +138,7 @@ def _sample(path: Path, document: Mapping[str, Any], digest: str) -> ShapeSource
     reached, stated = next(iter(fits.values())).l_max, document["l_max"]
     if reached != stated:
         said = (
-            f"is a broken fit: it says l_max = {stated}, and its NPZ file has coefficients up to {reached}."
+            f"is a broken fit: it states l_max = {stated}, and its NPZ file has coefficients up to {reached}."
         )
         raise FileError(message_about(path, said))
     rows = np.stack([radius_of(fit).values for fit in fits.values()]) * unit_factor(document["unit"])

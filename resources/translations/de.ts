@@ -5349,7 +5349,7 @@
   </message>
   <message>
    <location filename="ui/translation/sentences.py" />
-   <source>The file calls its {count} images channels; they were taken for slices.</source>
+   <source>The file calls its {count} images channels; they were interpreted as slices.</source>
    <translation>Die Datei nennt ihre {count} Bilder Kanäle; sie wurden als Schichten genommen.</translation>
   </message>
   <message>
@@ -5384,17 +5384,17 @@
   </message>
   <message>
    <location filename="ui/translation/sentences.py" />
-   <source>The file says that a voxel is {size}, which no scan has; give the size of a voxel.</source>
+   <source>The file states a voxel of {size}, which is implausible; give the size of a voxel.</source>
    <translation>Laut Datei ist ein Voxel {size} groß, was kein Scan hat; geben Sie die Größe eines Voxels an.</translation>
   </message>
   <message>
    <location filename="ui/translation/sentences.py" />
-   <source>The file states the width of a pixel only; the slices were taken to be as far apart.</source>
+   <source>The file states the width of a pixel only; the slices were assumed to be the same distance apart.</source>
    <translation>Die Datei nennt nur die Breite eines Pixels; als Abstand der Schichten wurde dieselbe Länge genommen.</translation>
   </message>
   <message>
    <location filename="ui/translation/sentences.py" />
-   <source>The file states voxel edges in different units; they were passed over.</source>
+   <source>The file states voxel edges in different units; they were ignored.</source>
    <translation>Die Datei nennt Voxelkanten in verschiedenen Einheiten; sie wurden übergangen.</translation>
   </message>
   <message>

@@ -64,5 +64,5 @@ def test_that_axes_that_do_not_fit_are_one_sentence(name, axes, sentence, tmp_pa
 
 def test_that_formats_which_know_their_axes_take_none(tmp_path) -> None:
     (tmp_path / "v.mha").write_bytes(b"ObjectType = Image\nNDims = 3\n")
-    with pytest.raises(FileError, match="says itself how its axes lie"):
+    with pytest.raises(FileError, match="states its axes itself"):
         describe_volume(tmp_path / "v.mha", axes="xyz")

@@ -155,8 +155,8 @@ def spoilt(key: str, good: bytes) -> Iterator[Bad]:
     yield "diary", b"dear diary, today I lost my fit\n", text
     yield "picture", b"\x89PNG\r\n\x1a\n" + bytes(300), text
     yield "deep", b"[" * 100_000, "is not JSON|no proper JSON|nests too deeply"
-    yield "list", b"[1, 2, 3]", "is no fit|must be named values|is not a dataset"
-    yield "number", b"3", "is no fit|must be named values|is not a dataset"
+    yield "list", b"[1, 2, 3]", "is not a fit|must be named values|is not a dataset"
+    yield "number", b"3", "is not a fit|must be named values|is not a dataset"
 
 
 def special(key: str, good: bytes) -> Iterator[Bad]:
@@ -175,7 +175,7 @@ def special(key: str, good: bytes) -> Iterator[Bad]:
     if key == "fit":
         twice = changed(document, "particles[1].name", "a")
         yield "twice", twice, "particles: two of them are called “a”"
-        yield "degree", changed(document, "l_max", 4), "it says l_max = 4, and its NPZ file has .* up to 3"
+        yield "degree", changed(document, "l_max", 4), "it states l_max = 4, and its NPZ file has .* up to 3"
         fewer = changed(document, "particles", document["particles"][:2])
         yield "fewer", fewer, "names 2 particles but holds coefficients of 3"
         share = changed(document, "particles[0].hidden_surface_share", 1.5)

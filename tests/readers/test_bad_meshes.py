@@ -53,7 +53,7 @@ def stls(cube: Any) -> Iterator[Bad]:
         yield (
             f"count-{count}.stl",
             binary[:80] + struct.pack("<I", count) + binary[84:],
-            "it promises .* triangles",
+            "it declares .* triangles",
         )
     yield "none.stl", bytes(84), "is an STL without a single triangle"
     yield "solid.stl", "solid a\nendsolid a\n", "without a single triangle|is too short for an STL"
@@ -78,31 +78,31 @@ def plys(cube: Any) -> Iterator[Bad]:
     text, little = cube.ascii_ply().decode(), cube.binary_ply("<")
     body = little.index(b"end_header\n") + 11
     yield from cut(
-        "ascii.ply", text.encode(), "is not a PLY|is not a proper PLY|is cut short|is a point cloud"
+        "ascii.ply", text.encode(), "is not a PLY|is not a valid PLY|is cut short|is a point cloud"
     )
-    yield from cut("little.ply", little, "is not a PLY|is not a proper PLY|is cut short|is a point cloud")
+    yield from cut("little.ply", little, "is not a PLY|is not a valid PLY|is cut short|is a point cloud")
     yield from strangers(".ply", "is not a PLY: it does not begin with the word “ply”")
     for number, line in enumerate(("format ascii 2.0", "format text 1.0", "format", "")):
         yield (
             f"format-{number}.ply",
             text.replace("format ascii 1.0", line),
-            "its header (says|names no format)",
+            "its header (has|names no format)",
         )
     for count in ("-8", "8.0", "eight", "", "9" * 20):
         yield (
             f"count-{count[:3]}.ply",
             text.replace("vertex 8", f"vertex {count}"),
-            "its header says “element vertex",
+            "its header has “element vertex",
         )
     for count in (9, 1000, 10**12):
-        pattern = "is cut short|is not a proper PLY|points to vertex|promises"
+        pattern = "is cut short|is not a valid PLY|points to vertex|declares"
         yield f"many-{count}.ply", little.replace(b"vertex 8", b"vertex %d" % count), pattern
     for number, line in enumerate(
         ("property half x", "property float", "property x float", "property list float int x")
     ):
         yield f"property-{number}.ply", text.replace("property float x", line), "its header has the property"
-    yield "early.ply", text.replace("element vertex 8\n", ""), "its header says “property float x"
-    yield "endless.ply", text.replace("end_header", "end header"), "no line “end_header”|its header says"
+    yield "early.ply", text.replace("element vertex 8\n", ""), "its header has “property float x"
+    yield "endless.ply", text.replace("end_header", "end header"), "no line “end_header”|its header has"
     for axis in "xyz":
         yield (
             f"without-{axis}.ply",
@@ -166,23 +166,23 @@ def objs(cube: Any) -> Iterator[Bad]:
 def offs(cube: Any) -> Iterator[Bad]:
     text = cube.off().decode()
     yield from cut(
-        "cube.off", text.encode()[:-6], "is not an? |is not a proper OFF|is cut short|is a point cloud"
+        "cube.off", text.encode()[:-6], "is not an? |is not a valid OFF|is cut short|is a point cloud"
     )
-    yield from strangers(".off", "is not an OFF|is cut short|is not a proper OFF")
+    yield from strangers(".off", "is not an OFF|is cut short|is not a valid OFF")
     for number, line in enumerate(("8", "", "eight six", "-8 6 0", "8 -6 0", "8.0 6 0", "9999999999999 6 0")):
-        pattern = "is not an OFF|is cut short|is not a proper OFF|is a point cloud|an empty mesh"
+        pattern = "is not an OFF|is cut short|is not a valid OFF|is a point cloud|an empty mesh"
         yield f"counts-{number}.off", text.replace("8 6 0", line), pattern
     for count in (100, 1000, 10**9):
         yield (
             f"vertices-{count}.off",
             text.replace("8 6 0", f"{count} 6 0"),
-            "is cut short: it promises .* vertices",
+            "is cut short: it declares .* vertices",
         )
     for count in (7, 100, 10**9):
         yield (
             f"faces-{count}.off",
             text.replace("8 6 0", f"8 {count} 0"),
-            "is cut short: it promises .* faces",
+            "is cut short: it declares .* faces",
         )
     for number, word in enumerate(WORDS):
         yield (
@@ -194,7 +194,7 @@ def offs(cube: Any) -> Iterator[Bad]:
         yield (
             f"short-{number}.off",
             text.replace("0 0 0\n", f"{row}\n", 1),
-            "vertex 0 has . coordinates|not a proper OFF",
+            "vertex 0 has . coordinates|not a valid OFF",
         )
     for number, index in enumerate(("8", "-1", "99")):
         yield f"index-{number}.off", text.replace("4 0 1 3 2", f"4 0 1 3 {index}"), "face 0 points to vertex"
@@ -208,7 +208,7 @@ def offs(cube: Any) -> Iterator[Bad]:
         yield (
             f"size-{number}.off",
             text.replace("4 0 1 3 2", f"{size} 0 1 3 2"),
-            "face 0 promises|whole numbers",
+            "face 0 declares|whole numbers",
         )
     for kind in ("nOFF", "4nOFF", "CnOFF"):
         yield f"kind-{kind}.off", text.replace("OFF", kind), rf"file of any dimension \({kind}\)"
@@ -255,12 +255,14 @@ def glb(document: str, version: int = 2, length: int | None = None, kind: bytes 
 def gltfs(_cube: Any) -> Iterator[Bad]:
     whole = glb(json.dumps(GLTF))
     yield from cut("a.glb", whole, "is cut short|is not a|is no ")
-    yield from strangers(".gltf", "its JSON breaks in line (1|301), sign 1|its JSON is no text|is not a glTF")
+    yield from strangers(
+        ".gltf", "its JSON breaks in line (1|301), sign 1|its JSON is not text|is not a glTF"
+    )
     for field in ("asset", "nodes", "meshes", "accessors", "bufferViews", "buffers"):
         yield (
             f"without-{field}.gltf",
             changed(field, None),
-            "is not a glTF|is not a proper glTF|without triangles",
+            "is not a glTF|is not a valid glTF|without triangles",
         )
         for number, value in enumerate((0, "text", [], [5])):
             pattern = (
@@ -270,8 +272,8 @@ def gltfs(_cube: Any) -> Iterator[Bad]:
             )
             yield f"{field}-{number}.gltf", changed(field, value), pattern
     for number, value in enumerate((7, -1, "0", 1.5, {})):
-        yield f"buffer-{number}.gltf", changed("bufferViews/0/buffer", value), "is not a proper glTF"
-        yield f"view-{number}.gltf", changed("accessors/0/bufferView", value), "is not a proper glTF"
+        yield f"buffer-{number}.gltf", changed("bufferViews/0/buffer", value), "is not a valid glTF"
+        yield f"view-{number}.gltf", changed("accessors/0/bufferView", value), "is not a valid glTF"
     for number, kind in enumerate(("VEC2", "MAT4", "", "vec3")):
         yield f"type-{number}.gltf", changed("accessors/0/type", kind), "accessor 0 is of type"
     for number, kind in enumerate((0, 5124, 9999)):
@@ -287,7 +289,7 @@ def gltfs(_cube: Any) -> Iterator[Bad]:
     yield "absent.gltf", changed("buffers/0/uri", "absent.bin"), "needs the file absent.bin"
     yield "base64.gltf", changed("buffers/0/uri", "data:;base64,!!!"), "is not base64|is cut short"
     circle = changed("nodes", [{"mesh": 0, "children": [0]}])
-    yield "circle.gltf", circle, "its nodes go round in circles"
+    yield "circle.gltf", circle, "its nodes form a cycle"
     for name in ("KHR_draco_mesh_compression", "EXT_meshopt_compression"):
         yield f"{name}.gltf", changed("extensionsRequired", [name]), f"is compressed with {name}"
     for version in (0, 1, 3):
@@ -315,8 +317,8 @@ def archive(model: str | bytes, name: str = "3D/3dmodel.model", **options: Any) 
 
 def three_mfs(_cube: Any) -> Iterator[Bad]:
     whole = archive(MODEL, compression=zipfile.ZIP_DEFLATED)
-    yield from cut("a.3mf", whole, "is not a proper 3MF")
-    yield from strangers(".3mf", "is not a proper 3MF: its archive is damaged|is no ")
+    yield from cut("a.3mf", whole, "is not a valid 3MF")
+    yield from strangers(".3mf", "is not a valid 3MF: its archive is damaged|is no ")
     for share in (1, 10, 30, 60, 90, 99):
         yield (
             f"xml-{share}.3mf",
@@ -363,7 +365,7 @@ def three_mfs(_cube: Any) -> Iterator[Bad]:
         "which is not there",
     )
     circle = MODEL.replace("<mesh>", '<components><component objectid="1"/></components><mesh>')
-    yield "circle.3mf", archive(circle), "go round in circles"
+    yield "circle.3mf", archive(circle), "form a cycle"
     for number, matrix in enumerate(("1 2 3", "a b c", "1 " * 13)):
         yield (
             f"matrix-{number}.3mf",

@@ -35,7 +35,7 @@ def strangers(suffix: str, pattern: str) -> Iterator[Bad]:
     yield f"empty{suffix}", b"", "is empty: it has no bytes at all"
 
 
-NO_TABLE = "is no table of numbers|is no text of numbers|holds no row of numbers|has “"
+NO_TABLE = "is not a table of numbers|is not a text of numbers|holds no row of numbers|has “"
 
 
 def tables() -> Iterator[Bad]:
@@ -58,15 +58,15 @@ def tables() -> Iterator[Bad]:
     for number, names in enumerate(("a,b,c", "x,y,w", "lat,lon,height", "xx,yy,zz")):
         yield f"names-{number}.csv", f"{names}\n1,2,3\n", "has no columns x, y and z; they are called"
     for number, point in enumerate(("nan,0,0", "0,inf,0", "0,0,-inf", "1e300,0,0", "0,1e31,0")):
-        yield f"infinite-{number}.csv", f"x,y,z\n{point}\n", "no particle whose position and size are proper"
+        yield f"infinite-{number}.csv", f"x,y,z\n{point}\n", "no particle whose position and size are valid"
     for number, size in enumerate(("0", "-1", "nan", "inf", "1e40")):
         yield (
             f"size-{number}.csv",
             f"x,y,z,d\n1,2,3,{size}\n",
-            "no particle whose position and size are proper",
+            "no particle whose position and size are valid",
         )
     for number, text in enumerate(("x,y,z\n", "# a\n# b\n", "x,y,z\nx,y,z\n", "title\nunits\n1,2,3\n")):
-        yield f"header-{number}.csv", text, "holds no row of numbers|is no table of numbers: line 2"
+        yield f"header-{number}.csv", text, "holds no row of numbers|is not a table of numbers: line 2"
 
 
 def xyzs() -> Iterator[Bad]:
@@ -75,9 +75,9 @@ def xyzs() -> Iterator[Bad]:
         yield (
             f"count-{count}.xyz",
             f"{count}\ncomment\nA 0 0 0\nA 1 1 1\n",
-            "is cut short: it promises|is a broken XYZ",
+            "is cut short: it declares|is a broken XYZ",
         )
-    yield "zero.xyz", "0\ncomment\n", "is cut short: it promises 0"
+    yield "zero.xyz", "0\ncomment\n", "is cut short: it declares 0"
     for number, word in enumerate(WORDS[:9]):
         yield (
             f"word-{number}.xyz",
@@ -107,24 +107,24 @@ DUMP = (
 
 
 def dumps() -> Iterator[Bad]:
-    yield from strangers(".dump", "is no LAMMPS dump")
+    yield from strangers(".dump", "is not a LAMMPS dump")
     for share in range(5, 95, 10):
         yield (
             f"cut-{share}.dump",
             DUMP[: len(DUMP) * share // 100],
-            "is cut short|is a broken LAMMPS dump|is no LAMMPS dump",
+            "is cut short|is a broken LAMMPS dump|is not a LAMMPS dump",
         )
     for count in ("3", "1", "0", "1000000"):
         yield (
             f"count-{count}.dump",
             DUMP.replace("ATOMS\n2", f"ATOMS\n{count}"),
-            "is cut short: its last step promises",
+            "is cut short: its last step declares",
         )
     for number, count in enumerate(("x", "-2", "2.5", "", "2\n2")):
         yield (
             f"number-{number}.dump",
             DUMP.replace("ATOMS\n2", f"ATOMS\n{count}"),
-            "does not say how many particles",
+            "does not state its number of particles",
         )
     for number, names in enumerate(("id vx vy vz", "id x y q", "a b c d")):
         yield f"names-{number}.dump", DUMP.replace("id x y z", names), "has no columns x, y and z"
@@ -157,12 +157,12 @@ BINARY = VTK.split("0 0 0")[0].replace("ASCII", "BINARY").encode()
 
 
 def vtks() -> Iterator[Bad]:
-    yield from strangers(".vtk", "is no legacy VTK file")
+    yield from strangers(".vtk", "is not a legacy VTK file")
     for share in (10, 15, 20, 30, 40, 50):
         yield (
             f"cut-{share}.vtk",
             VTK[: len(VTK) * share // 100],
-            "is no legacy|is a broken VTK|holds no points|is cut short",
+            "is not a legacy|is a broken VTK|holds no points|is cut short",
         )
     for number, kind in enumerate(("", "ascii?", "XML", "3")):
         yield f"form-{number}.vtk", VTK.replace("ASCII", kind), "neither ASCII nor BINARY"
@@ -172,7 +172,7 @@ def vtks() -> Iterator[Bad]:
         yield (
             f"count-{count}.vtk",
             VTK.split("POINT_DATA")[0].replace("POINTS 2", f"POINTS {count}"),
-            "is cut short: it promises",
+            "is cut short: it declares",
         )
     for number, count in enumerate(("-2", "two", "2.0", "")):
         yield f"number-{number}.vtk", VTK.replace("POINTS 2", f"POINTS {count}"), "holds no points"
@@ -191,7 +191,7 @@ def vtks() -> Iterator[Bad]:
             "no particle whose position",
         )
     for size in (0, 1, 12, 23):
-        yield f"binary-{size}.vtk", BINARY + bytes(size), "is cut short: it promises 6"
+        yield f"binary-{size}.vtk", BINARY + bytes(size), "is cut short: it declares 6"
     yield "binary-nan.vtk", BINARY + struct.pack(">6f", *[np.nan] * 6), "no particle whose position"
     for number, size in enumerate(("0 0", "-1 -1", "nan nan")):
         yield (
@@ -234,7 +234,7 @@ def vtps() -> Iterator[Bad]:
     for number, content in enumerate(("0 0 0 1 1", "0", "0 0 0 1 1 1 2")):
         yield f"odd-{number}.vtp", vtp(array(content)), "its points are not three numbers each"
     for count in (0, 1, 3, 10**12):
-        yield f"count-{count}.vtp", vtp(array("0 0 0 1 1 1"), count=count), f"{SHORT}: it promises"
+        yield f"count-{count}.vtp", vtp(array("0 0 0 1 1 1"), count=count), f"{SHORT}: it declares"
     yield "none.vtp", vtp(array(""), count=0), "holds no points"
     for number, word in enumerate(("one", "--1", "0x1F", "1,5")):
         yield f"word-{number}.vtp", vtp(array(f"0 0 0 1 1 {word}")), "a word stands where a number belongs"

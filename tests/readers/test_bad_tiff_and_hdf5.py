@@ -87,12 +87,12 @@ def tiffs() -> Iterator[Bad]:
         yield (
             f"cut-{share}.tif",
             whole[: len(whole) * share // 100],
-            "cut short|is no TIFF|is empty|is broken",
+            "cut short|is not a TIFF|is empty|is broken",
         )
     for number, head in enumerate(
         (b"XX*\0", b"II\x2c\0", b"MM\0\x29", b"PK\3\4", b"%PDF", b"\x89PNG", bytes(4))
     ):
-        yield f"magic-{number}.tif", head + whole[4:], "is no TIFF file"
+        yield f"magic-{number}.tif", head + whole[4:], "is not a TIFF file"
     yield "big.tif", b"II+\0\7\0\0\0" + bytes(40), BROKEN
     yield "nothing.tif", b"II*\0" + bytes(20), BROKEN
     yield "beyond.tif", b"II*\0\xff\xff\xff\x7f", BROKEN
@@ -105,7 +105,7 @@ def tiffs() -> Iterator[Bad]:
             yield (
                 f"{name}-{edge}.tif",
                 three(**{f"t{tag}": (LONG, [edge])}),
-                f"holds no voxels|no volume has the shape|{BROKEN}",
+                f"holds no voxels|no volume can have the shape|{BROKEN}",
             )
         yield f"{name}-absent.tif", three(**{f"t{tag}": None}), "holds no voxels"
     for bits in (0, 65, 999):
@@ -123,7 +123,7 @@ def tiffs() -> Iterator[Bad]:
         three(t258=(SHORT, [8] * 3), t262=(SHORT, [2]), t277=(SHORT, [3]), t257=(SHORT, [3])),
         "colours",
     )
-    yield "single.tif", tiff([page()]), "is no volume: its shape is 5 × 6"
+    yield "single.tif", tiff([page()]), "is not a volume: its shape is 5 × 6"
     odd = [page(), page(t257=(SHORT, [4]), t278=(SHORT, [4]), t279=(LONG, [48])), page()]
     yield "sizes.tif", tiff(odd), "among its pages are some of another size"
     for codec, name in (
@@ -202,7 +202,7 @@ def hdf5s() -> Iterator[Bad]:
             "holds no volume",
         )
     for axes, shape in (("tzyx", (5, 4, 4, 4)), ("tyx", (5, 4, 4)), ("yxc", (4, 4, 2)), ("zyc", (4, 4, 3))):
-        yield f"axes-{axes}.h5", tagged(axes, shape), "holds no volume|is no volume"
+        yield f"axes-{axes}.h5", tagged(axes, shape), "holds no volume|is not a volume"
     links = {
         "external": h5py.ExternalLink("other.h5", "/a"),
         "soft": h5py.SoftLink("/b"),
@@ -269,7 +269,7 @@ def folder(tmp_path) -> Path:
     ("data", "sentence"),
     [
         (b"", "its slice s3.tif is empty"),
-        (b"text" * 50, "its slice s3.tif is no TIFF file"),
+        (b"text" * 50, "its slice s3.tif is not a TIFF file"),
         (stack()[:100], "its slice s3.tif is a broken TIFF file, or is cut short"),
         (stack(), "its slice s3.tif has 3 pages"),
         (tiff([page(t257=(SHORT, [4]))]), "its slice s3.tif has 6 × 4 pixels"),

@@ -60,7 +60,7 @@ def npys() -> Iterator[Bad]:
     yield from cut("a.npy", npy(good), CUT)
     yield from strangers(".npy", "is a broken NPY file")
     for number, shape in enumerate(("(4, 5)", "(120,)", "()", "(2, 2, 5, 6)", "(2,2,2,3,5)")):
-        yield f"dimensions-{number}.npy", npy(good.replace("(4, 5, 6)", shape)), "is no volume: its shape"
+        yield f"dimensions-{number}.npy", npy(good.replace("(4, 5, 6)", shape)), "is not a volume: its shape"
     for number, shape in enumerate(("(0, 5, 6)", "(4, 0, 6)", "(4, -5, 6)")):
         yield f"nothing-{number}.npy", npy(good.replace("(4, 5, 6)", shape)), "holds no voxels"
     for number, shape in enumerate(("(4, 5, 6000)", "(400, 500, 600)")):
@@ -107,8 +107,8 @@ def nrrd(name: str, value: str | None, data: bytes = SLICES.tobytes()) -> bytes:
 
 
 def nrrds() -> Iterator[Bad]:
-    yield from cut("a.nrrd", nrrd("x", None), "is cut short|is a broken NRRD|is no NRRD|is empty")
-    yield from strangers(".nrrd", "is no NRRD")
+    yield from cut("a.nrrd", nrrd("x", None), "is cut short|is a broken NRRD|is not an NRRD|is empty")
+    yield from strangers(".nrrd", "is not an NRRD")
     for field in ("type", "dimension", "sizes", "endian", "encoding"):
         yield f"without-{field}.nrrd", nrrd(field, None), "is a broken NRRD|is an NRRD in no encoding"
     for kind in ("block", "float16", "string", "complex", "short short"):
@@ -120,7 +120,7 @@ def nrrds() -> Iterator[Bad]:
     yield "empty.nrrd", nrrd("sizes", "6 0 4"), "holds no voxels"
     for number, sizes in enumerate(("6 5 5", "6 50 4", "600 500 400")):
         yield f"promise-{number}.nrrd", nrrd("sizes", sizes), "is cut short"
-    yield "enormous.nrrd", nrrd("sizes", "6 5 4000000000"), "is damaged: no volume has"
+    yield "enormous.nrrd", nrrd("sizes", "6 5 4000000000"), "is damaged: no volume can have"
     for encoding in ("hex", "ascii", "bzip2", "zstd"):
         yield f"encoding-{encoding}.nrrd", nrrd("encoding", encoding), "is an NRRD in "
     for number, data in enumerate((b"", b"\x1f\x8b", b"x" * 50, gzip.compress(SLICES.tobytes())[:40])):
@@ -135,9 +135,9 @@ def nrrds() -> Iterator[Bad]:
     yield "lines.nrrd", nrrd("line skip", "3"), "skips lines or bytes"
     yield "bytes.nrrd", nrrd("byte skip", "-5"), "skips lines or bytes"
     yield "twice.nrrd", b"NRRD0004\ntype: short\ntype: short\n\n", "has the field “type” twice"
-    yield "word.nrrd", b"NRRD0004\nhello\n\n", "line 2 of its header is no field"
+    yield "word.nrrd", b"NRRD0004\nhello\n\n", "line 2 of its header is not a field"
     yield "endless.nrrd", b"NRRD0004\n" + b"# comment\n" * 9000, "its header does not end"
-    yield "version.nrrd", nrrd("x", None).replace(b"0004", b"0009"), "is no NRRD of the versions 1 to 5"
+    yield "version.nrrd", nrrd("x", None).replace(b"0004", b"0009"), "is not an NRRD of versions 1 to 5"
 
 
 MHA = "ObjectType = Image\nNDims = 3\nDimSize = 6 5 4\nElementType = MET_SHORT\nElementDataFile = LOCAL"
@@ -163,7 +163,7 @@ def metaimages() -> Iterator[Bad]:
     yield "empty.mha", mha("DimSize", "6 0 4"), "holds no voxels"
     for number, sizes in enumerate(("6 5 5", "6 50 4", "600 500 400")):
         yield f"promise-{number}.mha", mha("DimSize", sizes), "is cut short"
-    yield "enormous.mha", mha("DimSize", "6 5 4000000000"), "is damaged: no volume has"
+    yield "enormous.mha", mha("DimSize", "6 5 4000000000"), "is damaged: no volume can have"
     for number, dimensions in enumerate(("2", "4", "x", "-3")):
         yield f"dimensions-{number}.mha", mha("NDims", dimensions), "NDims and its DimSize do not agree"
     packed = zlib.compress(SLICES.tobytes())
@@ -197,9 +197,11 @@ def patched(name: str, place: int, kind: str, *values: float) -> bytes:
 
 def niftis() -> Iterator[Bad]:
     one, two = (FOREIGN / "nib1.nii").read_bytes(), (FOREIGN / "nib2.nii").read_bytes()
-    yield from cut("one.nii", one, "is no NIfTI|is cut short|is empty")
-    yield from cut("one.nii.gz", gzip.compress(one, mtime=0), "is no NIfTI|is cut short|is damaged|is empty")
-    yield from strangers(".nii", "is no NIfTI file")
+    yield from cut("one.nii", one, "is not a NIfTI|is cut short|is empty")
+    yield from cut(
+        "one.nii.gz", gzip.compress(one, mtime=0), "is not a NIfTI|is cut short|is damaged|is empty"
+    )
+    yield from strangers(".nii", "is not a NIfTI file")
     for code, sentence in (
         (32, "complex"),
         (128, "colours"),
@@ -213,8 +215,8 @@ def niftis() -> Iterator[Bad]:
         yield f"type-{code}.nii", patched("nib1.nii", 70, "h", code), "there is no type of number"
     for dimensions in (0, -3, 8, 32000):
         yield f"dimensions-{dimensions}.nii", patched("nib1.nii", 40, "h", dimensions), "it cannot have"
-    yield "flat.nii", patched("nib1.nii", 40, "h", 2), "is no volume: its shape"
-    yield "times.nii", patched("nib1.nii", 40, "5h", 4, 6, 5, 2, 2), "is no volume: its shape"
+    yield "flat.nii", patched("nib1.nii", 40, "h", 2), "is not a volume: its shape"
+    yield "times.nii", patched("nib1.nii", 40, "5h", 4, 6, 5, 2, 2), "is not a volume: its shape"
     for axis in (1, 2, 3):
         yield f"empty-{axis}.nii", patched("nib1.nii", 40 + 2 * axis, "h", 0), "holds no voxels"
         yield f"negative-{axis}.nii", patched("nib1.nii", 40 + 2 * axis, "h", -7), "holds no voxels"
@@ -222,7 +224,7 @@ def niftis() -> Iterator[Bad]:
         yield (
             f"enormous-{axis}.nii",
             patched("nib2.nii", 16 + 8 * axis, "q", 2**40),
-            "is damaged: no volume has",
+            "is damaged: no volume can have",
         )
     for number, offset in enumerate((-352.0, 12.0, 352.5, 1e30, float("nan"), float("inf"))):
         yield f"offset-{number}.nii", patched("nib1.nii", 108, "f", offset), "voxels cannot begin at byte"

@@ -54,7 +54,7 @@ def test_that_a_file_of_shtools_gives_its_coefficients(tmp_path) -> None:
     made.to_file(str(tmp_path / "pysh.sh"), format="shtools")
     found = read_coefficients(tmp_path / "pysh.sh")
     assert found.coefficients.values == pytest.approx(VALUES)
-    assert found.notes[0].startswith("Taken for a table of SHTOOLS")
+    assert found.notes[0].startswith("Interpreted as a table of SHTOOLS")
 
 
 @pytest.mark.parametrize(

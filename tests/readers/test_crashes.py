@@ -18,8 +18,8 @@ from regolith_studio.readers.volumes.read import describe_volume, open_slabs
 
 HERE = Path(__file__).parent
 MESHES = {
-    "bad-deflate.3mf": "is not a proper 3MF: its archive is damaged; export it again.",
-    "endless-name.ply": "is not a proper PLY: row 0 of “face” promises “ver",
+    "bad-deflate.3mf": "is not a valid 3MF: its archive is damaged; export it again.",
+    "endless-name.ply": "is not a valid PLY: row 0 of “face” declares “ver",
 }
 VOLUMES = {
     "endless-loop.h5": "was given up after ",
@@ -70,7 +70,7 @@ UNBELIEVABLE = {
 def test_that_a_voxel_size_that_no_scan_has_is_asked_for_instead(name: str) -> None:
     header = describe_volume(HERE / "crashes_volumes" / name)
     assert header.voxel_size is None
-    said = f"The file says that a voxel is {UNBELIEVABLE[name]}, which no scan has; give the size of a voxel."
+    said = f"The file states a voxel of {UNBELIEVABLE[name]}, which is implausible; give the size of a voxel."
     assert said in header.notes
 
 
@@ -116,10 +116,10 @@ TRAPS = {
     "spiral.obj": (polygon(spiral(20, 900)), "holds no particle"),
     "corners.off": (
         b"OFF\n1 1 0\n0 0 0\n9999999 " + b"0\n" * 200_000,
-        "promises 9999999 corners and has 200000",
+        "declares 9999999 corners and has 200000",
     ),
-    "components.3mf": (components(45), "its components go round in circles, or are far too many"),
-    "zeros.3mf": (zeros_3mf(), "unpacks to 60 MB, 100 times its size or more: no mesh does"),
+    "components.3mf": (components(45), "its components form a cycle, or are too many"),
+    "zeros.3mf": (zeros_3mf(), "unpacks to 60 MB, 100 times its size or more, which no mesh does"),
 }
 
 

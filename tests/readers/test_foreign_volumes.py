@@ -45,7 +45,7 @@ def test_that_the_voxel_size_is_what_the_other_program_wrote(path) -> None:
 
 
 def test_that_a_size_without_a_unit_asks_for_the_unit() -> None:
-    with pytest.raises(InputError, match=r"a voxel is 0\.5 × 1 × 2, but not in which unit"):
+    with pytest.raises(InputError, match=r"a voxel of 0\.5 × 1 × 2 without a unit"):
         read_volume(FOLDER / "itk-raw.mha")
     assert read_volume(FOLDER / "itk-raw.mha", unit="mm").voxel_size == pytest.approx([500.0, 1000.0, 2000.0])
 

@@ -104,7 +104,7 @@ BAD = {
         glb(changed(meshes=[{"primitives": [{"attributes": {"POSITION": 0}, "mode": 0}]}])),
         "without triangles",
     ),
-    "a circle of nodes": (glb(changed(nodes=[{"mesh": 0, "children": [0]}])), "go round in circles"),
+    "a circle of nodes": (glb(changed(nodes=[{"mesh": 0, "children": [0]}])), "form a cycle"),
     "a node that is not there": (glb(changed(scenes=[{"nodes": [7]}])), r"points to nodes\[7\]"),
     "an accessor that is not there": (glb(changed(accessors=[])), r"points to accessors\[0\]"),
     "an index too high": (glb(binary=BINARY[:96] + b"\x63\0" + BINARY[98:]), "points to vertex 99 of 8"),

@@ -6,8 +6,8 @@ import pytest
 
 V = "v 0 0 0\nv 0 0 1\nv 0 1 0\nv 0 1 1\nv 1 0 0\nv 1 0 1\nv 1 1 0\nv 1 1 1\n"
 F = "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n"
-NO_V, POINTS, FACE = "no vertices", "is a point cloud", "not a proper OBJ: face"
-VERTEX, SHEET, NOT_FINITE = "not a proper OBJ: vertex", "open sheet", "all finite numbers"
+NO_V, POINTS, FACE = "no vertices", "is a point cloud", "not a valid OBJ: face"
+VERTEX, SHEET, NOT_FINITE = "not a valid OBJ: vertex", "open sheet", "all finite numbers"
 
 BAD = {
     "nothing": (b"", "is empty"),
@@ -126,7 +126,7 @@ def test_that_joined_seams_are_told(accepted):
 
 def test_that_lines_that_are_no_obj_are_counted(accepted):
     notes = accepted("cube.obj", (V + "hello world\n" + F + "what is this\n").encode()).notes
-    assert "2 lines of the file that are not OBJ were passed over." in notes
+    assert "2 lines of the file that are not OBJ were ignored." in notes
 
 
 def test_that_concave_polygons_are_cut_inside_their_outline(accepted):

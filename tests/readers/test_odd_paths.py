@@ -52,7 +52,7 @@ ODD: dict[str, tuple[Callable[[Path], object], str]] = {
     "circle": (lambda path: path.symlink_to(path.name), "its links go round in circles"),
     "nothing": (str, "there is no such file"),
     "empty": (lambda path: path.write_bytes(b""), "is empty|is not JSON|holds no JSON"),
-    "zeros": (sparse, r"at most \S+ (GiB )?are read|is larger than|is no TIFF file"),
+    "zeros": (sparse, r"at most \S+ (GiB )?are read|is larger than|is not a TIFF file"),
 }
 
 

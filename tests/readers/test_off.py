@@ -9,7 +9,7 @@ F = "4 0 1 3 2\n4 4 6 7 5\n4 0 4 5 1\n4 2 3 7 6\n4 0 2 6 4\n4 1 5 7 3\n"
 CUBE = "OFF\n8 6 12\n" + V + F
 COUNTS, CUT, VERTEX, FACE = (
     "counts of vertices and faces",
-    "is cut short: it promises",
+    "is cut short: it declares",
     "OFF: vertex",
     "OFF: face",
 )
@@ -32,7 +32,7 @@ BAD = {
     "an integer that does not end": (CUBE.replace("8 6 12", "9" * 200 + " 6 12"), "counts 1e\\+200 vertices"),
     "an integer of 5,000 digits": (CUBE.replace("8 6 12", "9" * 5000 + " 6 12"), COUNTS),
     "too many faces": (CUBE.replace("8 6 12", "8 7 12"), CUT),
-    "half the faces missing": (CUBE[:-30], "(is cut short|promises 4 corners)"),
+    "half the faces missing": (CUBE[:-30], "(is cut short|declares 4 corners)"),
     "half the vertices missing": (CUBE[:40], CUT),
     "too few vertices plural": (CUBE.replace("8 6 12", "7 6 12"), FACE),
     "a vertex of two numbers": (CUBE.replace("0 1 1\n", "0 1\n", 1), VERTEX),
@@ -45,12 +45,12 @@ BAD = {
     "an index too high": (CUBE.replace("4 0 1 3 2", "4 0 1 8 2"), "points to vertex 8"),
     "an index below none": (CUBE.replace("4 0 1 3 2", "4 0 -1 3 2"), FACE),
     "counted from one": (re.sub(r"(?<= )7", "8", CUBE), "points to vertex 8"),
-    "a face of no corners": (CUBE.replace("4 0 1 3 2", "0"), "promises 0 corners"),
-    "a face of minus one corner": (CUBE.replace("4 0 1 3 2", "-1 0 1 3 2"), "promises -1 corners"),
-    "a face of too many corners": (CUBE.replace("4 1 5 7 3", "5 1 5 7 3"), "promises 5 corners"),
+    "a face of no corners": (CUBE.replace("4 0 1 3 2", "0"), "declares 0 corners"),
+    "a face of minus one corner": (CUBE.replace("4 0 1 3 2", "-1 0 1 3 2"), "declares -1 corners"),
+    "a face of too many corners": (CUBE.replace("4 1 5 7 3", "5 1 5 7 3"), "declares 5 corners"),
     "a face of a billion corners": (
         CUBE.replace("4 1 5 7 3", "1000000000 1 5 7 3"),
-        "promises 1000000000 corners",
+        "declares 1000000000 corners",
     ),
     "only lines": ("OFF\n8 1 0\n" + V + "2 0 1\n", POINTS),
     "one triangle": ("OFF\n8 1 0\n" + V + "3 0 1 2\n", SHEET),

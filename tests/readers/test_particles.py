@@ -97,7 +97,7 @@ def test_that_no_paths_are_refused():
 
 
 def test_that_an_unknown_suffix_is_refused_with_those_that_are_known(refusal):
-    assert "what is read are meshes in .3mf" in refusal("points.xyz", b"1 2 3\n4 5 6\n")
+    assert "supported are meshes in .3mf" in refusal("points.xyz", b"1 2 3\n4 5 6\n")
 
 
 def test_that_the_content_decides_where_the_name_lies(cube, accepted):

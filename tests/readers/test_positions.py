@@ -46,7 +46,7 @@ def test_that_columns_without_names_are_positions_and_diameter(name, separator, 
     same(read(name, rows(POINTS, separator=separator)), diameters=False)
     found = read(name, rows(POINTS, DIAMETERS, separator=separator))
     same(found)
-    assert found.notes == ("The fourth column has no name; it was taken for the diameter.",)
+    assert found.notes == ("The fourth column has no name; it was interpreted as the diameter.",)
 
 
 def test_that_a_fourth_column_may_be_a_radius_as_yade_writes_it(read) -> None:
@@ -186,7 +186,7 @@ def test_that_vtps_are_read_however_they_are_packed(mode, compressed, encoded, b
 def test_that_particles_without_a_proper_position_or_size_are_left_out_and_counted(read) -> None:
     found = read("a.csv", "x,y,z,d\n0,0,0,1\nnan,0,0,1\n1,1,1,-1\n2,2,2,1\n")
     assert found.points.tolist() == [[0, 0, 0], [2, 2, 2]]
-    assert found.notes == ("Left out 2 of 4 particles whose position or size is no proper number.",)
+    assert found.notes == ("Left out 2 of 4 particles whose position or size is not a valid number.",)
 
 
 def test_that_positions_check_themselves_and_survive_pickling() -> None:

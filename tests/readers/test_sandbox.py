@@ -69,7 +69,7 @@ def test_that_a_child_that_was_killed_is_replaced(sandbox, stl):
 def test_that_a_file_that_kills_its_reader_is_refused_and_the_next_one_read(sandbox, stl):
     sandbox.start()
     threading.Timer(0.3, psutil.Process(child_of(sandbox)).kill).start()
-    with pytest.raises(FileError, match=r"cube\.stl is damaged: it ended the process"):
+    with pytest.raises(FileError, match=r"cube\.stl is damaged: it crashed the process"):
         sandbox.request("sleep", stl)
     assert sandbox.request("mesh", stl).arrays[1].shape == (12, 3)
 

@@ -101,8 +101,8 @@ def test_that_files_of_different_models_are_not_mixed(folder: Path, tmp_path: Pa
     ("content", "words"),
     [
         ("", "is empty"),
-        ("[1]", "is no fit, no model"),
-        ("{}", "is no fit, no model"),
+        ("[1]", "is not a fit, a model"),
+        ("{}", "is not a fit, a model"),
         ('{"format": "regolith-studio model"}', "is a broken model: version is missing"),
         ('{"format": "regolith-studio fit", "particles": 3}', "is a broken fit"),
         ('{"relative_amplitudes": []}', "is no material card"),
@@ -143,17 +143,17 @@ PLAIN = "{'descr': '<f8', 'fortran_order': False, 'shape': (2,)}"
 @pytest.mark.parametrize(
     ("content", "words"),
     [
-        (b"", "is no NPZ archive"),
-        (b"PK\x03\x04 and nothing", "is no NPZ archive"),
+        (b"", "is not an NPZ archive"),
+        (b"PK\x03\x04 and nothing", "is not an NPZ archive"),
         (packed({"readme.txt": b"hello"}), "something else than arrays"),
         (packed({f"a{i}.npy": b"" for i in range(70)}), "holds 70 entries"),
-        (packed({"a.npy": b"no array"}), "is no NPZ archive"),
-        (packed({"a.npy": npy(PLAIN, bytes(8))}), "promises an array of 16 bytes|ends in the middle"),
-        (packed({"a.npy": npy(PLAIN.replace("(2,)", "(10**9,)"), bytes(16))}), "is no NPZ archive"),
-        (packed({"a.npy": npy(PLAIN.replace("(2,)", "(99999999999,)"), bytes(16))}), "promises an array"),
+        (packed({"a.npy": b"no array"}), "is not an NPZ archive"),
+        (packed({"a.npy": npy(PLAIN, bytes(8))}), "declares an array of 16 bytes|ends in the middle"),
+        (packed({"a.npy": npy(PLAIN.replace("(2,)", "(10**9,)"), bytes(16))}), "is not an NPZ archive"),
+        (packed({"a.npy": npy(PLAIN.replace("(2,)", "(99999999999,)"), bytes(16))}), "declares an array"),
         (packed({"a.npy": npy(PLAIN.replace("<f8", "|O"), bytes(16))}), "not of plain numbers"),
         (packed({"a.npy": npy(PLAIN.replace("'<f8'", "[('a', '<f8')]"), bytes(16))}), "not of plain numbers"),
-        (packed({"a.npy": npy(PLAIN.replace("(2,)", "(-2,)"), bytes(16))}), "promises an array"),
+        (packed({"a.npy": npy(PLAIN.replace("(2,)", "(-2,)"), bytes(16))}), "declares an array"),
     ],
 )
 def test_that_a_harmful_archive_is_refused(content: bytes, words: str, tmp_path: Path) -> None:

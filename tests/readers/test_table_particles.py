@@ -53,7 +53,7 @@ def test_that_a_mesh_in_a_text_file_is_still_a_mesh(tmp_path, cube) -> None:
 @pytest.mark.parametrize(
     ("content", "sentence"),
     [
-        ("Dear Sir\nYours", "is no mesh, and as a table of coefficients it holds no row of numbers"),
+        ("Dear Sir\nYours", "is not a mesh, and as a table of coefficients it holds no row of numbers"),
         ("x y z\n1 2 3\n4 5 6", "it has 3 columns; .* Points alone enclose no particle"),
         ("0 0 3 0\n1 0 0.1 0\n1 1 0.1 0.2", "it does not show its convention"),
     ],

@@ -60,7 +60,7 @@ BAD = {
     "an empty model": (archive(model("", "")), "builds no triangles"),
     "nothing built": (archive(model("")), "builds no triangles"),
     "an object that is not there": (archive(model('<item objectid="9"/>')), "object “9”, which is not there"),
-    "components in a circle": (archive(model(resources=CIRCLE)), "go round in circles"),
+    "components in a circle": (archive(model(resources=CIRCLE)), "form a cycle"),
     "a part that unpacks to 512 MiB": (BOMB, "unpacks to 537 MB, 100 times its size or more"),
     "entities": (archive('<?xml version="1.0"?><!DOCTYPE m [<!ENTITY a "b">]><model/>'), "defines entities"),
     "a word for a number": (

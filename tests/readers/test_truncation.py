@@ -9,7 +9,7 @@ import trimesh
 KIND = {
     "binary.stl": "too short for an STL|is cut short|is empty",
     "ascii.stl": "is empty|broken ASCII STL|too short for an STL|without a single triangle|open sheet",
-    "cube.off": "counts of vertices and faces|is cut short|promises 4 corners|vertex|is empty|whole numbers",
+    "cube.off": "counts of vertices and faces|is cut short|declares 4 corners|vertex|is empty|whole numbers",
     "ascii.ply": "does not begin with|its header|is cut short|ends before|is empty",
     "little.ply": "does not begin with|its header|is cut short|is empty",
     "big.ply": "does not begin with|its header|is cut short|is empty",

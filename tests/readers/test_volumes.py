@@ -211,7 +211,7 @@ def test_that_progress_is_told_and_may_stop(stack) -> None:
 
 
 def test_that_a_volume_without_a_voxel_size_asks_for_one(stack) -> None:
-    with pytest.raises(InputError, match=r"stack\.tif does not say how large a voxel is"):
+    with pytest.raises(InputError, match=r"stack\.tif does not state the size of a voxel"):
         read_volume(stack)
     assert read_volume(stack, unit="voxel:2.5").voxel_size == pytest.approx([2.5] * 3)
     assert read_volume(stack, voxel_size=2.0, unit="mm").voxel_size == pytest.approx([2e3] * 3)
@@ -298,7 +298,7 @@ def test_that_imagej_slices_that_are_called_channels_come_in_with_a_note(tmp_pat
     tifffile.imwrite(tmp_path / "few.tif", few, imagej=True, metadata={"axes": "CYX"})
     tifffile.imwrite(tmp_path / "times.tif", few, imagej=True, metadata={"axes": "TYX"})
     assert describe_volume(tmp_path / "many.tif").notes == (
-        "The file calls its 14 images channels; they were taken for slices.",
+        "The file calls its 14 images channels; they were interpreted as slices.",
     )
     assert np.array_equal(read_volume(tmp_path / "many.tif", voxel_size=1.0).array.T, many)
     assert np.array_equal(read_volume(tmp_path / "times.tif", voxel_size=1.0).array.T, few)

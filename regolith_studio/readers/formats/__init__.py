@@ -21,7 +21,7 @@ class ParsedMesh:
     faces
         Shape (m, 3), int64; may point outside the vertices.
     notes
-        One sentence for each thing in the file that was passed over.
+        One sentence for each thing in the file that was ignored.
     """
 
     vertices: NDArray[np.float64]

@@ -34,9 +34,9 @@ class _Document:
         """One entry of a table of the JSON."""
         rows = self.json.get(table, [])
         if not isinstance(index, int) or not isinstance(rows, list) or not 0 <= index < len(rows):
-            raise FileError(f"is not a proper glTF: it points to {table}[{index}], which is not there.")
+            raise FileError(f"is not a valid glTF: it points to {table}[{index}], which is not there.")
         if not isinstance(rows[index], dict):
-            raise FileError(f"is not a proper glTF: {table}[{index}] is no object.")
+            raise FileError(f"is not a valid glTF: {table}[{index}] is not an object.")
         return dict(rows[index])
 
 
@@ -52,7 +52,7 @@ def parse(data: bytes, path: Path) -> ParsedMesh:
         document = _document(data, path)
         parts = _parts(document)
     except (KeyError, TypeError, ValueError, OverflowError, RecursionError, AttributeError) as error:
-        raise FileError(f"is not a proper glTF: {_fault(error)}; export it again.") from None
+        raise FileError(f"is not a valid glTF: {_fault(error)}; export it again.") from None
     if not parts:
         raise FileError("is a glTF without triangles.")
     offsets = np.cumsum([0, *(len(points) for points, _ in parts)])
@@ -82,7 +82,7 @@ def _fault(error: Exception) -> str:
         case json.JSONDecodeError(lineno=line, colno=sign):
             return f"its JSON breaks in line {line}, sign {sign}"
         case UnicodeDecodeError():
-            return "its JSON is no text"
+            return "its JSON is not text"
         case KeyError():
             return f"an entry of its description lacks its “{error.args[0]}”"
         case RecursionError():
@@ -113,7 +113,7 @@ def _chunks(data: bytes) -> tuple[bytes, bytes]:
     if version != 2:
         raise FileError(f"is a GLB of version {version}; only version 2 is read.")
     if length > len(data):
-        raise FileError(f"is cut short: it promises {length:,} bytes and has {len(data):,}; copy it again.")
+        raise FileError(f"is cut short: it declares {length:,} bytes and has {len(data):,}; copy it again.")
     found: dict[bytes, bytes] = {}
     place = 12
     while place + 8 <= length:
@@ -123,7 +123,7 @@ def _chunks(data: bytes) -> tuple[bytes, bytes]:
         found.setdefault(kind, data[place + 8 : place + 8 + size])
         place += 8 + size
     if b"JSON" not in found:
-        raise FileError("is not a proper GLB: it has no JSON chunk.")
+        raise FileError("is not a valid GLB: it has no JSON chunk.")
     return found[b"JSON"], found.get(b"BIN\0", b"")
 
 
@@ -135,7 +135,7 @@ def _buffer(row: dict[str, str], binary: bytes, path: Path) -> bytes:
         try:
             return base64.b64decode(uri.partition(",")[2], validate=True)
         except binascii.Error:
-            raise FileError("is not a proper glTF: an embedded buffer is not base64.") from None
+            raise FileError("is not a valid glTF: an embedded buffer is not base64.") from None
     if Path(uri).name != uri or ":" in uri or "\\" in uri:
         raise FileError(f"refers to “{uri[:60]}”; only files in its own folder are read.")
     beside = path.parent / uri
@@ -160,7 +160,7 @@ def _instances(document: _Document) -> list[tuple[dict[str, Any], NDArray[np.flo
         index, above, depth = waiting.pop()
         visited += 1
         if visited > MAX_INSTANCES or depth > 200:
-            raise FileError("is not a proper glTF: its nodes go round in circles, or are far too many.")
+            raise FileError("is not a valid glTF: its nodes form a cycle, or are too many.")
         node = document.row("nodes", index)
         matrix = above @ _matrix(node)
         waiting += [(child, matrix, depth + 1) for child in node.get("children", [])]
@@ -202,7 +202,7 @@ def _placed(
     faces = _faces(order, mode)
     if len(faces) and int(faces.max()) >= len(points):
         raise FileError(
-            f"is not a proper glTF: a face points to vertex {faces.max()} of {len(points):,} (plural from 0)."
+            f"is not a valid glTF: a face points to vertex {faces.max()} of {len(points):,} (counted from 0)."
         )
     if np.linalg.det(matrix[:3, :3]) < 0:
         faces = faces[:, ::-1]
@@ -227,7 +227,7 @@ def _accessor(index: Any, document: _Document, kind: str) -> NDArray[np.float64]
         raise FileError("has sparse accessors, which are not read; export it as STL or PLY.")
     if row["type"] != kind or row["componentType"] not in _KINDS:
         raise FileError(
-            f"is not a proper glTF: accessor {index} is of type “{str(row['type'])[:20]}”, not {kind}."
+            f"is not a valid glTF: accessor {index} is of type “{str(row['type'])[:20]}”, not {kind}."
         )
     view = document.row("bufferViews", row["bufferView"])
     document.row("buffers", view["buffer"])

@@ -1,4 +1,4 @@
-"""Wavefront OBJ: polygonal faces; materials, groups, normals and texture coordinates are passed over."""
+"""Wavefront OBJ: polygonal faces; materials, groups, normals and texture coordinates are ignored."""
 
 from pathlib import Path
 
@@ -35,7 +35,7 @@ def parse(data: bytes, _path: Path) -> ParsedMesh:
         raise FileError("holds free-form curves or surfaces only; export it as a triangle mesh.")
     notes: tuple[str, ...] = ("Free-form curves or surfaces in the file were left out.",) if free_form else ()
     if unknown:
-        notes += (f"{unknown:,} lines of the file that are not OBJ were passed over.",)
+        notes += (f"{unknown:,} lines of the file that are not OBJ were ignored.",)
     flat, count = np.array(corners, dtype=np.int64), np.array(sizes, dtype=np.int64)
     return ParsedMesh(vertices, triangulated(vertices, flat, count), notes)
 
@@ -51,14 +51,14 @@ def _positions(rows: list[list[bytes]]) -> np.ndarray[tuple[int, ...], np.dtype[
 def _first_fault(rows: list[list[bytes]]) -> str:
     for number, row in enumerate(rows, start=1):
         if len(row) < 4:
-            return f"is not a proper OBJ: vertex {number:,} has {len(row) - 1} coordinates, not three."
+            return f"is not a valid OBJ: vertex {number:,} has {len(row) - 1} coordinates, not three."
         for word in row[1:4]:
             try:
                 float(word)
             except ValueError:
                 shown = word[:24].decode("ascii", "replace")
-                return f"is not a proper OBJ: vertex {number:,} has “{shown}” where a number belongs."
-    return "is not a proper OBJ: its vertices cannot be read."
+                return f"is not a valid OBJ: vertex {number:,} has “{shown}” where a number belongs."
+    return "is not a valid OBJ: its vertices cannot be read."
 
 
 def _polygons(rows: list[list[bytes]], total: int) -> tuple[list[int], list[int], int, bool]:
@@ -88,13 +88,13 @@ def _face(words: list[bytes], seen: int, total: int, number: int) -> list[int]:
         given = [int(word.partition(b"/")[0]) for word in words]
     except ValueError:
         shown = b" ".join(words)[:40].decode("ascii", "replace")
-        raise FileError(f"is not a proper OBJ: face {number:,} is “{shown}”.") from None
+        raise FileError(f"is not a valid OBJ: face {number:,} is “{shown}”.") from None
     indices = [index - 1 if index > 0 else seen + index for index in given]
     for index, written in zip(indices, given, strict=True):
         if written == 0 or not 0 <= index < total:
             raise FileError(
-                f"is not a proper OBJ: face {number:,} points to vertex {written} "
-                f"of {total:,} (plural from 1)."
+                f"is not a valid OBJ: face {number:,} points to vertex {written} "
+                f"of {total:,} (counted from 1)."
             )
     return indices
 

@@ -16,7 +16,7 @@ _COMMENT = re.compile(rb"#[^\r\n]*")
 
 
 def parse(data: bytes, _path: Path) -> ParsedMesh:
-    """Vertices and triangulated faces; colours, normals and texture coordinates are passed over.
+    """Vertices and triangulated faces; colours, normals and texture coordinates are ignored.
 
     Raises
     ------
@@ -59,7 +59,7 @@ def _vertices(
     width = 4 if "4" in kind else 3
     if count > len(rows):
         raise FileError(
-            f"is cut short: it promises {count:,} vertices and ends after {len(rows):,} lines of numbers."
+            f"is cut short: it declares {count:,} vertices and ends after {len(rows):,} lines of numbers."
         )
     try:
         values = np.array([[float(word) for word in row[:width]] for row in rows[:count]], dtype=np.float64)
@@ -67,7 +67,7 @@ def _vertices(
         raise FileError(_first_fault(rows[:count], width)) from None
     values = values.reshape(count, -1) if count else np.zeros((0, width))
     if values.shape[1] != width:
-        raise FileError(f"is not a proper OFF: its vertices have {values.shape[1]} coordinates, not {width}.")
+        raise FileError(f"is not a valid OFF: its vertices have {values.shape[1]} coordinates, not {width}.")
     if width == 4:
         with np.errstate(all="ignore"):
             values = values[:, :3] / values[:, 3:]
@@ -77,14 +77,14 @@ def _vertices(
 def _first_fault(rows: list[list[bytes]], width: int) -> str:
     for number, row in enumerate(rows):
         if len(row) < width:
-            return f"is not a proper OFF: vertex {number:,} has {len(row)} coordinates, not {width}."
+            return f"is not a valid OFF: vertex {number:,} has {len(row)} coordinates, not {width}."
         for word in row[:width]:
             try:
                 float(word)
             except ValueError:
                 shown = word[:24].decode("ascii", "replace")
-                return f"is not a proper OFF: vertex {number:,} has “{shown}” where a number belongs."
-    return "is not a proper OFF: its vertices cannot be read."
+                return f"is not a valid OFF: vertex {number:,} has “{shown}” where a number belongs."
+    return "is not a valid OFF: its vertices cannot be read."
 
 
 def _polygons(
@@ -96,7 +96,7 @@ def _polygons(
     line = 0
     for face in range(count):
         if line >= len(rows):
-            raise FileError(f"is cut short: it promises {count:,} faces and ends after {face:,}.")
+            raise FileError(f"is cut short: it declares {count:,} faces and ends after {face:,}.")
         words, line = list(rows[line]), line + 1
         try:
             size = int(words[0])
@@ -104,15 +104,15 @@ def _polygons(
                 words, line = words.__iadd__(rows[line]), line + 1
             indices = [int(word) for word in words[1 : size + 1]]
         except ValueError:
-            raise FileError(f"is not a proper OFF: face {face:,} is not made of whole numbers.") from None
+            raise FileError(f"is not a valid OFF: face {face:,} is not made of whole numbers.") from None
         if size < 1 or len(indices) < size:
             raise FileError(
-                f"is not a proper OFF: face {face:,} promises {size} corners and has {len(indices)}."
+                f"is not a valid OFF: face {face:,} declares {size} corners and has {len(indices)}."
             )
         if min(indices) < 0 or max(indices) >= n_vertices:
             raise FileError(
-                f"is not a proper OFF: face {face:,} points to vertex {max(indices, key=abs)} "
-                f"of {n_vertices:,} (plural from 0)."
+                f"is not a valid OFF: face {face:,} points to vertex {max(indices, key=abs)} "
+                f"of {n_vertices:,} (counted from 0)."
             )
         corners += indices
         sizes.append(size)

@@ -21,7 +21,7 @@ _CORNERS = ("vertex_indices", "vertex_index", "vertex_indexes")
 
 
 def parse(data: bytes, _path: Path) -> ParsedMesh:
-    """Vertices and triangulated faces; colours, normals and texture coordinates are passed over.
+    """Vertices and triangulated faces; colours, normals and texture coordinates are ignored.
 
     Raises
     ------
@@ -54,7 +54,7 @@ def _ascii_tables(data: bytes, header: Header) -> tuple[dict[str, Columns], tupl
         if trimmed is None:
             raise
         tables, _ = _from_words(trimmed, header)
-        return tables, ("The file's lines hold more numbers than its header says; the rest was passed over.",)
+        return tables, ("The file's lines hold more numbers than its header states; the rest was ignored.",)
     return tables, (f"The file goes on for {surplus:,} numbers after its last row.",) if surplus else ()
 
 
@@ -91,7 +91,7 @@ def _indices(values: NDArray[np.float64], n_vertices: int, allow_stop: bool) -> 
         index = float(values[~good][0])
         shown = f"{index:,.0f}" if index.is_integer() else f"{index:g}"
         raise FileError(
-            f"is not a proper PLY: a face points to vertex {shown} of {n_vertices:,} (plural from 0)."
+            f"is not a valid PLY: a face points to vertex {shown} of {n_vertices:,} (counted from 0)."
         )
     return values.astype(np.int64)
 

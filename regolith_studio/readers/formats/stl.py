@@ -56,7 +56,7 @@ def _parse_binary(data: bytes) -> ParsedMesh:
     declared, held = _declared(data), (len(data) - HEADER) // RECORD.itemsize
     if declared > held:
         raise FileError(
-            f"is cut short or not an STL: it promises {declared:,} triangles and has room for {held:,}; "
+            f"is cut short or not an STL: it declares {declared:,} triangles and has room for {held:,}; "
             "copy or export it again."
         )
     if declared == 0:

@@ -42,14 +42,14 @@ def parse(data: bytes, _path: Path) -> ParsedMesh:
             return _built(package)
     except (zipfile.BadZipFile, zlib.error, NotImplementedError, EOFError, RuntimeError, OSError) as error:
         if isinstance(error, RecursionError):
-            raise FileError("is not a proper 3MF: its components go round in circles.") from None
-        raise FileError("is not a proper 3MF: its archive is damaged; export it again.") from None
+            raise FileError("is not a valid 3MF: its components form a cycle.") from None
+        raise FileError("is not a valid 3MF: its archive is damaged; export it again.") from None
     except ElementTree.ParseError:
-        raise FileError("is not a proper 3MF: the XML of its model is broken.") from None
+        raise FileError("is not a valid 3MF: the XML of its model is broken.") from None
     except KeyError as error:
-        raise FileError(f"is not a proper 3MF: its model lacks {_lacking(error)}; export it again.") from None
+        raise FileError(f"is not a valid 3MF: its model lacks {_lacking(error)}; export it again.") from None
     except (ValueError, OverflowError) as error:
-        raise FileError(f"is not a proper 3MF: {_no_number(error)}; export it again.") from None
+        raise FileError(f"is not a valid 3MF: {_no_number(error)}; export it again.") from None
 
 
 def _lacking(error: KeyError) -> str:
@@ -94,7 +94,7 @@ class _Package:
             self._objects[part] = dict(reversed(found))
         if key not in self._objects[part]:
             shown = printable(key)[:20]
-            raise FileError(f"is not a proper 3MF: it builds the object “{shown}”, which is not there.")
+            raise FileError(f"is not a valid 3MF: it builds the object “{shown}”, which is not there.")
         return self._objects[part][key]
 
     def _find_root(self) -> str:
@@ -110,14 +110,14 @@ class _Package:
     def _read(self, part: str) -> bytes:
         entry = self._archive.getinfo(part)
         if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
-            raise FileError("is not a proper 3MF: a part is compressed in another way than deflate.")
+            raise FileError("is not a valid 3MF: a part is compressed in another way than deflate.")
         if (
             entry.file_size > MIN_SUSPICIOUS_BYTES
             and entry.file_size > MAX_PACKING_RATIO * entry.compress_size
         ):
             size = entry.file_size / 1e6
             raise FileError(
-                f"unpacks to {size:,.0f} MB, {MAX_PACKING_RATIO} times its size or more: no mesh does."
+                f"unpacks to {size:,.0f} MB, {MAX_PACKING_RATIO} times its size or more, which no mesh does."
             )
         with self._archive.open(part) as file:
             data = file.read(MAX_PART_BYTES + 1)
@@ -128,7 +128,7 @@ class _Package:
 
 def _xml(data: bytes) -> Element:
     if b"<!DOCTYPE" in data or b"<!ENTITY" in data:
-        raise FileError("is not a proper 3MF: its XML defines entities.")
+        raise FileError("is not a valid 3MF: its XML defines entities.")
     return ElementTree.fromstring(data)
 
 
@@ -164,7 +164,7 @@ def _place(
     """Add the triangles of the object that `use` (an item or a component) refers to."""
     package.placements += 1
     if depth > 50 or package.placements > MAX_PLACEMENTS:
-        raise FileError("is not a proper 3MF: its components go round in circles, or are far too many.")
+        raise FileError("is not a valid 3MF: its components form a cycle, or are too many.")
     elsewhere = next((value for key, value in use.attrib.items() if key.rpartition("}")[2] == "path"), None)
     part = elsewhere.lstrip("/") if elsewhere else part
     matrix = above @ _matrix(use.get("transform"))
@@ -202,7 +202,7 @@ def _triangles(mesh: Element) -> _Triangles:
     ]
     indices = np.array(faces, dtype=np.int64).reshape(-1, 3)
     if len(indices) and (indices.min() < 0 or indices.max() >= len(points)):
-        raise FileError(f"is not a proper 3MF: a triangle points beyond the {len(points):,} vertices.")
+        raise FileError(f"is not a valid 3MF: a triangle points beyond the {len(points):,} vertices.")
     return np.array(points, dtype=np.float64).reshape(-1, 3), indices
 
 

@@ -23,13 +23,13 @@ def parse(data: bytes) -> ParsedPositions:
     """
     start, steps = data.rfind(b"ITEM: TIMESTEP"), data.count(b"ITEM: TIMESTEP")
     if start < 0:
-        raise FileError("is no LAMMPS dump: it has no ITEM: TIMESTEP.")
+        raise FileError("is not a LAMMPS dump: it has no ITEM: TIMESTEP.")
     lines = data[start:].splitlines()
     sections = _sections(lines)
     count = _count(sections)
     names, rows = _atoms(sections)
     if len(rows) != count:
-        raise FileError(f"is cut short: its last step promises {count:,} particles and has {len(rows):,}.")
+        raise FileError(f"is cut short: its last step declares {count:,} particles and has {len(rows):,}.")
     numbers, names = _unscaled(_numbers(rows, names), names, sections)
     columns = named_columns(names)
     if columns.axes is None:
@@ -58,7 +58,7 @@ def _sections(lines: list[bytes]) -> dict[str, tuple[str, list[bytes]]]:
 def _count(sections: dict[str, tuple[str, list[bytes]]]) -> int:
     rows = sections.get("NUMBER OF ATOMS", ("", []))[1]
     if len(rows) != 1 or not re.fullmatch(rb"\s*\d{1,12}\s*", rows[0]):
-        raise FileError("is a broken LAMMPS dump: it does not say how many particles it holds.")
+        raise FileError("is a broken LAMMPS dump: it does not state its number of particles.")
     return int(rows[0])
 
 

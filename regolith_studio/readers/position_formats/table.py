@@ -5,7 +5,7 @@ from regolith_studio.readers.error_messages import plural
 from regolith_studio.readers.number_rows import number_rows
 from regolith_studio.readers.position_formats import ParsedPositions, PositionFormat, named_columns, sized
 
-_FOURTH = "The fourth column has no name; it was taken for the diameter."
+_FOURTH = "The fourth column has no name; it was interpreted as the diameter."
 
 
 def parse(data: bytes) -> ParsedPositions:

@@ -33,7 +33,7 @@ def parse(data: bytes) -> ParsedPositions:
     """
     head = data[:1024].splitlines()
     if len(head) < 3 or not head[0].startswith(b"# vtk DataFile"):
-        raise FileError("is no legacy VTK file: its first line does not say so.")
+        raise FileError("is not a legacy VTK file: its first line lacks the identifier.")
     encoding = head[2].strip().upper()
     if encoding not in (b"ASCII", b"BINARY"):
         raise FileError("is a broken VTK file: its third line is neither ASCII nor BINARY.")
@@ -68,18 +68,18 @@ def _values(data: bytes, place: int, count: int, kind: bytes, binary: bool) -> n
     if binary:
         dtype = np.dtype(_TYPES[name]).newbyteorder(">")
         if place + count * dtype.itemsize > len(data):
-            raise FileError(f"is cut short: it promises {count:,} numbers and ends before.")
+            raise FileError(f"is cut short: it declares {count:,} numbers and ends before.")
         return np.frombuffer(data, dtype, count, place).astype(np.float64)
     # A number takes two bytes or more, and few take more than 32.
     if 2 * count > len(data) - place + 1:
-        raise FileError(f"is cut short: it promises {count:,} numbers and ends before.")
+        raise FileError(f"is cut short: it declares {count:,} numbers and ends before.")
     words = data[place : place + 40 * count + 64].split(maxsplit=count)[:count]
     try:
         values = np.array([float(word) for word in words])
     except ValueError:
         raise FileError("is a broken VTK file: a word stands where a number belongs.") from None
     if len(values) < count:
-        raise FileError(f"is cut short: it promises {count:,} numbers and has {len(values):,}.")
+        raise FileError(f"is cut short: it declares {count:,} numbers and has {len(values):,}.")
     return values
 
 

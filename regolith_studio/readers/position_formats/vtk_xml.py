@@ -39,7 +39,7 @@ def parse(data: bytes) -> ParsedPositions:
     except ElementTree.ParseError:
         raise FileError("is a broken VTK file: its XML does not hold together.") from None
     if root.tag != "VTKFile" or root.get("type") not in ("PolyData", "UnstructuredGrid"):
-        raise FileError("is no VTK file of points: it is neither poly data nor an unstructured grid.")
+        raise FileError("is not a VTK file of points: it is neither poly data nor an unstructured grid.")
     tail = (b"", b"") if appended is None else (appended[1], data[appended.end() :])
     source = _Source(_order(root), _header_type(root), root.get("compressor"), tail[0].decode(), tail[1])
     pieces = [_piece(piece, source) for piece in root.iter("Piece")]
@@ -138,7 +138,7 @@ def _piece(piece: ElementTree.Element, source: _Source) -> tuple[np.ndarray, np.
     points = values.reshape(-1, 3)
     count = piece.get("NumberOfPoints", "")
     if count.isdigit() and int(count) != len(points):
-        raise FileError(f"is cut short: it promises {int(count):,} points and has {len(points):,}.")
+        raise FileError(f"is cut short: it declares {int(count):,} points and has {len(points):,}.")
     for each in piece.findall("PointData/DataArray"):
         factor = _SIZES.get(each.get("Name", "").lower())
         if factor is not None and each.get("NumberOfComponents", "1") == "1":

@@ -35,7 +35,7 @@ def parse(data: bytes) -> ParsedPositions:
     start, count = last
     rows = [line.split() for line in lines[start + 2 : start + 2 + count]]
     if len(rows) < count or not count:
-        raise FileError(f"is cut short: it promises {count:,} particles and has {len(rows):,}.")
+        raise FileError(f"is cut short: it declares {count:,} particles and has {len(rows):,}.")
     columns, width = _columns(lines[start + 1].decode("utf-8", "replace"), len(rows[0]))
     numbers = _numbers(rows, columns, width)
     unit = NamedColumns((0, 1, 2), 3 if columns.size is not None else None, columns.is_radius)
@@ -47,7 +47,7 @@ def _table(data: bytes) -> ParsedPositions:
     numbers = number_rows(data).numbers
     if numbers.shape[1] not in (3, 4):
         raise FileError(f"has {plural(numbers.shape[1], 'column')}; x, y, z and perhaps a diameter are read.")
-    note = "The fourth column has no name; it was taken for the diameter."
+    note = "The fourth column has no name; it was interpreted as the diameter."
     if numbers.shape[1] == 3:
         return ParsedPositions(numbers)
     return ParsedPositions(numbers[:, :3], numbers[:, 3], notes=(note,))
@@ -90,7 +90,7 @@ def _numbers(rows: list[list[bytes]], columns: NamedColumns, width: int) -> np.n
     try:
         return np.array([[float(row[column]) for column in picked] for row in rows])
     except (ValueError, IndexError):
-        raise FileError(f"is a broken XYZ file: not all its rows are {width} proper columns.") from None
+        raise FileError(f"is a broken XYZ file: not all its rows are {width} valid columns.") from None
 
 
 FORMAT = PositionFormat("xyz", "an XYZ file", (".xyz", ".extxyz"), lambda _head: False, parse)

@@ -48,7 +48,7 @@ def answer(request: dict[str, Any]) -> Message:
         sentence = message_about(path, f"cannot be opened: {os_error_reason(error)}.")
         return Message({"status": "refused", "sentence": sentence})
     except Exception as error:  # noqa: BLE001 (whatever a parser trips over is the file's fault)
-        sentence = message_about(path, "is damaged in a way that its reader does not know; export it again.")
+        sentence = message_about(path, "is damaged; export it again.")
         return Message({"status": "refused", "sentence": sentence, "details": repr(error)})
     return Message({**message.header, "status": "read"}, message.arrays)
 

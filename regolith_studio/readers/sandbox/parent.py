@@ -99,13 +99,11 @@ class Sandbox:
                 limit = options.get("memory", self._memory) / 1024**3
                 reason = f"needs more than the {limit:.3g} GiB of memory that a reader may use."
             case "busy":
-                reason = (
-                    f"was given up after {work:.2g} s of work: it is damaged, or far larger than it looks."
-                )
+                reason = f"was given up after {work:.2g} s of work: it is damaged, or unpacks to far more."
             case "late":
-                reason = f"was given up after {seconds:.2g} s: it is damaged, or far larger than it looks."
+                reason = f"was given up after {seconds:.2g} s: it is damaged, or unpacks to far more."
             case _:
-                reason = "is damaged: it ended the process that tried to read it; export it again."
+                reason = "is damaged: it crashed the process that read it; export it again."
         raise FileError(message_about(path, reason))
 
     def close(self) -> None:

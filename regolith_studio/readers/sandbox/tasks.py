@@ -86,8 +86,8 @@ def _mesh_format_of(data: bytes, path: Path) -> tuple[MeshFormat, tuple[str, ...
             "the page Scan of the window."
         )
     raise FileError(
-        f"is of no kind that is read here ({suffix or 'no suffix'}); "
-        f"what is read are meshes in {', '.join(sorted(mesh_suffixes()))}."
+        f"has an unsupported file type ({suffix or 'no suffix'}); "
+        f"supported are meshes in {', '.join(sorted(mesh_suffixes()))}."
     )
 
 
@@ -173,7 +173,7 @@ def _position_format_of(data: bytes, path: Path) -> PositionFormat:
     named = next((row for row in rows if path.suffix.lower() in row.suffixes), None)
     if shown is None and named is None:
         raise FileError(
-            f"holds no positions that are read here ({printable(path.suffix) or 'no suffix'}); they end in "
+            f"has an unsupported file type ({printable(path.suffix) or 'no suffix'}); positions end in "
             f"{', '.join(sorted(position_suffixes()))}."
         )
     return shown or named  # type: ignore[return-value]
@@ -187,11 +187,11 @@ def _checked_positions(parsed: ParsedPositions) -> ParsedPositions:
     if diameters is not None:
         good &= (diameters > 0.0) & (diameters < MAX_POSITION)
     if not good.any():
-        raise FileError("has no particle whose position and size are proper numbers.")
+        raise FileError("has no particle whose position and size are valid numbers.")
     lost = len(points) - int(np.count_nonzero(good))
     if not lost:
         return parsed
-    note = f"Left out {lost:,} of {len(points):,} particles whose position or size is no proper number."
+    note = f"Left out {lost:,} of {len(points):,} particles whose position or size is not a valid number."
     kept = None if diameters is None else diameters[good]
     return replace(parsed, points=points[good], diameters=kept, notes=(*parsed.notes, note))
 

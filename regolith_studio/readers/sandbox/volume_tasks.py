@@ -68,7 +68,7 @@ def read_checked_slices(volume: OpenVolume, z0: int, z1: int) -> NDArray[Any]:
         voxels = volume.read(z0, z1)
     header = volume.header
     if voxels.shape != (z1 - z0, *header.shape[1:]) or voxels.dtype != header.dtype:
-        raise FileError("is damaged: its slices are not of the size and type that its header says.")
+        raise FileError("is damaged: its slices are not of the size and type that its header states.")
     return voxels
 
 
@@ -82,7 +82,7 @@ def open_volume_file(path: Path, request: dict[str, Any]) -> tuple[OpenVolume, V
     """
     row, _ = volume_format_of(path)
     if request.get("axes") and row.key not in WITH_AXES:
-        raise FileError(f"is {row.label}, which says itself how its axes lie; leave the axes out.")
+        raise FileError(f"is {row.label}, which states its axes itself; leave the axes out.")
     row.prepare()
     with np.errstate(all="ignore"):
         volume = row.open(path, request)
@@ -96,7 +96,7 @@ def volume_format_of(path: Path) -> tuple[VolumeFormat, tuple[str, ...]]:
     Raises
     ------
     FileError
-        If it is no volume format.
+        If it is not a volume format.
     """
     rows = VOLUME_FORMATS
     if path.is_dir():
@@ -117,7 +117,7 @@ def volume_format_of(path: Path) -> tuple[VolumeFormat, tuple[str, ...]]:
     if name.endswith(tuple(mesh_suffixes())):
         raise FileError("is a mesh, not a volume: it is a particle already, open or describe it as it is.")
     raise FileError(
-        f"is no volume that is read here ({printable(path.suffix) or 'no suffix'}); volumes end in "
+        f"has an unsupported file type ({printable(path.suffix) or 'no suffix'}); volumes end in "
         f"{', '.join(sorted(volume_suffixes()))}."
     )
 
@@ -165,8 +165,8 @@ def _plausible_size(header: VoxelHeader) -> tuple[Sizes | None, tuple[str, ...]]
         return size, ()
     shown = " × ".join(f"{edge:.3g}" for edge in size)
     return None, (
-        f"The file says that a voxel is {shown} {unit or ''}".rstrip()
-        + ", which no scan has; give the size of a voxel.",
+        f"The file states a voxel of {shown} {unit or ''}".rstrip()
+        + ", which is implausible; give the size of a voxel.",
     )
 
 

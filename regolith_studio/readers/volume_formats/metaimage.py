@@ -85,7 +85,7 @@ def _fields(head: bytes) -> tuple[dict[str, str], int]:
             continue
         name, equals, value = line.partition("=")
         if not equals or not re.fullmatch(r"\s*\w+\s*", name):
-            raise FileError("is a broken MetaImage: a line of its header is no field.")
+            raise FileError("is a broken MetaImage: a line of its header is not a field.")
         name = name.strip().lower()
         if name in fields:
             raise FileError(
@@ -94,7 +94,7 @@ def _fields(head: bytes) -> tuple[dict[str, str], int]:
         fields[name] = value.strip()
         if name == "elementdatafile":
             return fields, place
-    raise FileError("is a broken MetaImage: its header does not say where its voxels are.")
+    raise FileError("is a broken MetaImage: its header does not state where its voxels are.")
 
 
 def _stored_type(fields: dict[str, str]) -> np.dtype[Any]:

@@ -126,7 +126,7 @@ def _fields(head: bytes) -> tuple[Order, Fields]:
                 for name, (place, kind) in places.items()
             }
             return order, {**fields, "offset": _offset(float(fields["offset"]), length)}
-    raise FileError("is no NIfTI file, or is cut short: its header is neither of 348 nor of 540 bytes.")
+    raise FileError("is not a NIfTI file, or is cut short: its header is neither of 348 nor of 540 bytes.")
 
 
 def _check_signature(head: bytes, length: int) -> None:
@@ -134,9 +134,9 @@ def _check_signature(head: bytes, length: int) -> None:
     if magic in (b"ni1\0", b"ni2\0\r\n\x1a\n"):
         raise FileError("keeps its voxels in a second file (.img); save it as one file (.nii).")
     if length == 348 and magic != b"n+1\0":
-        raise FileError("is no NIfTI-1 file: its signature is missing (it may be an Analyze header).")
+        raise FileError("is not a NIfTI-1 file: its signature is missing (it may be an Analyze header).")
     if length == 540 and magic != b"n+2\0\r\n\x1a\n":
-        raise FileError("is no NIfTI-2 file: its signature is missing or damaged.")
+        raise FileError("is not a NIfTI-2 file: its signature is missing or damaged.")
 
 
 def _offset(value: float, length: int) -> int:

@@ -36,7 +36,7 @@ def open_npy(path: Path, options: Mapping[str, Any]) -> PlainVoxels | Transposed
                 raise FileError(f"is an NPY file of version {version[0]}.{version[1]}, not 1.0 or 2.0.")
             shape, fortran, dtype = _HEADERS[version](file, max_header_size=MAX_HEADER_BYTES)
         except _NONSENSE:
-            raise FileError("is a broken NPY file: its header makes no sense; save it again.") from None
+            raise FileError("is a broken NPY file: its header is invalid; save it again.") from None
         offset = file.tell()
     if not options.get("axes"):
         three = three_dimensions(shape)

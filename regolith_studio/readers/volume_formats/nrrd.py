@@ -89,7 +89,7 @@ def _opened(
             raise FileError("counts its bytes from the end of a compressed stream, which cannot be.")
         return DeflatedVoxels(source, start, skip, header, stored)
     if not encoding:
-        raise FileError("is a broken NRRD: it does not say which encoding it has, raw or gzip.")
+        raise FileError("is a broken NRRD: it states no encoding (raw or gzip).")
     raise FileError(f"is an NRRD in the encoding “{printable(encoding)[:20]}”; raw and gzip are read.")
 
 
@@ -100,14 +100,14 @@ def _fields(head: bytes) -> tuple[dict[str, str], int | None]:
         raise FileError("is a broken NRRD: its header does not end.")
     lines = head[: end.start() if end else len(head)].decode("utf-8", "replace").splitlines()
     if not lines or not re.fullmatch(r"NRRD000[1-5]", lines[0]):
-        raise FileError("is no NRRD of the versions 1 to 5.")
+        raise FileError("is not an NRRD of versions 1 to 5.")
     fields: dict[str, str] = {}
     for number, line in enumerate(lines[1:], start=2):
         if line.startswith("#") or ":=" in line or not line.strip():
             continue
         name, colon, value = line.partition(":")
         if not colon:
-            raise FileError(f"is a broken NRRD: line {number} of its header is no field.")
+            raise FileError(f"is a broken NRRD: line {number} of its header is not a field.")
         name = {
             "centers": "centerings",
             "datafile": "data file",
@@ -127,7 +127,7 @@ def _stored_type(fields: dict[str, str]) -> np.dtype[Any]:
     stored = np.dtype(_TYPE[name])
     endian = fields.get("endian", "").lower()
     if stored.itemsize > 1 and endian not in ("little", "big"):
-        raise FileError("is a broken NRRD: it does not say which byte order it has.")
+        raise FileError("is a broken NRRD: it states no byte order.")
     return stored.newbyteorder(">" if endian == "big" else "<")
 
 

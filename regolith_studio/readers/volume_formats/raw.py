@@ -25,7 +25,7 @@ def open_raw(path: Path, options: Mapping[str, Any]) -> PlainVoxels:
     """
     given = options.get("raw")
     if given is None:
-        raise FileError("is a raw file, which does not say what it holds: give its shape and voxel type.")
+        raise FileError("is a raw file, which has no header: give its shape and voxel type.")
     nx, ny, nz = given["shape"]
     stored = np.dtype(str(given["dtype"]))
     shape = three_dimensions((nz, ny, nx))

@@ -34,7 +34,7 @@ class SliceFiles:
             image = _image(path)
             if image.shape != (ny, nx) or image.dtype != self.header.dtype:
                 raise FileError(
-                    f"is no volume: its slice {display_name(path)} has {format_shape(image.shape[::-1])} "
+                    f"is not a volume: its slice {display_name(path)} has {format_shape(image.shape[::-1])} "
                     f"pixels of {image.dtype}, the first one {nx} × {ny} of {self.header.dtype}."
                 )
             out[place] = image
@@ -78,7 +78,7 @@ def _image(path: Path) -> NDArray[Any]:
         raise FileError(f"cannot be read: its slice {display_name(path)} is damaged.") from None
     image = image.squeeze() if image.ndim > 2 else image
     if image.ndim != 2 or not image.size:
-        raise FileError(f"cannot be read: its slice {display_name(path)} is no single grey image.")
+        raise FileError(f"cannot be read: its slice {display_name(path)} is not a single grey image.")
     return image.astype(voxel_type(image.dtype), copy=False)
 
 

@@ -99,7 +99,7 @@ def _stack(path: Path, file: Any) -> OpenVolume:
     pages = list(series.pages)
     if len(pages) != shape[0] or any(each is None for each in pages):
         raise FileError(
-            f"is no stack of slices: its {len(pages):,} pages do not make the shape {format_shape(shape)}."
+            f"is not a stack of slices: its {len(pages):,} pages do not make the shape {format_shape(shape)}."
         )
     return TiffPages(file, pages, header)
 
@@ -108,7 +108,7 @@ def _check_run(series: Any) -> None:
     """Refuse a stack that would lose pages from its midst."""
     places = [page.index for page in series.pages if page is not None]
     if places != list(range(places[0], places[0] + len(places))):
-        raise FileError("is no stack of slices: among its pages are some of another size or type.")
+        raise FileError("is not a stack of slices: among its pages are some of another size or type.")
 
 
 def _check_colours(series: Any, page: Any) -> tuple[str, ...]:
@@ -117,7 +117,7 @@ def _check_colours(series: Any, page: Any) -> tuple[str, ...]:
     notes: tuple[str, ...] = ()
     for axis, edge in zip(series.axes, series.shape, strict=True):
         if axis == "C" and edge > MAX_CHANNELS and max(others, default=1) == 1:
-            notes = (f"The file calls its {edge} images channels; they were taken for slices.",)
+            notes = (f"The file calls its {edge} images channels; they were interpreted as slices.",)
         elif axis in "SC" and edge > 1:
             raise FileError(f"holds {edge} colours or channels; save one of them as greys.")
     channels = _CHANNELS.search(page.description[:100_000])

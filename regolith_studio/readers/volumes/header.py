@@ -146,13 +146,11 @@ def voxel_size_in_micrometres(
     sizes, its_unit = stated
     if sizes is None:
         raise InputError(
-            f"{display_name(path)} does not say how large a voxel is; give the size in micrometres."
+            f"{display_name(path)} does not state the size of a voxel; give the size in micrometres."
         )
     if unit is None and its_unit is None:
         shown = " × ".join(f"{edge:g}" for edge in sizes)
-        raise InputError(
-            f"{display_name(path)} says that a voxel is {shown}, but not in which unit; give the unit."
-        )
+        raise InputError(f"{display_name(path)} states a voxel of {shown} without a unit; give the unit.")
     factor = unit_factor(unit or str(its_unit))
     return sizes[0] * factor, sizes[1] * factor, sizes[2] * factor
 

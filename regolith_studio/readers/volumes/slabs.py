@@ -147,7 +147,7 @@ def open_slab_reader(
     Raises
     ------
     FileError
-        With one sentence if it is no volume, is damaged, or holds several and none was named.
+        With one sentence if it is not a volume, is damaged, or holds several and none was named.
     """
     reader = sandbox or volume_sandbox()
     names = slice_names(path) if path.is_dir() else ()

@@ -109,10 +109,10 @@ def three_dimensions(shape: tuple[int, ...], named: str = "shape") -> Shape:
         edges.remove(1)
     if len(edges) != 3:
         raise FileError(
-            f"is no volume: its {named} is {format_shape(shape)}, and three dimensions are needed."
+            f"is not a volume: its {named} is {format_shape(shape)}, and three dimensions are needed."
         )
     if max(edges) > MAX_EDGE:
-        raise FileError(f"is damaged: no volume has the {named} {format_shape(shape)}.")
+        raise FileError(f"is damaged: no volume can have the {named} {format_shape(shape)}.")
     return edges[0], edges[1], edges[2]
 
 

@@ -317,5 +317,5 @@ def start_before_end(path: Path, header: VoxelHeader, stored: np.dtype[np.generi
     """
     start = path.stat().st_size - math.prod(header.shape) * stored.itemsize
     if start < 0:
-        raise FileError("is cut short: it holds fewer voxels than its header says.")
+        raise FileError("is cut short: it holds fewer voxels than its header states.")
     return start

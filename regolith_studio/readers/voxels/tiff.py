@@ -19,7 +19,7 @@ _INCH, _CENTIMETRE = 25.4, 10.0
 """Millimetres."""
 _PRINTERS = (72, 96, 100, 150, 180, 200, 240, 300, 360, 400, 600, 720, 1200, 2400)
 """Resolutions, in dots per inch, that programs write when they know none."""
-_CUBIC = "The file states the width of a pixel only; the slices were taken to be as far apart."
+_CUBIC = "The file states the width of a pixel only; the slices were assumed to be the same distance apart."
 
 
 class _ErrorLog(logging.Handler):
@@ -51,7 +51,7 @@ def open_tiff_file(path: Path) -> Any:
     Raises
     ------
     FileError
-        If it is no TIFF file, or tifffile has logged an error.
+        If it is not a TIFF file, or tifffile has logged an error.
     """
     import tifffile
 
@@ -69,7 +69,7 @@ def open_tiff_file(path: Path) -> Any:
             if file is not None:
                 file.close()
             if "not a TIFF file" in message or "invalid TIFF version" in message:
-                raise FileError("is no TIFF file: it does not begin as one.") from None
+                raise FileError("is not a TIFF file: it does not begin as one.") from None
             raise FileError("is a broken TIFF file, or is cut short; copy or export it again.") from None
     if log.messages or not pages:
         file.close()
@@ -87,7 +87,7 @@ def check_page(page: Any, size: int, number: int) -> None:
     Raises
     ------
     FileError
-        If not, naming the page by its `number`, plural from 0.
+        If not, naming the page by its `number`, counted from 0.
     """
     for place, count in zip(page.dataoffsets, page.databytecounts, strict=False):
         if place + count > size:
@@ -133,7 +133,7 @@ def _ome(description: str) -> Stated:
         return None, None, ()
     unit = unit_named(found.get("XUnit", "µm"))
     if any(unit_named(found.get(f"{axis}Unit", "µm")) != unit for axis in "YZ" if axis in found):
-        return None, None, ("The file states voxel edges in different units; they were passed over.",)
+        return None, None, ("The file states voxel edges in different units; they were ignored.",)
     width = _number(found["X"], 0.0)
     size = sizes_or_none((width, _number(found.get("Y"), width), _number(found.get("Z"), width)))
     return size, unit if size else None, () if "Z" in found else (_CUBIC,)
