@@ -114,3 +114,9 @@ def wasserstein_1(one: Distribution, other: Distribution) -> float:
     from scipy.stats import wasserstein_distance  # 30 MB that a window need not hold from its start
 
     return float(wasserstein_distance(one.values, other.values, one.weights, other.weights))
+
+
+def kolmogorov_smirnov_distance(one: Distribution, other: Distribution) -> float:
+    """Largest difference of the two ECDFs, 0 to 1."""
+    places = np.union1d(one.values, other.values)
+    return float(np.abs(one.ecdf(places) - other.ecdf(places)).max())

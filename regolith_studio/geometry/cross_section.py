@@ -64,6 +64,12 @@ class CrossSection:
             loops.append(loop)
         return loops
 
+    def outline(self) -> FloatArray:
+        """The loops in the axes of :func:`plane_axes`, separated by rows of NaN, shape (m, 2)."""
+        flat, gap = self.flat(), np.full((1, 2), np.nan)
+        parts = [part for loop in self.loops() for part in (flat[loop], gap)]
+        return np.vstack(parts[:-1]) if parts else np.empty((0, 2))
+
 
 def cross_section(mesh: Mesh, normal: ArrayLike, offset: float) -> CrossSection:
     """Cut a closed, outward oriented mesh by the plane <n, x> = `offset`; `normal` need not have length 1.

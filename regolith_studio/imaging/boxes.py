@@ -14,6 +14,13 @@ def box_between(low: Sequence[int], high: Sequence[int]) -> Box:
     return x, y, z
 
 
+def box_about(centre: Sequence[int], edge: int, shape: Sequence[int]) -> Box:
+    """A cube of `edge` voxels around a voxel, moved to lie inside a volume of this shape, or smaller."""
+    size = np.minimum(edge, shape)
+    low = np.clip(np.array(centre) - size // 2, 0, np.array(shape) - size)
+    return box_between(low.tolist(), (low + size).tolist())
+
+
 def n_voxels(box: Box) -> int:
     """Voxels in a box."""
     return int(np.prod([side.stop - side.start for side in box]))

@@ -2,8 +2,14 @@
 
 import numpy as np
 import pytest
+from scipy.stats import ks_2samp
 
-from regolith_studio.descriptors.distributions import Distribution, distribution, wasserstein_1
+from regolith_studio.descriptors.distributions import (
+    Distribution,
+    distribution,
+    kolmogorov_smirnov_distance,
+    wasserstein_1,
+)
 
 SAMPLE = [
     {"volume": 8.0, "sphericity": 0.5},
@@ -71,3 +77,10 @@ def test_that_impossible_samples_are_refused() -> None:
         distribution(SAMPLE, "sphericity", "beauty")
     with pytest.raises(ValueError, match="between 0 and 1"):
         distribution(SAMPLE, "sphericity").quantile([1.2])
+
+
+def test_that_the_kolmogorov_smirnov_distance_of_equal_weights_is_that_of_scipy() -> None:
+    rng = np.random.default_rng(3)
+    one, other = rng.normal(size=40), rng.normal(0.5, 2.0, size=25)
+    weighted = [Distribution(values, np.ones(len(values))) for values in (one, other)]
+    assert kolmogorov_smirnov_distance(*weighted) == pytest.approx(ks_2samp(one, other).statistic)

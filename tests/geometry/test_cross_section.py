@@ -71,3 +71,14 @@ def test_that_the_drawing_keeps_lengths_and_turns_the_same_way(normal: tuple[flo
 def test_that_a_plane_needs_a_normal() -> None:
     with pytest.raises(ValueError, match="normal"):
         cross_section(CUBE, (0, 0, 0), 0.0)
+
+
+def test_that_outlines_of_several_loops_are_separated_by_nan() -> None:
+    shifted = CUBE.vertices + np.array([5.0, 0.0, 0.0])
+    faces = np.vstack([CUBE.faces, CUBE.faces + len(CUBE.vertices)])
+    pair = Mesh(np.vstack([CUBE.vertices, shifted]), faces)
+    cut = cross_section(pair, (0, 0, 1), 0.3)
+    assert np.isnan(cut.outline()).all(axis=1).sum() == len(cut.loops()) - 1 == 1
+    steps = np.linalg.norm(np.diff(cut.outline(), axis=0), axis=1)
+    assert np.nansum(steps) == pytest.approx(cut.length)
+    assert cross_section(CUBE, (0, 0, 1), 1.5).outline().shape == (0, 2)

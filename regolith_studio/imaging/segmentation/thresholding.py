@@ -87,6 +87,16 @@ class Histogram:
         """Middle of each bin."""
         return (self.edges[1:] + self.edges[:-1]) / 2
 
+    @property
+    def shares(self) -> FloatArray:
+        """Fraction of the values in each bin; zeros if there are none."""
+        return np.asarray(self.counts / max(int(self.counts.sum()), 1))
+
+    def bin_of(self, value: float) -> int | None:
+        """Index of the bin that a grey value falls into; ``None`` outside all bins."""
+        index = int(np.searchsorted(self.edges, value, side="right")) - 1
+        return index if 0 <= index < len(self.counts) else None
+
     def __add__(self, other: "Histogram") -> "Histogram":
         if not np.array_equal(self.edges, other.edges):
             raise ValueError("only histograms of the same bins can be added")

@@ -175,7 +175,7 @@ class CoarseningPanel(QWidget):
         form.addRow(tr("Seed"), seed)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(heading(tr("CoarseningResult polyhedron")))
+        layout.addWidget(heading(tr("Coarsened polyhedron")))
         layout.addLayout(amount)
         layout.addLayout(form)
         layout.addWidget(self.more)

@@ -64,7 +64,7 @@ class PictureExport(QObject):
         accepted = dialog.exec() == QDialog.DialogCode.Accepted
         kind, scale, transparent = dialog.value()
         dialog.deleteLater()
-        kinds = tr("PictureExport (*.png)")
+        kinds = tr("Pictures (*.png)")
         name = self._ask(tr("Save picture"), f"{entry.id}.png", kinds) if accepted else ""
         if not name:
             return

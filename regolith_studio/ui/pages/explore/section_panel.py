@@ -1,9 +1,7 @@
 """Plot of a cross-section: outlines of particle, fit and polyhedron with their areas."""
 
-import numpy as np
 from PySide6.QtWidgets import QCheckBox, QHBoxLayout, QVBoxLayout, QWidget
 
-from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.cross_section import CrossSection
 from regolith_studio.scene.sectioning import DIRECTIONS
 from regolith_studio.scene.shapes import LABELS, NAMES, PARTICLE
@@ -81,7 +79,7 @@ class SectionPanel(QWidget):
         curves = []
         for name in NAMES:
             if name in cuts:
-                x, y = _outline(cuts[name])
+                x, y = cuts[name].outline().T
                 label = f"{tr(LABELS[name])} {_area_text(cuts[name].area, whole, name)}"
                 curves.append(PlotCurve(label, getattr(self._theme, name), tuple(x), tuple(y)))
         self.plot.set_curves(curves)
@@ -101,16 +99,6 @@ class SectionPanel(QWidget):
         column.addLayout(row)
         column.addLayout(below)
         column.addWidget(self.plot, 1)
-
-
-def _outline(cut: CrossSection) -> tuple[FloatArray, FloatArray]:
-    """Coordinates of all loops, separated by NaN."""
-    flat, gap = cut.flat(), np.full((1, 2), np.nan)
-    pieces = [part for loop in cut.loops() for part in (flat[loop], gap)][:-1]
-    if not pieces:
-        return np.empty(0), np.empty(0)
-    whole = np.vstack(pieces)
-    return whole[:, 0], whole[:, 1]
 
 
 def _mirrored(cut: CrossSection, direction: str) -> bool:

@@ -4,7 +4,7 @@ import numpy as np
 from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
-from regolith_studio.descriptors.distributions import Distribution, wasserstein_1
+from regolith_studio.descriptors.distributions import Distribution, kolmogorov_smirnov_distance, wasserstein_1
 from regolith_studio.jobs.model_evaluation import DistributionComparison
 from regolith_studio.studies.population import KEYS
 from regolith_studio.ui.theme import Theme
@@ -81,14 +81,12 @@ def distance_text(measured: Distribution | None, drawn: Distribution, unit: str 
     """Distances and means of two distributions as text, with values in `unit`."""
     if measured is None:
         return tr("The source holds no measured particles.")
-    places = np.union1d(measured.values, drawn.values)
-    ks = float(np.abs(measured.ecdf(places) - drawn.ecdf(places)).max())
     apart = wasserstein_1(measured, drawn) / measured.mean
     return tr(
         "Wasserstein distance {apart:.1%} of the mean, Kolmogorov-Smirnov distance {gap:.2f}; "
         "means {measured} measured, {drawn} drawn",
         apart=apart,
-        gap=ks,
+        gap=kolmogorov_smirnov_distance(measured, drawn),
         measured=f"{short_number(measured.mean)} {unit}".rstrip(),
         drawn=f"{short_number(drawn.mean)} {unit}".rstrip(),
     )

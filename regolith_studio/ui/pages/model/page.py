@@ -337,7 +337,7 @@ class ModelPage(PageWidget):
             self._context.toast.problem(str(error))
 
     def _place(self) -> None:
-        shown = [(self.gallery, tr("ShapeGallery")), (self.distributions, tr("Distributions"))]
+        shown = [(self.gallery, tr("Gallery")), (self.distributions, tr("Distributions"))]
         below = tabs("model_tabs", [*shown, (self.evaluation, tr("Judgement"))])
         middle = stacked([self.live, below], [380, 420], stretch=1)
         middle.setObjectName("model_rows")

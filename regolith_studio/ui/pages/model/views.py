@@ -93,7 +93,7 @@ class ShapeGallery(QWidget):
             (False, True): tr("drawn; the source holds no measured particles"),
             (False, False): tr("empty until a model is fitted"),
         }
-        self.frame.set_texts(tr("ShapeGallery"), words[bool(measured), bool(drawn)])
+        self.frame.set_texts(tr("Gallery"), words[bool(measured), bool(drawn)])
         self._shown = (measured, drawn)
         self.frame.view.draw(lambda plotter: show_gallery(plotter, measured, drawn))
         self._frame()

@@ -11,6 +11,9 @@ from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.plots.base import Numbers, Plot
 
+MIN_PERCENTAGE = 1e-4
+"""Height of empty bins on the logarithmic axis."""
+
 
 class HistogramPlot(Plot):
     """Histograms before and after denoising."""
@@ -67,14 +70,14 @@ class HistogramPlot(Plot):
             return ""
         value = float(box.mapSceneToView(place).x())
         first, *_ = (seen for seen, _, _ in self._shown())
-        found = _bin_of(first, value)
+        found = first.bin_of(value)
         if found is None:
             return ""
         lines = [_bin_text(first, found)]
         for seen, _, label in self._shown():
-            place_in = _bin_of(seen, value)
+            place_in = seen.bin_of(value)
             if place_in is not None:
-                share = _shares(seen)[place_in]
+                share = 100 * seen.shares[place_in]
                 lines.append(tr("{label}: {share:.3g} % of voxels", label=label, share=share))
         return "\n".join(lines)
 
@@ -91,7 +94,12 @@ class HistogramPlot(Plot):
         for curve in self._curves:
             self.canvas.removeItem(curve)
         self._curves = [
-            self.canvas.plot(_edges(seen), _heights(seen), stepMode="center", pen=self.pen(colour, 1.0))
+            self.canvas.plot(
+                seen.edges,
+                np.maximum(100 * seen.shares, MIN_PERCENTAGE),
+                stepMode="center",
+                pen=self.pen(colour, 1.0),
+            )
             for seen, colour, _ in self._shown()
         ]
         self.set_legend([(colour, label) for _, colour, label in self._shown()])
@@ -109,25 +117,6 @@ class HistogramPlot(Plot):
 def _plain_powers(values: Sequence[float], scale: float, spacing: float) -> list[str]:  # noqa: ARG001
     """Ticks of the logarithmic axis as plain numbers."""
     return [f"{10.0**value:g}" for value in values]
-
-
-def _edges(seen: Histogram) -> np.ndarray:
-    return np.asarray(seen.edges)
-
-
-def _heights(seen: Histogram) -> np.ndarray:
-    """Share of all voxels, in per cent; empty bins at the foot of the logarithmic axis."""
-    return np.asarray(np.maximum(_shares(seen), 1e-4))
-
-
-def _shares(seen: Histogram) -> np.ndarray:
-    return np.asarray(100.0 * seen.counts / max(int(seen.counts.sum()), 1))
-
-
-def _bin_of(seen: Histogram, value: float) -> int | None:
-    """The bin that a grey value falls into."""
-    place = int(np.searchsorted(seen.edges, value, side="right")) - 1
-    return place if 0 <= place < len(seen.counts) else None
 
 
 def _bin_text(seen: Histogram, place: int) -> str:

@@ -1,10 +1,9 @@
 """Three slices through one voxel and the histogram."""
 
-import numpy as np
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QStackedLayout, QVBoxLayout, QWidget
 
-from regolith_studio.imaging.boxes import Box, box_between
+from regolith_studio.imaging.boxes import Box, box_about, box_between
 from regolith_studio.imaging.sections import Sections
 from regolith_studio.imaging.segmentation.segment import Segmentation
 from regolith_studio.jobs.volume_jobs import Scan
@@ -62,7 +61,7 @@ class SlicesView(QWidget):
         if self._scan is None:
             return
         self.place = place
-        box = _box_about(place, self._scan.volume.shape)
+        box = box_about(place, PREVIEW_EDGE, self._scan.volume.shape)
         moved, self.box = box != self.box, box
         for view in self.slices:
             view.show_place(place, box)
@@ -116,10 +115,3 @@ class SlicesView(QWidget):
         self._stack = QStackedLayout(self)
         self._stack.addWidget(hint)
         self._stack.addWidget(page)
-
-
-def _box_about(place: tuple[int, int, int], shape: tuple[int, int, int]) -> Box:
-    """The preview box around a voxel, moved to lie inside the volume."""
-    edge = np.minimum(PREVIEW_EDGE, shape)
-    low = np.clip(np.array(place) - edge // 2, 0, np.array(shape) - edge)
-    return box_between(low.tolist(), (low + edge).tolist())
