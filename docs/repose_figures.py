@@ -13,7 +13,7 @@ from matplotlib.ticker import NullLocator
 from regolith_studio.dem.angle_of_repose import measure_repose
 from regolith_studio.dem.run_io import RunSummary, find_runs
 from regolith_studio.dem.snapshot import read_particle_state
-from regolith_studio.studies.repose_figures import section_figure
+from regolith_studio.studies.figures.repose import section_figure
 
 IMAGES = Path(__file__).parent / "images"
 FACES = {"sample8": 8.0, "sample20": 20.0, "sample60": 60.0}

@@ -81,7 +81,7 @@ def measure(
     if output is not None:
         from regolith_studio.io.atomic import staged_folder
         from regolith_studio.io.json_text import json_bytes
-        from regolith_studio.studies.repose_figures import write_section_figure
+        from regolith_studio.studies.figures.repose import write_section_figure
 
         with staged_folder(output) as stage:
             (stage / "repose.json").write_bytes(json_bytes(document))
@@ -188,7 +188,8 @@ def study(
     """Angle of repose against one value or one dataset against others; goes on where it was stopped."""
     from regolith_studio.cli.terminal import print_json, print_table, run_with_progress
     from regolith_studio.jobs.repose_jobs import ReposeVariant, study_repose, with_value
-    from regolith_studio.studies.repose import repose_table, write_repose_study
+    from regolith_studio.studies.figures.repose import write_repose_study
+    from regolith_studio.studies.repose import repose_table
 
     del jobs  # one run after the other, so that what is there already is known
     key, points = _varied(vary)

@@ -29,7 +29,7 @@ from regolith_studio.cli.options import (
 
 if TYPE_CHECKING:
     from regolith_studio.session.choices import Choices
-    from regolith_studio.studies.loss_rows import StudyRow
+    from regolith_studio.studies.loss_variants import LossVariant
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -244,13 +244,13 @@ def population(
         print_table(target_table(study))
 
 
-def _rows(names: Sequence[str] | None, wish: "Choices", weighted: bool) -> "tuple[StudyRow, ...]":
+def _rows(names: Sequence[str] | None, wish: "Choices", weighted: bool) -> "tuple[LossVariant, ...]":
     """The rows of a study by name; without names Fig. 8's, and those that the options weight."""
     from regolith_studio.session.study_requests import CHOSEN, chosen_rows
-    from regolith_studio.studies.loss_rows import PAPER_ROWS
+    from regolith_studio.studies.loss_variants import PAPER_LOSSES
 
     with usage_errors():
-        return chosen_rows(tuple(names or (*PAPER_ROWS, *((CHOSEN,) if weighted else ()))), wish)
+        return chosen_rows(tuple(names or (*PAPER_LOSSES, *((CHOSEN,) if weighted else ()))), wish)
 
 
 def _words(text: str) -> tuple[str, ...]:
@@ -303,13 +303,13 @@ class VariedOptions:
         raise typer.Exit(exit_code(meshes, loaded))
 
 
-@app.command("faces")
+@app.command("facets")
 @with_dataclass_options
-def faces(
-    *, meshes: Meshes, output: Folder, faces: Counts = "8,12,16,20,30,50", varied: VariedOptions
+def facet_counts(
+    *, meshes: Meshes, output: Folder, facets: Counts = "8,12,16,20,30,50", varied: VariedOptions
 ) -> None:
     """RMSRE of the descriptors against the number of facets."""
-    varied.run("faces", faces, meshes, output)
+    varied.run("facets", facets, meshes, output)
 
 
 @app.command("tradeoff")

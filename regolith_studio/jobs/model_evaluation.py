@@ -12,15 +12,19 @@ from regolith_studio.jobs.study_jobs import study_population
 from regolith_studio.shape_models.draws import Draws
 from regolith_studio.shape_models.models import MODELS
 from regolith_studio.shape_models.sample import Sample
-from regolith_studio.studies.population import PopulationStudy, drawn_by_itself
+from regolith_studio.studies.population import (
+    KEYS,
+    MEASURE_BATCH,
+    PopulationStudy,
+    default_draws,
+    descriptors_of,
+)
 from regolith_studio.studies.population_distances import WEIGHTINGS
 
 if TYPE_CHECKING:  # imports matplotlib, which the page does not need before an evaluation
     from matplotlib.figure import Figure
 from regolith_studio.descriptors.distributions import Distribution
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.studies.population import KEYS
-from regolith_studio.studies.population_work import STEP, descriptors_of
 
 DOTS_PER_INCH = 110
 FIGURE_COLUMNS = 5
@@ -46,7 +50,7 @@ def evaluate_models(sample: Sample, models: Sequence[str] | None, **options: Any
     :func:`~regolith_studio.studies.population.population_study`.
     """
     rounds = options.get("n_splits", 5) * options.get("n_repeats", 5) * len(models or MODELS)
-    n_measured = len(sample) + rounds * drawn_by_itself(len(sample))
+    n_measured = len(sample) + rounds * default_draws(len(sample))
     steps = study_population(sample, models, 0 if n_measured > MIN_FOR_PROCESSES else 1, **options)
     shown = Progress(0, n_measured, "")
     while True:
@@ -65,7 +69,7 @@ def draw_evaluation_figures(
     study: PopulationStudy, shown: Progress
 ) -> Generator[Step, None, ModelEvaluationResult]:
     """The study with its figures, drawn one by one; how far the work is stays as `shown`."""
-    from regolith_studio.studies import population_figures as figures
+    from regolith_studio.studies.figures import population as figures
 
     drawings: dict[str, Callable[[], Figure | None]] = {
         **{name: partial(figures.density_figure, study, name, FIGURE_COLUMNS) for name in WEIGHTINGS},
@@ -91,7 +95,7 @@ def draw_evaluation_figures(
 
 def png_of(figure: "Figure") -> bytes:
     """The figure as PNG."""
-    from regolith_studio.studies.figure_files import png_bytes
+    from regolith_studio.studies.figures.files import png_bytes
 
     return png_bytes(figure, DOTS_PER_INCH)
 
@@ -152,8 +156,8 @@ def compare_distributions(sample: Sample | None, draws: Draws) -> Steps:
 
 def _descriptor_table(draws: Draws, done: int, total: int) -> Generator[Progress, None, FloatArray]:
     tables = []
-    for first in range(0, len(draws), STEP):
-        last = min(first + STEP, len(draws))
+    for first in range(0, len(draws), MEASURE_BATCH):
+        last = min(first + MEASURE_BATCH, len(draws))
         tables.append(descriptors_of(draws.chosen(range(first, last)), KEYS))
         yield Progress(done + last, total)
     table = np.concatenate(tables)

@@ -32,7 +32,7 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
 from regolith_studio.jobs.dataset_jobs import DatasetOptions, build_dataset_folder
 from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
-from regolith_studio.studies.repose import runs_from, write_repose_study
+from regolith_studio.studies.repose import runs_from
 
 PROGRESS_STEPS = 1000
 """Of a run, in its progress."""
@@ -162,7 +162,7 @@ class _RunWriter:
 def _finish_run(record: _RunWriter, ending: SimulationResult, evaluation: EvaluationSettings) -> ReposeRun:
     measured = measure_result(ending, evaluation)
     if isinstance(measured, ReposeMeasurement):
-        from regolith_studio.studies.repose_figures import write_section_figure  # matplotlib
+        from regolith_studio.studies.figures.repose import write_section_figure  # matplotlib
 
         write_section_figure(ending.particles.points, ending.particles.diameters, measured, record.folder)
     document = record.save("finished", ending, measured)
@@ -388,6 +388,8 @@ def run_repose_study(wish: ReposeStudyRequest, folder: Path) -> Steps:
             yield from _build_variant_dataset(wish, number, place)
             rows.append(ReposeVariant(wish.key, value, place, wish.request))
     study = yield from study_repose(rows, folder, wish.repeats)
+    from regolith_studio.studies.figures.repose import write_repose_study  # matplotlib
+
     write_repose_study(study, folder)
     return study
 

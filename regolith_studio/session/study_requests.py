@@ -16,17 +16,19 @@ from regolith_studio.jobs.study_checkpoint import StudyCheckpoint, hash_of_parti
 from regolith_studio.jobs.study_jobs import study_coarsening, study_lmax
 from regolith_studio.session.choices import L_MAX_LIMIT, Choices
 from regolith_studio.session.dependencies import Kind
-from regolith_studio.studies.loss_rows import StudyRow, loss_rows, losses, paper_rows
-from regolith_studio.studies.solid_study import SolidStudy, StudiedSolid
-from regolith_studio.studies.variations import VARIATIONS, parsed_values
+from regolith_studio.studies.loss_variants import LossVariant, loss_variants, losses, paper_variants
+from regolith_studio.studies.polyhedron_gallery import GalleryPolyhedron, PolyhedronGallery
+from regolith_studio.studies.sweeps import SWEEPS, parse_values
 
 CHOSEN = "chosen"
 """Name of the loss whose weights are the present ones."""
 
 
-def present_row(choices: Choices) -> StudyRow:
+def present_row(choices: Choices) -> LossVariant:
     """What is chosen now, as a row."""
-    return StudyRow("Chosen weights", choices.weights, choices.method, choices.facet_count, choices.settings)
+    return LossVariant(
+        "Chosen weights", choices.weights, choices.method, choices.facet_count, choices.settings
+    )
 
 
 def loss_names() -> dict[str, str]:
@@ -34,7 +36,7 @@ def loss_names() -> dict[str, str]:
     return {name: loss.label for name, loss in losses().items()} | {CHOSEN: "Chosen weights"}
 
 
-def chosen_rows(names: Sequence[str], choices: Choices) -> tuple[StudyRow, ...]:
+def chosen_rows(names: Sequence[str], choices: Choices) -> tuple[LossVariant, ...]:
     """A row for each name of :func:`loss_names`.
 
     Raises
@@ -43,10 +45,10 @@ def chosen_rows(names: Sequence[str], choices: Choices) -> tuple[StudyRow, ...]:
         If there is no such loss.
     """
     like = present_row(choices)
-    return tuple(like if name == CHOSEN else loss_rows((name,), like)[0] for name in names)
+    return tuple(like if name == CHOSEN else loss_variants((name,), like)[0] for name in names)
 
 
-def varied_rows(key: str, choices: Choices, values: str) -> tuple[StudyRow, ...]:
+def varied_rows(key: str, choices: Choices, values: str) -> tuple[LossVariant, ...]:
     """The rows of a variation of the present choices, from values with commas between them.
 
     Raises
@@ -54,7 +56,7 @@ def varied_rows(key: str, choices: Choices, values: str) -> tuple[StudyRow, ...]
     InputError
         If a value is wrong, or the choices leave nothing to vary.
     """
-    rows = VARIATIONS[key].rows(present_row(choices), parsed_values(values))
+    rows = SWEEPS[key].rows(present_row(choices), parse_values(values))
     for row in rows:
         Choices(n_facets=row.n_facets)
     return rows
@@ -118,7 +120,7 @@ class GalleryCell:
 
 
 def coarsen_gallery(
-    particles: Sequence[Particle], order: CoarseningRequest, rows: Sequence[StudyRow] | None = None
+    particles: Sequence[Particle], order: CoarseningRequest, rows: Sequence[LossVariant] | None = None
 ) -> Steps:
     """Coarsen each particle by the loss of each row; partial results and the result are ``list[Solid]``.
 
@@ -129,7 +131,7 @@ def coarsen_gallery(
     rows
         Whose weights are taken; those of Fig. 8 by default.
     """
-    chosen = paper_rows() if rows is None else tuple(rows)
+    chosen = paper_variants() if rows is None else tuple(rows)
     total = len(particles) * len(chosen)
     yield Started("Coarsening for the gallery", total)
     done: list[GalleryCell] = []
@@ -147,7 +149,7 @@ def coarsen_gallery(
 def study_gallery(
     particles: Sequence[Particle],
     order: CoarseningRequest,
-    rows: Sequence[StudyRow] | None = None,
+    rows: Sequence[LossVariant] | None = None,
     workers: int | Executor = 1,
     answers: StudyCheckpoint | None = None,
 ) -> Steps:
@@ -160,24 +162,24 @@ def study_gallery(
     answers
         Keeps what is known of each particle, so that the study can be taken up again.
     """
-    chosen = paper_rows() if rows is None else tuple(rows)
+    chosen = paper_variants() if rows is None else tuple(rows)
     yield Started("Coarsening for the gallery", len(particles))
     if answers is not None:
         answers.open("solids", (order, chosen), hash_of_particles(particles))
     labels, names = [row.label for row in chosen], [particle.name for particle in particles]
-    cells: dict[tuple[int, int], StudiedSolid | str] = {}
+    cells: dict[tuple[int, int], GalleryPolyhedron | str] = {}
     with open_executor(workers) as executor:
         mapper = executor.map if answers is None else answers.wrap(executor.map)
         found = mapper(partial(coarsen_column, order=order, rows=chosen), list(enumerate(particles)))
         for column, (name, answer) in enumerate(zip(names, found, strict=True)):
             for row, cell in enumerate(answer["rows"]):
-                cells[row, column] = cell if isinstance(cell, str) else StudiedSolid.from_document(cell)
+                cells[row, column] = cell if isinstance(cell, str) else GalleryPolyhedron.from_document(cell)
             yield Progress(column + 1, len(names), name)
-    return SolidStudy(tuple(labels), tuple(names), cells)
+    return PolyhedronGallery(tuple(labels), tuple(names), cells)
 
 
 def coarsen_column(
-    numbered: tuple[int, Particle], order: CoarseningRequest, rows: Sequence[StudyRow]
+    numbered: tuple[int, Particle], order: CoarseningRequest, rows: Sequence[LossVariant]
 ) -> dict[str, Any]:
     """The polyhedra of one particle, by row, as a document; a sentence where there is none.
 
@@ -189,17 +191,19 @@ def coarsen_column(
     for row in rows:
         outcome = _ended(_outcome(particle, _by_row(order, row), column, fit, Progress(0, 0)))
         solid = outcome.coarsened
-        cells.append(outcome.problem if solid is None else StudiedSolid.of(solid).document())
+        cells.append(outcome.problem if solid is None else GalleryPolyhedron.of(solid).document())
     return {"rows": cells}
 
 
-def solid_study(solids: Sequence[GalleryCell], labels: Sequence[str], names: Sequence[str]) -> SolidStudy:
+def solid_study(
+    solids: Sequence[GalleryCell], labels: Sequence[str], names: Sequence[str]
+) -> PolyhedronGallery:
     """What has been drawn, as a study that can be written."""
-    cells: dict[tuple[int, int], StudiedSolid | str] = {}
+    cells: dict[tuple[int, int], GalleryPolyhedron | str] = {}
     for each in solids:
         found = each.outcome.coarsened
-        cells[each.row, each.column] = each.outcome.problem if found is None else StudiedSolid.of(found)
-    return SolidStudy(tuple(labels), tuple(names), cells)
+        cells[each.row, each.column] = each.outcome.problem if found is None else GalleryPolyhedron.of(found)
+    return PolyhedronGallery(tuple(labels), tuple(names), cells)
 
 
 def _fit_of(particle: Particle, order: CoarseningRequest) -> HarmonicFit | str | None:
@@ -212,7 +216,7 @@ def _fit_of(particle: Particle, order: CoarseningRequest) -> HarmonicFit | str |
         return str(error)
 
 
-def _by_row(order: CoarseningRequest, row: StudyRow) -> CoarseningRequest:
+def _by_row(order: CoarseningRequest, row: LossVariant) -> CoarseningRequest:
     plain = dataclasses.replace(order, weights=row.weights, largest_error=None)
     if row.weights.all_zero:  # the quadric start itself
         return dataclasses.replace(plain, method="quadric", settings=())

@@ -24,13 +24,13 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.fit import DEFAULT_FIT_OPTIONS, FitOptions
 from regolith_studio.harmonics.surface import reconstruct
 from regolith_studio.io.tables import Column, Table
-from regolith_studio.studies.loss_rows import StudyRow, paper_rows
+from regolith_studio.studies.loss_variants import LossVariant, paper_variants
 from regolith_studio.studies.progress import StudyProgress
 
 COLUMNS = (*LOSS_KEYS, JACCARD)
 """Columns of the errors: the descriptors of Eq. 8 and the distance of Eq. 7."""
 N_RESAMPLES = 1000
-LEAST_DRAWN = 1e-3
+MIN_PLOTTED = 1e-3
 """Errors below this percentage are drawn as this."""
 
 Mapper = Callable[[Callable[[Any], Any], Iterable[Any]], Iterable[Any]]
@@ -76,7 +76,7 @@ class CoarseningStudy:
         Of the bootstrap bands.
     """
 
-    rows: tuple[StudyRow, ...]
+    rows: tuple[LossVariant, ...]
     names: tuple[str, ...] = ()
     errors: FloatArray = field(default_factory=lambda: np.empty((0, 0, len(COLUMNS))))
     failures: tuple[tuple[str, str], ...] = ()
@@ -121,7 +121,7 @@ def _pooled(errors: FloatArray, counts: ArrayLike) -> FloatArray:
 
 def coarsening_errors(
     numbered: tuple[int, Mesh],
-    rows: Sequence[StudyRow],
+    rows: Sequence[LossVariant],
     seed: int = 0,
     target: TargetChoice | None = None,
     box_metric: str = "exact",
@@ -146,7 +146,7 @@ def coarsening_errors(
 
 
 def _row_errors(
-    target: Target, row: StudyRow, seed: int, index: int, wanted: Any, box_metric: str
+    target: Target, row: LossVariant, seed: int, index: int, wanted: Any, box_metric: str
 ) -> tuple[list[float], bool]:
     method = "quadric" if row.is_baseline else row.method
     settings = None if row.is_baseline else dict(row.settings)
@@ -165,7 +165,7 @@ def _in_unit_frame(found: CoarseningResult) -> ConvexPolyhedron:
 
 def coarsening_study(
     particles: Sequence[Particle],
-    rows: Sequence[StudyRow] | None = None,
+    rows: Sequence[LossVariant] | None = None,
     n_facets: int = 20,
     method: str = DEFAULT_METHOD,
     seed: int = 0,
@@ -189,7 +189,7 @@ def coarsening_study(
     InputError
         If there is no particle or no row, or no particle can be coarsened.
     """
-    chosen = paper_rows(method, n_facets, **dict(settings or {})) if rows is None else tuple(rows)
+    chosen = paper_variants(method, n_facets, **dict(settings or {})) if rows is None else tuple(rows)
     if not particles or not chosen:
         raise InputError("A study of the coarsening needs at least one particle and one row of weights.")
     work = partial(coarsening_errors, rows=chosen, seed=seed, target=target, box_metric=box_metric)
@@ -242,7 +242,7 @@ def rmsre_table(study: CoarseningStudy) -> Table:
         for k, key in enumerate(COLUMNS)
     ]
     percent = [Column(name, "%") for name in ("rmsre", "rmsre_low", "rmsre_high")]
-    columns = (*map(Column, ("row", "method", "faces", "descriptor")), *percent, Column("n_unmet"))
+    columns = (*map(Column, ("row", "method", "facets", "descriptor")), *percent, Column("n_unmet"))
     notes = (
         "Root mean square over particles of the relative errors of Eq. 8; jaccard_distance: mean (Eq. 7).",
         *study_notes(study),
@@ -257,5 +257,5 @@ def particle_table(study: CoarseningStudy) -> Table:
         for i, name in enumerate(study.names)
         for r, row in enumerate(study.rows)
     ]
-    columns = (*map(Column, ("name", "row", "method", "faces")), *map(Column, COLUMNS))
+    columns = (*map(Column, ("name", "row", "method", "facets")), *map(Column, COLUMNS))
     return Table("Relative errors of every coarsened particle", columns, tuple(lines))

@@ -1,21 +1,24 @@
-"""Fit on one half of a sample, judge on the other, beside the noise of sampling (section 3.1, Figs. 4 to 6).
+"""Evaluates shape models on held-out halves of a sample (section 3.1, Figs. 4 to 6).
 
 The floor is the distance between random halves of the measured sample. A model whose distance to the half
 that it has not seen is no larger cannot be told from the sample by that descriptor and sample size.
 """
 
-from collections.abc import Generator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
-from regolith_studio.errors import InputError
+from regolith_studio.descriptors.describe import describe
+from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.shape_models.draws import Draws
+from regolith_studio.shape_models.draws import Draws, virtual_mesh
 from regolith_studio.shape_models.judging import novelty_in_frame
 from regolith_studio.shape_models.models import MODELS
+from regolith_studio.shape_models.principal_axes import canonical
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.studies.population_distances import (
     Distances,
@@ -24,18 +27,131 @@ from regolith_studio.studies.population_distances import (
     intervals,
     paired_columns,
 )
-from regolith_studio.studies.population_work import LEVEL, Fitting, Mapper, Workshop
 from regolith_studio.studies.progress import StudyProgress
+
+MESH_LEVEL = 3
+"""Icosphere level of the meshes that are measured: 642 vertices, and the exact volume of the series."""
+MEASURE_BATCH = 25
+"""Particles that one process measures at a time."""
+FRAME_BATCH = 100
+"""Particles that one process turns into the frame of their axes at a time."""
+
+Mapper = Callable[[Callable[[Any], Any], Iterable[Any]], Iterable[Any]]
+"""Anything that maps a picklable function in order: ``map``, or ``imap`` of a process pool. It may yield
+``None`` while a result is waited for, so that the study can be stopped."""
+
+
+@dataclass(frozen=True, eq=False)
+class FitTask:
+    """A model to be fitted and drawn from several times: the argument of :func:`fit_and_draw`.
+
+    Parameters
+    ----------
+    key
+        Of ``MODELS``.
+    options
+        Settings of the model.
+    sample
+        Fitted to.
+    n_draws
+        Of each drawing.
+    seeds
+        Of the drawings.
+    """
+
+    key: str
+    options: Any
+    sample: Sample
+    n_draws: int
+    seeds: tuple[int, ...]
+
+
+def fit_and_draw(order: FitTask) -> tuple[tuple[Draws, ...], tuple[float, ...]]:
+    """Drawings from a fitted model, and Bayes' criterion of its parts if it has one."""
+    fitted = MODELS[order.key].fit(order.sample, order.options)
+    drawn = tuple(fitted.draw(order.n_draws, seed) for seed in order.seeds)
+    return drawn, tuple(getattr(fitted, "bic", ()))
+
+
+class StudyExecutor:
+    """Runs the parts of a study through a mapper and counts measured particles for the progress."""
+
+    def __init__(self, keys: tuple[str, ...], level: int, mapper: Mapper, total: int) -> None:
+        self.keys, self.level, self.mapper, self.total = keys, level, mapper, total
+        self.done = 0
+        self.size_column = keys.index("equivalent_radius") if "equivalent_radius" in keys else None
+
+    def progress(self, message: str) -> StudyProgress:
+        """How far the study is."""
+        return StudyProgress(self.done, self.total, message)
+
+    def measured(self, draws: Draws, message: str) -> Generator[StudyProgress, None, FloatArray]:
+        """Descriptors of every particle, shape (n, keys); NaN where its series bounds no solid."""
+        tables = [np.empty((0, len(self.keys)))]
+        measure = partial(descriptors_of, keys=self.keys, level=self.level)
+        for table in self.mapper(measure, _batches(draws, MEASURE_BATCH)):
+            if table is not None:
+                tables.append(table)
+                self.done += len(table)
+            yield self.progress(message)
+        return np.concatenate(tables)
+
+    def framed(self, draws: Draws, l_max: int, message: str) -> Generator[StudyProgress, None, FloatArray]:
+        """Every particle in the frame of its axes, shape (n, (l_max + 1)^2)."""
+        rows = [np.empty((0, (l_max + 1) ** 2))]
+        for part in self.mapper(partial(frames_of, l_max=l_max), _batches(draws, FRAME_BATCH)):
+            if part is not None:
+                rows.append(part)
+            yield self.progress(message)
+        return np.concatenate(rows)
+
+    def drawn(
+        self, order: FitTask, message: str
+    ) -> Generator[StudyProgress, None, tuple[tuple[Draws, ...], tuple[float, ...]]]:
+        """As :func:`fit_and_draw`, by one process."""
+        found: tuple[tuple[Draws, ...], tuple[float, ...]] = (), ()
+        yield self.progress(message)
+        for answer in self.mapper(fit_and_draw, (order,)):
+            if answer is not None:
+                found = answer
+            yield self.progress(message)
+        return found
+
+
+def descriptors_of(draws: Draws, keys: tuple[str, ...], level: int = MESH_LEVEL) -> FloatArray:
+    """Descriptors of each particle, shape (n, keys); NaN where its series bounds no solid."""
+    rows = [_descriptor_row(draws, index, keys, level) for index in range(len(draws))]
+    return np.array(rows, dtype=np.float64).reshape(len(draws), len(keys))
+
+
+def _descriptor_row(draws: Draws, index: int, keys: tuple[str, ...], level: int) -> tuple[float, ...]:
+    try:
+        found = describe(virtual_mesh(draws, index, level), keys)
+    except RegolithError:
+        return (np.nan,) * len(keys)
+    return tuple(found[key] for key in keys)
+
+
+def frames_of(draws: Draws, l_max: int) -> FloatArray:
+    """The radius of every particle in the frame of its axes, shape (n, (l_max + 1)^2)."""
+    if draws.scale == "radius" and draws.l_max == l_max:
+        return canonical(draws.coefficients)
+    return canonical(np.stack([draws.particle(index, l_max).values for index in range(len(draws))]))
+
+
+def _batches(draws: Draws, size: int) -> Iterable[Draws]:
+    return (draws.chosen(range(i, min(i + size, len(draws)))) for i in range(0, len(draws), size))
+
 
 KEYS = ("equivalent_radius", "surface_area", "aspect_ratio", "sphericity", "convexity")
 """Those of Fig. 4 and two more."""
 N_FLOOR_SPLITS = 30
-FEWEST = 20
-MOST_DRAWS = 1000
+MIN_PARTICLES = 20
+MAX_DRAWS = 1000
 
 
 @dataclass(frozen=True, eq=False)
-class JudgedModel:
+class ModelEvaluation:
     """One model over the rounds.
 
     Parameters
@@ -98,7 +214,7 @@ class PopulationStudy:
     unit: str
     measured: FloatArray
     floor: Distances
-    models: tuple[JudgedModel, ...]
+    models: tuple[ModelEvaluation, ...]
     n_draws: int
     n_repeats: int
     seed: int
@@ -119,7 +235,7 @@ def population_study(
     n_splits: int = 5,
     n_repeats: int = 5,
     keys: Sequence[str] = KEYS,
-    level: int = LEVEL,
+    level: int = MESH_LEVEL,
     settings: Mapping[str, Any] | None = None,
     mapper: Mapper = map,
     seed: int = 0,
@@ -149,23 +265,25 @@ def population_study(
         If a model, descriptor or the degree is unknown, there are fewer than 20 particles or draws.
     """
     chosen = tuple(MODELS) if models is None else tuple(models)
-    drawn = drawn_by_itself(len(sample)) if n_draws is None else n_draws
-    _check(sample, chosen, keys, (drawn, n_splits, n_repeats))
-    work = Workshop(tuple(keys), level, mapper, len(sample) + len(chosen) * n_splits * n_repeats * drawn)
+    drawn = default_draws(len(sample)) if n_draws is None else n_draws
+    _check_arguments(sample, chosen, keys, (drawn, n_splits, n_repeats))
+    work = StudyExecutor(tuple(keys), level, mapper, len(sample) + len(chosen) * n_splits * n_repeats * drawn)
     known = Draws(sample.truncated(l_max).coefficients, "radius", "measured", seed, sample.unit)
     table = yield from work.measured(known, "measured particles")
     keep = np.flatnonzero(np.isfinite(table).all(axis=1))
-    if len(keep) < FEWEST:
-        raise InputError(f"Only {len(keep)} particles bound a solid at l_max = {l_max}; {FEWEST} are needed.")
+    if len(keep) < MIN_PARTICLES:
+        raise InputError(
+            f"Only {len(keep)} particles bound a solid at l_max = {l_max}; {MIN_PARTICLES} are needed."
+        )
     frames = yield from work.framed(known.chosen(keep), l_max, "measured particles")
-    half = _Halves(sample.chosen(keep), table[keep], frames, work)
+    half = _TrainTestSplit(sample.chosen(keep), table[keep], frames, work)
     floor = yield from half.floor(seed)
     rounds: dict[str, list[_Round]] = {key: [] for key in chosen}
     for split in range(n_splits):
         for key in chosen:
             options = (settings or {}).get(key) or MODELS[key].Settings(l_max=l_max)
             rounds[key] += yield from half.rounds(key, options, split, (drawn, n_repeats, seed))
-        judged = tuple(_judged(key, rounds[key]) for key in chosen)
+        judged = tuple(_evaluation_of(key, rounds[key]) for key in chosen)
         left_out = len(sample) - len(keep)
         study = PopulationStudy(
             tuple(keys), l_max, sample.unit, half.table, floor, judged, drawn, n_repeats, seed, left_out
@@ -174,12 +292,12 @@ def population_study(
     return study
 
 
-def drawn_by_itself(n_measured: int) -> int:
+def default_draws(n_measured: int) -> int:
     """Particles of each drawing where no number is given: half of those measured, 20 to 1,000."""
-    return max(FEWEST, min(MOST_DRAWS, n_measured // 2))
+    return max(MIN_PARTICLES, min(MAX_DRAWS, n_measured // 2))
 
 
-def _check(
+def _check_arguments(
     sample: Sample, models: tuple[str, ...], keys: Sequence[str], counts: tuple[int, int, int]
 ) -> None:
     unknown = [key for key in models if key not in MODELS]
@@ -189,14 +307,14 @@ def _check(
     if wrong or not keys:
         raise InputError(f"The descriptors are {', '.join(CATALOGUE)}; got {', '.join(wrong) or 'none'}.")
     n_draws, n_splits, n_repeats = counts
-    if len(sample) < FEWEST:
+    if len(sample) < MIN_PARTICLES:
         raise InputError(
-            f"Judging models needs at least {FEWEST} particles, half to fit and half to compare with; "
+            f"Judging models needs at least {MIN_PARTICLES} particles, half to fit and half to compare with; "
             f"this sample has {len(sample)}."
         )
-    if n_draws < FEWEST or n_splits < 1 or n_repeats < 1:
+    if n_draws < MIN_PARTICLES or n_splits < 1 or n_repeats < 1:
         raise InputError(
-            f"Judging models needs at least {FEWEST} draws, one split and one drawing, got "
+            f"Judging models needs at least {MIN_PARTICLES} draws, one split and one drawing, got "
             f"{n_draws}, {n_splits} and {n_repeats}."
         )
 
@@ -214,13 +332,13 @@ class _Round:
 
 
 @dataclass(frozen=True, eq=False)
-class _Halves:
+class _TrainTestSplit:
     """The sample, its descriptors (n, keys) and its particles in the frame of their axes."""
 
     sample: Sample
     table: FloatArray
     frames: FloatArray
-    work: Workshop
+    work: StudyExecutor
 
     def floor(self, seed: int) -> Generator[StudyProgress, None, Distances]:
         """Distances between random halves of the sample."""
@@ -240,7 +358,7 @@ class _Halves:
         train, test = self.sample.halves(seed + split)
         seeds = tuple(seed + split * n_repeats + repeat for repeat in range(n_repeats))
         label = f"{MODELS[key].label}, split {split + 1}"
-        order = Fitting(key, options, self.sample.chosen(train), n_draws, seeds)
+        order = FitTask(key, options, self.sample.chosen(train), n_draws, seeds)
         drawn, criterion = yield from self.work.drawn(order, f"{label}, fit")
         found = []
         for repeat, draws in enumerate(drawn):
@@ -260,12 +378,12 @@ class _Halves:
         return float(np.median(novelty_in_frame(self.frames[train], drawn)))
 
 
-def _judged(key: str, rounds: Sequence[_Round]) -> JudgedModel:
+def _evaluation_of(key: str, rounds: Sequence[_Round]) -> ModelEvaluation:
     ends = {
         name: np.mean([getattr(each.intervals, name) for each in rounds], axis=0)
         for name in Intervals.__annotations__
     }
-    return JudgedModel(
+    return ModelEvaluation(
         key,
         Distances.joined([each.distances for each in rounds]),
         Intervals(**ends),

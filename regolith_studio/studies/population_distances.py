@@ -18,7 +18,7 @@ from regolith_studio.shape_models.judging import (
 WEIGHTINGS = ("number", "volume")
 CONFIDENCE = 0.95
 N_RESAMPLES = 200
-MOST_PAIRED = 5
+MAX_PAIRED = 5
 """Descriptors, the first of a study, whose pairs are compared: their number grows with the square."""
 
 
@@ -104,8 +104,8 @@ def intervals(
 
 
 def paired_columns(n_columns: int) -> list[tuple[int, int]]:
-    """Which columns are compared in pairs: those of the first :data:`MOST_PAIRED`."""
-    return pairs_of(min(n_columns, MOST_PAIRED))
+    """Which columns are compared in pairs: those of the first :data:`MAX_PAIRED`."""
+    return pairs_of(min(n_columns, MAX_PAIRED))
 
 
 def class_weights(table: FloatArray, weighting: str, size_column: int | None) -> FloatArray:

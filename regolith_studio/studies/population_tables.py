@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from regolith_studio.io.tables import Column, Table
-from regolith_studio.studies.population import N_FLOOR_SPLITS, JudgedModel, PopulationStudy
+from regolith_studio.studies.population import N_FLOOR_SPLITS, ModelEvaluation, PopulationStudy
 from regolith_studio.studies.population_distances import CONFIDENCE, N_RESAMPLES, WEIGHTINGS
 
 PERCENTAGES = (
@@ -107,7 +107,7 @@ def target_table(study: PopulationStudy) -> Table:
     return Table("What a model should reach on held-out particles", columns, tuple(rows), _notes(study))
 
 
-def _targets(study: PopulationStudy, model: JudgedModel) -> Iterator[tuple[str, float, str, float]]:
+def _targets(study: PopulationStudy, model: ModelEvaluation) -> Iterator[tuple[str, float, str, float]]:
     """Name, value, sense and limit of what can be told from what was measured."""
     far, noise = model.distances.wasserstein.mean(axis=0), study.floor.wasserstein
     paper = next((each for each in study.models if each.key == PAPERS_MODEL), None)

@@ -1,4 +1,4 @@
-"""What a study tells while it runs."""
+"""Progress events of a study."""
 
 from dataclasses import dataclass
 

@@ -1,15 +1,10 @@
-"""Angle of repose against what was varied: one row a run, repeats joined."""
+"""Angle of repose against a varied value: one row a run."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
-import numpy as np
-from matplotlib.figure import Figure
-
-from regolith_studio.io.tables import Cell, Column, Table, write_table
-from regolith_studio.studies.figure_files import write_figure
+from regolith_studio.io.tables import Cell, Column, Table
 
 COLUMNS = (
     Column("varied"),
@@ -98,39 +93,6 @@ def _row(run: ReposeStudyRun) -> tuple[Cell, ...]:
         None if overlap is None else 100 * overlap,
         run.document["run"]["seconds"],
         run.folder,
-    )
-
-
-def repose_study_figure(study: ReposeStudy) -> Figure:
-    """Every run as a dot with its interval, the mean of the repeats as a line."""
-    figure = Figure(figsize=(5.6, 3.8), layout="constrained")
-    axis = figure.subplots()
-    numeric = all(isinstance(value, int | float) for value in study.values)
-    places = {value: float(value) if numeric else float(k) for k, value in enumerate(study.values)}
-    for run in study.runs:
-        if run.angle is not None:
-            low, high = run.document["measurement"]["interval_deg"]
-            reach = [[run.angle - low], [high - run.angle]]
-            axis.errorbar(places[run.value], run.angle, yerr=reach, fmt="o", color="#0072b2", capsize=3)
-    means = [
-        (places[value], float(np.mean(study.angles(value)))) for value in study.values if study.angles(value)
-    ]
-    if means:
-        axis.plot(*np.array(means).T, color="0.4", linewidth=1.0, linestyle="-" if numeric else "none")
-    if not numeric:
-        axis.set_xticks(list(places.values()), [str(value) for value in places])
-        axis.margins(x=0.2)
-    axis.set_xlabel(study.runs[0].varied.replace("_", " ") if study.runs else "")
-    axis.set_ylabel("angle of repose (°)")
-    axis.grid(True, alpha=0.3)
-    return figure
-
-
-def write_repose_study(study: ReposeStudy, folder: Path, stem: str = "repose_study") -> tuple[Path, ...]:
-    """Table (CSV, JSON) and figure (PNG, SVG)."""
-    return (
-        *write_table(repose_table(study), folder, stem),
-        *write_figure(repose_study_figure(study), folder, stem),
     )
 
 

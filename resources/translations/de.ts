@@ -1740,7 +1740,7 @@
   </message>
   <message>
    <location filename="ui/pages/studies/__init__.py" />
-   <source>Errors against l_max, faces and weights, and what the polyhedra look like</source>
+   <source>Errors against l_max, facets and weights, and what the polyhedra look like</source>
    <translation>Fehler gegen l_max, Facetten und Gewichte, und wie die Polyeder aussehen</translation>
   </message>
   <message>
@@ -1849,7 +1849,7 @@
   <message>
    <location filename="ui/pages/studies/page.py" />
    <location filename="ui/pages/studies/variation_panel.py" />
-   <source>Faces</source>
+   <source>Facets</source>
    <translation>Facetten</translation>
   </message>
   <message>

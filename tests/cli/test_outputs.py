@@ -20,7 +20,7 @@ COMMANDS = (
     "study lmax MESH",
     "study coarsening MESH",
     "study population MESH",
-    "study faces MESH",
+    "study facets MESH",
     "study tradeoff MESH",
     "study sensitivity MESH",
     "study solids MESH",

@@ -23,7 +23,7 @@ def test_that_a_recipe_leaves_everything_it_asks_for(command, grains: Path, tmp_
     assert {"meshes/coarsening.json", "meshes/grain-a.stl", "dataset/dataset.json"} <= files
     page = (tmp_path / "out" / "summary.html").read_text()
     assert "grain-b" in page
-    assert "12 faces" in page
+    assert "12 facets" in page
 
 
 def test_that_the_recipe_in_the_results_repeats_them(command, grains: Path, tmp_path: Path) -> None:
@@ -40,7 +40,7 @@ def test_that_a_recipe_stops_at_an_error_as_the_commands_do(command, grains: Pat
     outputs = {"summary": True, "descriptors": False}
     wish = recipe(tmp_path, grain, **entries, outputs=outputs)
     assert command("run", wish, "-o", tmp_path / "out").code == 0
-    assert "the fewest faces whose errors are all below 2 %" in (tmp_path / "out/summary.html").read_text()
+    assert "the fewest facets whose errors are all below 2 %" in (tmp_path / "out/summary.html").read_text()
     common = (grain, "--target", "particle", "--max-error", 2)
     assert command("coarsen", *common, "-o", tmp_path / "few").code == 0
     assert (tmp_path / "out/meshes/grain-c.stl").read_bytes() == (tmp_path / "few/grain-c.stl").read_bytes()

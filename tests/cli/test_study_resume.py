@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from regolith_studio.session import study_requests
-from regolith_studio.studies import coarsening, lmax, population_work
+from regolith_studio.studies import coarsening, lmax, population
 
 STUDIES: dict[str, tuple[Any, str, tuple[object, ...]]] = {
     "coarsening": (coarsening, "coarsening_errors", ("--method", "quadric", "--target", "particle")),
@@ -93,7 +93,7 @@ def test_that_a_judgement_of_models_goes_on_to_the_same_bytes(
     assert command("generate", "ma165", "-n", 24, "-o", tmp_path / "g", "--l-max", 4).code == 0
     words = ("study", "population", tmp_path / "g", "--l-max", 4, "--models", "gaussian_field")
     words += ("--splits", 1, "--repeats", 2, "--draws", 20)
-    work, given = population_work.descriptors_of, []
+    work, given = population.descriptors_of, []
 
     def counted(draws: Any, **options: Any) -> Any:
         if len(given) == 2:
@@ -101,7 +101,7 @@ def test_that_a_judgement_of_models_goes_on_to_the_same_bytes(
         given.append(draws)
         return work(draws, **options)
 
-    monkeypatch.setattr(population_work, "descriptors_of", counted)
+    monkeypatch.setattr(population, "descriptors_of", counted)
     assert command(*words, "-o", tmp_path / "out").code not in (0, 2)
     given.clear()
     assert command(*words, "-o", tmp_path / "out", "--resume").code == 0

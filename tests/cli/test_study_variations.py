@@ -1,4 +1,4 @@
-"""``study faces``, ``tradeoff``, ``sensitivity`` and the rows of ``study coarsening``."""
+"""``study facets``, ``tradeoff``, ``sensitivity`` and the rows of ``study coarsening``."""
 
 import csv
 from pathlib import Path
@@ -15,11 +15,11 @@ def rows_of(path: Path) -> list[dict[str, str]]:
 
 def test_that_errors_against_faces_are_written(command, grains: Path, tmp_path: Path) -> None:
     said = command(
-        "study", "faces", grains, "-o", tmp_path / "s", "--facets", "10,30", "--method", "quadric", *ONE
+        "study", "facets", grains, "-o", tmp_path / "s", "--facets", "10,30", "--method", "quadric", *ONE
     )
     assert said.code == 0, said.err
-    assert set(said.json["files"]) >= {f"faces.{end}" for end in ("csv", "json", "png", "svg")}
-    rows = rows_of(tmp_path / "s" / "faces.csv")
+    assert set(said.json["files"]) >= {f"facets.{end}" for end in ("csv", "json", "png", "svg")}
+    rows = rows_of(tmp_path / "s" / "facets.csv")
     volume = [float(row["rmsre [%]"]) for row in rows if row["descriptor"] == "volume"]
     assert volume[0] > volume[1] > 0  # fewer faces, larger error
 
@@ -73,8 +73,8 @@ def test_that_any_losses_can_be_the_rows_of_figure_8(command, grains: Path, tmp_
 @pytest.mark.parametrize(
     ("wrong", "sentence"),
     [
-        (("faces", "--facets", "12,many"), "numbers with commas"),
-        (("faces", "--facets", "3,12"), "from 5 to 200, got 3"),
+        (("facets", "--facets", "12,many"), "numbers with commas"),
+        (("facets", "--facets", "3,12"), "from 5 to 200, got 3"),
         (("tradeoff", "--method", "quadric"), "Quadric decimation has no loss"),
         (("tradeoff", "--preset", "overlap"), "at least one descriptor"),
         (("sensitivity", "--factors", "-1"), "0 or a positive number"),

@@ -39,7 +39,7 @@ from regolith_studio.jobs.repose_jobs import (
     values_in,
     with_value,
 )
-from regolith_studio.studies.repose import write_repose_study
+from regolith_studio.studies.figures.repose import write_repose_study
 
 TEST = LiftingCylinderTest(mass=0.003, lift_speed=0.15)
 CASE = ReposeCase(TEST, n_particles=40, seed=1)

@@ -16,7 +16,7 @@ from regolith_studio.studies.coarsening import (
     coarsening_study,
     rmsre_table,
 )
-from regolith_studio.studies.loss_rows import paper_rows
+from regolith_studio.studies.loss_variants import paper_variants
 
 pytestmark = [pytest.mark.slow, pytest.mark.real_data]
 N_PARTICLES = 12
@@ -26,7 +26,7 @@ def study_of(folder: Path, method: str, box_metric: str = "exact") -> Coarsening
     particles = [
         Particle(path.stem, read_mesh(path).mesh) for path in sorted(folder.glob("*.stl"))[:N_PARTICLES]
     ]
-    steps = coarsening_study(particles, paper_rows(method), box_metric=box_metric)
+    steps = coarsening_study(particles, paper_variants(method), box_metric=box_metric)
     while True:
         try:
             next(steps)

@@ -12,8 +12,8 @@ from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
 from regolith_studio.jobs.events import Partial, Progress, Steps
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.study_requests import coarsen_gallery, solid_study, study_gallery
-from regolith_studio.studies.loss_rows import paper_rows
-from regolith_studio.studies.solid_study import solid_table
+from regolith_studio.studies.loss_variants import paper_variants
+from regolith_studio.studies.polyhedron_gallery import gallery_table
 
 
 @pytest.fixture(scope="module")
@@ -30,7 +30,7 @@ def test_that_each_particle_is_coarsened_once_for_each_row(order: CoarseningRequ
             told.append(next(story))
     except StopIteration as end:
         solids = end.value
-    rows = len(paper_rows())
+    rows = len(paper_variants())
     assert {(each.row, each.column) for each in solids} == set(np.ndindex(rows, 2))
     assert all(each.outcome.coarsened.n_facets == 12 for each in solids)
     assert [len(each.value) for each in told if isinstance(each, Partial)] == list(range(1, 2 * rows + 1))
@@ -67,16 +67,16 @@ def ended(story: Steps) -> Any:
 def test_that_the_study_has_the_polyhedra_of_the_gallery(order: CoarseningRequest, workers: int) -> None:
     sphere = icosphere(2)
     eggs = [Particle(f"egg-{n}", Mesh(sphere.vertices * [n, 2, 3], sphere.faces)) for n in (1, 2, 0)]
-    rows, names = paper_rows()[:3], [egg.name for egg in eggs]
+    rows, names = paper_variants()[:3], [egg.name for egg in eggs]
     drawn = solid_study(ended(coarsen_gallery(eggs, order, rows)), [row.label for row in rows], names)
     study = ended(study_gallery(eggs, order, rows, workers))
     assert (study.rows, study.names) == (drawn.rows, drawn.names)
-    assert solid_table(study) == solid_table(drawn)
+    assert gallery_table(study) == gallery_table(drawn)
     assert [isinstance(study.cells[0, column], str) for column in range(3)] == [False, False, True]
 
 
 def test_that_a_particle_without_a_fit_is_told_for_each_row() -> None:
     fitted = Choices(method="quadric", n_facets=12, l_max=4, level=2, target="fit").order
     flat = Mesh(icosphere(2).vertices * [1, 1, 0], icosphere(2).faces)
-    solids = ended(coarsen_gallery([Particle("flat", flat)], fitted, paper_rows()[:2]))
+    solids = ended(coarsen_gallery([Particle("flat", flat)], fitted, paper_variants()[:2]))
     assert [bool(each.outcome.problem) for each in solids] == [True, True]

@@ -21,13 +21,18 @@ from regolith_studio.studies.coarsening import (
     particle_table,
     rmsre_table,
 )
-from regolith_studio.studies.coarsening_figures import coarsening_figure, write_coarsening_study
-from regolith_studio.studies.loss_rows import StudyRow, facet_count_rows, paper_rows, sensitivity_rows
+from regolith_studio.studies.figures.coarsening import coarsening_figure, write_coarsening_study
+from regolith_studio.studies.loss_variants import (
+    LossVariant,
+    facet_count_variants,
+    paper_variants,
+    sensitivity_variants,
+)
 from regolith_studio.studies.progress import StudyProgress
 
 ROWS = (
-    StudyRow("quadric", LossWeights.of(), "quadric", 12),
-    StudyRow("all", LossWeights.from_preset("all"), "exact", 12, (("retries", 3),)),
+    LossVariant("quadric", LossWeights.of(), "quadric", 12),
+    LossVariant("all", LossWeights.from_preset("all"), "exact", 12, (("retries", 3),)),
 )
 
 
@@ -104,12 +109,14 @@ def test_that_progress_counts_particles() -> None:
 
 
 def test_that_the_rows_are_those_of_the_figure() -> None:
-    assert len(paper_rows()) == 6
-    assert paper_rows()[0].is_baseline
+    assert len(paper_variants()) == 6
+    assert paper_variants()[0].is_baseline
     assert [
-        row.n_facets for row in facet_count_rows(StudyRow("", LossWeights.from_preset("all")), (8, 12))
+        row.n_facets for row in facet_count_variants(LossVariant("", LossWeights.from_preset("all")), (8, 12))
     ] == [8, 12]
-    changed = sensitivity_rows(StudyRow("", LossWeights.of(volume=1, sphericity=2), "annealing"), (3.0,))
+    changed = sensitivity_variants(
+        LossVariant("", LossWeights.of(volume=1, sphericity=2), "annealing"), (3.0,)
+    )
     assert [row.weights["sphericity"] for row in changed] == [2, 2, 6]
 
 

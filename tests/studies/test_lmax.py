@@ -18,6 +18,7 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.fit import fit_harmonics
 from regolith_studio.harmonics.surface import reconstruct
+from regolith_studio.studies.figures.lmax import lmax_figure, write_lmax_study
 from regolith_studio.studies.lmax import (
     LmaxStudy,
     enough_degrees,
@@ -27,7 +28,6 @@ from regolith_studio.studies.lmax import (
     resampled_rmsre,
     rmsre_table,
 )
-from regolith_studio.studies.lmax_figures import lmax_figure, write_lmax_study
 
 DEGREES = (1, 4, 8)
 

@@ -10,9 +10,9 @@ from regolith_studio.errors import InputError
 from regolith_studio.harmonics.coefficients import degrees, orders
 from regolith_studio.harmonics.io import from_complex_rows
 from regolith_studio.shape_models.sample import Sample
+from regolith_studio.studies.figures.population import components_figure, write_population_study
 from regolith_studio.studies.population import KEYS, N_FLOOR_SPLITS, PopulationStudy, population_study
 from regolith_studio.studies.population_distances import Distances, distances
-from regolith_studio.studies.population_figures import components_figure, write_population_study
 from regolith_studio.studies.population_tables import (
     distance_table,
     pair_table,

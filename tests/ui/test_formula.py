@@ -2,7 +2,7 @@
 
 from threading import Event, Thread
 
-from regolith_studio.studies.one_at_a_time import DRAWING
+from regolith_studio.studies.matplotlib_lock import MATPLOTLIB_LOCK
 from regolith_studio.ui.widgets.formula import FormulaLabel
 
 
@@ -10,7 +10,7 @@ def test_that_the_window_does_not_wait_for_a_figure_that_another_thread_draws(sh
     held, done = Event(), Event()
 
     def draw():
-        with DRAWING:
+        with MATPLOTLIB_LOCK:
             held.set()
             done.wait(20.0)
 

@@ -7,7 +7,7 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
-from regolith_studio.studies.loss_rows import PAPER_ROWS, losses, paper_rows
+from regolith_studio.studies.loss_variants import PAPER_LOSSES, losses, paper_variants
 from regolith_studio.ui.app import open_window
 from regolith_studio.ui.pages.studies.loss_selector import LossSelector
 from regolith_studio.ui.theme import DARK
@@ -18,7 +18,7 @@ ASKED = "regolith_studio.ui.dialogs.folder.FolderDialog.ask"
 
 def paper_names():
     """Those of Fig. 8, in the order of the menu."""
-    return tuple(name for name in losses() if name in PAPER_ROWS)
+    return tuple(name for name in losses() if name in PAPER_LOSSES)
 
 
 @pytest.fixture
@@ -36,9 +36,9 @@ def window(shown, preferences, wait):
 def test_that_the_gallery_fills_row_by_row_and_can_be_stopped(window, wait):
     page = window.go("studies")
     page.gallery.frame.start.click()
-    wait(lambda: len(page.gallery.value()) == 2 * len(paper_rows()) and not window.session.tasks, SECONDS)
+    wait(lambda: len(page.gallery.value()) == 2 * len(paper_variants()) and not window.session.tasks, SECONDS)
     table = page.gallery.table
-    assert (table.rowCount(), table.columnCount()) == (len(paper_rows()), 2)
+    assert (table.rowCount(), table.columnCount()) == (len(paper_variants()), 2)
     for row in range(table.rowCount()):
         assert table.item(row, 0).text().startswith("J 0.")
         assert not table.item(row, 0).icon().isNull()
@@ -119,20 +119,25 @@ def test_that_errors_against_faces_are_drawn_told_and_saved(window, wait, settle
     monkeypatch.setattr(ASKED, lambda *_: str(tmp_path))
     page.save()
     settled(window)
-    assert {path.name for path in tmp_path.iterdir()} >= {"faces.csv", "faces.json", "faces.png", "faces.svg"}
+    assert {path.name for path in tmp_path.iterdir()} >= {
+        "facets.csv",
+        "facets.json",
+        "facets.png",
+        "facets.svg",
+    }
 
 
 def test_that_the_gallery_is_saved_as_a_picture_and_as_numbers(window, wait, settled, monkeypatch, tmp_path):
     page = window.go("studies")
     page.gallery.frame.start.click()
-    wait(lambda: len(page.gallery.value()) == 2 * len(paper_rows()) and not window.session.tasks, SECONDS)
+    wait(lambda: len(page.gallery.value()) == 2 * len(paper_variants()) and not window.session.tasks, SECONDS)
     monkeypatch.setattr(ASKED, lambda *_: str(tmp_path))
     page.save()
     settled(window)
     assert {f"solids.{end}" for end in ("csv", "json", "png", "svg")} <= {p.name for p in tmp_path.iterdir()}
     with (tmp_path / "solids.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
-    assert sorted(row["row"] for row in rows[::2]) == sorted(row.label for row in paper_rows())
+    assert sorted(row["row"] for row in rows[::2]) == sorted(row.label for row in paper_variants())
     shown = next(each for each in page.gallery.value() if (each.row, each.column) == (0, 1))
     assert float(rows[1]["volume [%]"]) == pytest.approx(100 * shown.outcome.coarsened.errors["volume"])
 
@@ -201,7 +206,7 @@ def test_that_both_studies_are_computed_and_saved(window, wait, settled, tmp_pat
     wait(lambda: window.session.results.coarsening_study, SECONDS)
     settled(window)
     assert not page.lmax_study.plot.is_empty()
-    assert len(page.coarsening_study.table.values()) == len(paper_rows())
+    assert len(page.coarsening_study.table.values()) == len(paper_variants())
     folder = tmp_path / "files"
     folder.mkdir()
     monkeypatch.setattr(ASKED, lambda *_: str(folder))

@@ -10,9 +10,9 @@ from typing import Any
 from regolith_studio.io.tables import Table
 from regolith_studio.studies.coarsening import rmsre_table as coarsening_table
 from regolith_studio.studies.lmax import rmsre_table as lmax_table
+from regolith_studio.studies.polyhedron_gallery import gallery_table
 from regolith_studio.studies.population_tables import ranking_table
-from regolith_studio.studies.solid_study import solid_table
-from regolith_studio.studies.variations import VARIATIONS
+from regolith_studio.studies.sweeps import SWEEPS
 
 
 @dataclass(frozen=True)
@@ -38,9 +38,11 @@ class StudyKind:
 
 
 def _write(name: str, *given: Any) -> tuple[Path, ...]:
-    """Call a function of ``studies`` by ``module.function``; matplotlib is loaded when figures are wanted."""
+    """Call ``module.function`` of ``studies.figures``, which imports matplotlib."""
     module, _, function = name.partition(".")
-    written: tuple[Path, ...] = getattr(import_module(f"regolith_studio.studies.{module}"), function)(*given)
+    written: tuple[Path, ...] = getattr(import_module(f"regolith_studio.studies.figures.{module}"), function)(
+        *given
+    )
     return written
 
 
@@ -48,32 +50,32 @@ STUDIES: Mapping[str, StudyKind] = {
     "lmax_study": StudyKind(
         "RMSRE of the descriptors against l_max (Fig. 3)",
         "lmax_rmsre.png",
-        partial(_write, "lmax_figures.write_lmax_study"),
+        partial(_write, "lmax.write_lmax_study"),
         lmax_table,
     ),
     "coarsening_study": StudyKind(
         "RMSRE of the descriptors for each set of loss weights (Fig. 8)",
         "coarsening_rmsre.png",
-        partial(_write, "coarsening_figures.write_coarsening_study"),
+        partial(_write, "coarsening.write_coarsening_study"),
         coarsening_table,
     ),
     "population_study": StudyKind(
         "Drawn against measured particles (Figs. 4 to 6)",
         "population_number.png",
-        partial(_write, "population_figures.write_population_study"),
+        partial(_write, "population.write_population_study"),
         ranking_table,
     ),
     "solids_study": StudyKind(
         "Polyhedra of some particles by loss (Fig. 7)",
         "solids.png",
-        partial(_write, "solid_figures.write_solids"),
-        solid_table,
+        partial(_write, "polyhedron_gallery.write_gallery"),
+        gallery_table,
     ),
     **{
         f"{key}_study": StudyKind(
-            each.title, f"{key}.png", partial(_write, "variation_figures.write_variation", key), each.table
+            each.title, f"{key}.png", partial(_write, "sweeps.write_sweep", key), each.table
         )
-        for key, each in VARIATIONS.items()
+        for key, each in SWEEPS.items()
     },
 }
 """The first two can be asked for by a recipe, by the keys of ``session.dependencies.Kind``."""

@@ -132,7 +132,7 @@ def _fidelity(summary: Summary) -> str:
     if not summary.coarse:
         return ""
     symbols = [CATALOGUE[key].symbol for key in LOSS_KEYS]
-    header = ["particle", "faces", "vertices", "triangles", *symbols, "J"]
+    header = ["particle", "facets", "vertices", "triangles", *symbols, "J"]
     rows = [
         [
             each["name"],

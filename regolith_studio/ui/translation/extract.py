@@ -24,7 +24,7 @@ from regolith_studio.resources import resource
 from regolith_studio.scene import cameras, sectioning, shapes
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.shape_models.models import MODELS
-from regolith_studio.studies.variations import VARIATIONS
+from regolith_studio.studies.sweeps import SWEEPS
 from regolith_studio.ui.translation import CONTEXT
 from regolith_studio.ui.translation.language import translation_file
 
@@ -134,7 +134,7 @@ def words_below() -> Iterator[str]:
     yield from (str(row[key]) for row in engine_rows() for key in CAPABILITY_LABELS)
     for exporter in EXPORTERS.values():
         yield from (*exporter.carries, *exporter.loses, exporter.units, exporter.alters)
-    for variation in VARIATIONS.values():
+    for variation in SWEEPS.values():
         yield from (variation.title, variation.asks)
     for preset in presets().values():
         yield from (preset.label, preset.origin)

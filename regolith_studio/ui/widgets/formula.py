@@ -12,7 +12,7 @@ from PySide6.QtCore import QCoreApplication, QObject, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QPainter, QPainterPath, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from regolith_studio.studies.one_at_a_time import DRAWING
+from regolith_studio.studies.matplotlib_lock import MATPLOTLIB_LOCK
 
 EM = 100.0
 """Font size of the outlines, which are scaled when drawn."""
@@ -197,7 +197,7 @@ def _outlined(line: str) -> QPainterPath:
     made.setFillRule(Qt.FillRule.WindingFill)
     if not line:
         return made
-    with DRAWING:
+    with MATPLOTLIB_LOCK:
         letters = TextPath((0, 0), line, size=EM)
     for points, code in letters.iter_segments():
         x = [float(each) for each in points[0::2]]

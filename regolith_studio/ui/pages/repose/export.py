@@ -11,7 +11,7 @@ from regolith_studio.errors import RegolithError
 from regolith_studio.io.atomic import staged_folder
 from regolith_studio.io.json_text import json_bytes
 from regolith_studio.readers.positions import read_positions
-from regolith_studio.studies.repose_figures import write_section_figure
+from regolith_studio.studies.figures.repose import write_section_figure
 from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.toast import Toast

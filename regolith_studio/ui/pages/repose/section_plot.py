@@ -7,7 +7,7 @@ from PySide6.QtCore import QPointF, Signal
 from regolith_studio.dem.evaluation.profile import Discs, project
 from regolith_studio.dem.evaluation.section import Section
 from regolith_studio.dem.snapshot import ParticleState
-from regolith_studio.studies.repose_figures import framed
+from regolith_studio.studies.figures.repose import framed
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.widgets.plots.base import Numbers, Plot
 

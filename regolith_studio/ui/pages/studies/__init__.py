@@ -16,7 +16,7 @@ PAGE = Page(
     title="Studies",
     icon="page_studies",
     order=45,
-    tip="Errors against l_max, faces and weights, and what the polyhedra look like",
+    tip="Errors against l_max, facets and weights, and what the polyhedra look like",
     make=build,
     actions=(
         ActionSpec(

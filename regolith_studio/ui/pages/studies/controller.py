@@ -10,7 +10,7 @@ from regolith_studio.session.choices import Choices
 from regolith_studio.session.dependencies import Kind, depends
 from regolith_studio.session.study_requests import varied_rows
 from regolith_studio.studies.coarsening import CoarseningStudy
-from regolith_studio.studies.variations import VARIATIONS
+from regolith_studio.studies.sweeps import SWEEPS
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.studies.loss_selector import LossSelector
 from regolith_studio.ui.pages.studies.sweep_panel import SweepPanel
@@ -23,7 +23,7 @@ class SweepController:
     Parameters
     ----------
     panels
-        By key of :data:`~regolith_studio.studies.variations.VARIATIONS`.
+        By key of :data:`~regolith_studio.studies.sweeps.SWEEPS`.
     bar
         Selects the bounding box of the diameters.
     """
@@ -63,7 +63,7 @@ class SweepController:
         if not particles:
             self._context.toast.problem(tr("No particle is open; open a mesh first."))
             return
-        title = VARIATIONS[key].title
+        title = SWEEPS[key].title
         options = {"rows": rows, "box_metric": self._bar.box.value(), "title": title}
         job = Job(study_coarsening, (particles, choices.order), options)
         self._made[key] = choices
@@ -104,6 +104,6 @@ class SweepController:
 
     def _is_outdated(self, key: str) -> bool:
         made, now = self._made[key], self._session.choices
-        if key == "faces":
+        if key == "facets":
             made = made.replaced(stop_at="facets", n_facets=now.facet_count)
         return made.weights != now.weights or depends(Kind.COARSENING_STUDY, made, now)

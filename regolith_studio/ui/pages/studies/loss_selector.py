@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QMenu, QToolButton, QWidget
 
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.study_requests import loss_names
-from regolith_studio.studies.loss_rows import ALONE, PAPER_ROWS
+from regolith_studio.studies.loss_variants import ALONE, PAPER_LOSSES
 from regolith_studio.ui.translation import mark, tr
 from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
@@ -56,7 +56,7 @@ class LossSelector(QWidget):
         row.addSpacing(16)
         row.addWidget(self.remark, 1)
         self.box.currentIndexChanged.connect(lambda _index: self.valueChanged.emit())
-        self.set_names(PAPER_ROWS)
+        self.set_names(PAPER_LOSSES)
 
     def names(self) -> tuple[str, ...]:
         """Keys of the selected losses in the order of the menu, at least one."""
@@ -64,7 +64,7 @@ class LossSelector(QWidget):
 
     def set_names(self, names: Sequence[str]) -> None:
         """Select other losses; unknown ones are ignored, and none means those of Fig. 8."""
-        known = [name for name in names if name in self._actions] or PAPER_ROWS
+        known = [name for name in names if name in self._actions] or PAPER_LOSSES
         for wanted in (True, False):  # never none in between
             for name, action in self._actions.items():
                 if (name in known) is wanted:
@@ -81,7 +81,7 @@ class LossSelector(QWidget):
         menu = _StickyMenu(self)
         menu.setObjectName("study_rows_menu")
         for words, names in (
-            (tr("Those of Fig. 8"), PAPER_ROWS),
+            (tr("Those of Fig. 8"), PAPER_LOSSES),
             (tr("Each term alone"), ("overlap", *(name for name in loss_names() if name.startswith(ALONE)))),
         ):
             menu.addAction(words).triggered.connect(partial(self._choose, names))
@@ -111,7 +111,7 @@ class LossSelector(QWidget):
     def _update_text(self) -> None:
         names = self.names()
         words = tr("{count} losses", count=len(names))
-        if names == tuple(name for name in self._actions if name in PAPER_ROWS):
+        if names == tuple(name for name in self._actions if name in PAPER_LOSSES):
             words = tr("Rows of Fig. 8")
         elif len(names) == 1:
             words = self._actions[names[0]].text()

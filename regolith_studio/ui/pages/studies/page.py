@@ -14,7 +14,7 @@ from regolith_studio.session.dependencies import STUDIES as KINDS
 from regolith_studio.session.dependencies import Kind
 from regolith_studio.session.outputs.studies import STUDIES
 from regolith_studio.session.study_requests import chosen_rows, coarsen_gallery, solid_study
-from regolith_studio.studies.variations import VARIATIONS
+from regolith_studio.studies.sweeps import SWEEPS
 from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.layout import side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
@@ -31,7 +31,7 @@ from regolith_studio.ui.widgets.labels import heading
 
 LMAX_TITLE = mark("Error against l<sub>max</sub> (Fig. 3)")
 COARSENING_TITLE = mark("Error of coarsened particles")
-TABS = {"faces": mark("Faces"), "tradeoff": mark("Overlap or descriptors"), "sensitivity": mark("Weights")}
+TABS = {"facets": mark("Facets"), "tradeoff": mark("Overlap or descriptors"), "sensitivity": mark("Weights")}
 """Object name of the tab after that of Fig. 8."""
 
 
@@ -50,7 +50,7 @@ class StudiesPage(PageWidget):
         self.coarsening_study = CoarseningStudyPanel()
         self.gallery, self.bar = PolyhedronGallery(), LossSelector()
         self.variations: dict[str, SweepPanel] = {}
-        for key in VARIATIONS:
+        for key in SWEEPS:
             self.variations[key] = SweepPanel(key)
         self.tabs = self._tabs()
         self._place()
@@ -97,7 +97,7 @@ class StudiesPage(PageWidget):
             return
         for kind in KINDS:
             self.start(kind)
-        for key in VARIATIONS:
+        for key in SWEEPS:
             self.sweeps.start(key, quietly=True)
         self.draw_gallery()
 

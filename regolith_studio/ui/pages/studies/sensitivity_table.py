@@ -6,7 +6,7 @@ from PySide6.QtGui import QColor, QResizeEvent
 from PySide6.QtWidgets import QStackedLayout, QTableWidgetItem, QWidget
 
 from regolith_studio.studies.coarsening import CoarseningStudy
-from regolith_studio.studies.variations import beyond_chance, change_text, changes
+from regolith_studio.studies.sweeps import differences, format_difference, significant
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.translation.sentences import retold
@@ -30,7 +30,7 @@ class SensitivityTable(QWidget):
         self._stack.addWidget(self.table)
 
     def show_study(self, study: CoarseningStudy | None) -> None:
-        """Show the changes of a sensitivity study, or the placeholder."""
+        """Show the differences of a sensitivity study, or the placeholder."""
         self._study = study if study is not None and len(study.rows) > 1 else None
         self._stack.setCurrentIndex(1 if self._study else 0)
         self._fill()
@@ -50,8 +50,8 @@ class SensitivityTable(QWidget):
             self.table.setRowCount(0)
             return
         labels = [retold(row.label) for row in study.rows[1:]]
-        values, (low, high) = (100 * each for each in changes(study))
-        sure, given = beyond_chance(study), 100 * study.rmsre
+        values, (low, high) = (100 * each for each in differences(study))
+        sure, given = significant(study), 100 * study.rmsre
         top = float(np.abs(values).max(initial=0.0)) or 1.0
         self.table.setRowCount(len(labels))
         self.table.setColumnCount(len(self._headers))
@@ -60,7 +60,7 @@ class SensitivityTable(QWidget):
         for r, label in enumerate(labels):
             for k, header in enumerate(self._headers):
                 value = float(values[r, k])
-                text = change_text(value)
+                text = format_difference(value)
                 item = QTableWidgetItem(text if sure[r, k] or text == "0" else f"({text})")
                 item.setTextAlignment(Qt.AlignmentFlag.AlignCenter)
                 item.setBackground(self._ground(value / top))

@@ -9,8 +9,8 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QLineEdit, QVBoxLayout, QWidg
 from regolith_studio.coarsening.weights import JACCARD
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.scene.palette import DESCRIPTOR_COLOURS
-from regolith_studio.studies.coarsening import COLUMNS, LEAST_DRAWN, CoarseningStudy
-from regolith_studio.studies.variations import VARIATIONS, descriptor_error, efficient
+from regolith_studio.studies.coarsening import COLUMNS, MIN_PLOTTED, CoarseningStudy
+from regolith_studio.studies.sweeps import SWEEPS, descriptor_error, pareto_front
 from regolith_studio.ui.pages.studies.band_plot import BandPlot, Series
 from regolith_studio.ui.pages.studies.sensitivity_table import SensitivityTable
 from regolith_studio.ui.theme import Theme
@@ -36,8 +36,8 @@ class FacetsPlot(BandPlot):
 
     def __init__(self) -> None:
         super().__init__(
-            tr("Faces"),
-            tr("RMSRE [%], at least {least:g}", least=LEAST_DRAWN),
+            tr("Facets"),
+            tr("RMSRE [%], at least {least:g}", least=MIN_PLOTTED),
             tr("Root mean squared relative error of each descriptor against the number of facets."),
             log_y=True,
         )
@@ -48,7 +48,7 @@ class FacetsPlot(BandPlot):
             self.set_series([])
             return
         x = tuple(float(row.n_facets) for row in study.rows)
-        values, (low, high) = (each.clip(min=LEAST_DRAWN) for each in (100 * study.rmsre, 100 * study.bands))
+        values, (low, high) = (each.clip(min=MIN_PLOTTED) for each in (100 * study.rmsre, 100 * study.bands))
         self.set_series(
             [
                 Series(
@@ -84,7 +84,7 @@ class TradeoffPlot(BandPlot):
         x, (left, right) = 100 * study.rmsre[:, -1], 100 * study.bands[..., -1]
         y = 100 * descriptor_error(study.rmsre)
         low, high = 100 * study.band_of(descriptor_error(study.resampled))
-        front = list(efficient(study))
+        front = list(pareto_front(study))
         line = PlotCurve(
             tr("none is better in both"), self.theme.muted, tuple(x[front]), tuple(y[front]), dash=True
         )
@@ -114,7 +114,7 @@ def sensitivity_part() -> SensitivityTable:
 
 
 PARTS: Mapping[str, Callable[[], QWidget]] = {
-    "faces": FacetsPlot,
+    "facets": FacetsPlot,
     "tradeoff": TradeoffPlot,
     "sensitivity": sensitivity_part,
 }
@@ -129,7 +129,7 @@ class SweepPanel(QWidget):
     def __init__(self, key: str) -> None:
         super().__init__()
         self.setObjectName(f"{key}_study")
-        self._variation = VARIATIONS[key]
+        self._variation = SWEEPS[key]
         self.values = QLineEdit(", ".join(f"{value:g}" for value in self._variation.values))
         self.values.setObjectName(f"{key}_values")
         self.values.setAccessibleName(tr(self._variation.asks))

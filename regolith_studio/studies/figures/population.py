@@ -15,7 +15,7 @@ from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.io.tables import write_table
 from regolith_studio.shape_models.models import MODELS
-from regolith_studio.studies.figure_files import write_figure
+from regolith_studio.studies.figures.files import write_figure
 from regolith_studio.studies.population import PopulationStudy
 from regolith_studio.studies.population_distances import WEIGHTINGS, class_weights
 from regolith_studio.studies.population_tables import (

@@ -1,4 +1,4 @@
-"""Fig. 9: two orthogonal sections through a pile with the surface and the fitted flanks."""
+"""Angle of repose: sections through a pile with the fitted flanks (Fig. 9), and angles against a value."""
 
 from pathlib import Path
 
@@ -11,7 +11,9 @@ from regolith_studio.dem.angle_of_repose import ReposeMeasurement
 from regolith_studio.dem.evaluation.profile import project
 from regolith_studio.dem.evaluation.section import Section
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.studies.figure_files import write_figure
+from regolith_studio.io.tables import write_table
+from regolith_studio.studies.figures.files import write_figure
+from regolith_studio.studies.repose import ReposeStudy, repose_table
 
 MILLIMETRE = 1e3
 LEFT, RIGHT, BOTH = "#0072b2", "#e69f00", "#009e73"
@@ -94,3 +96,36 @@ def _draw_fits(axis: Axes, section: Section) -> None:
     reach = one.apex[1] / one.slope
     roof = MILLIMETRE * np.array([one.apex[0] - reach, one.apex[0], one.apex[0] + reach])
     axis.plot(roof, [0.0, MILLIMETRE * one.apex[1], 0.0], "--", color=BOTH, label="symmetric")
+
+
+def repose_study_figure(study: ReposeStudy) -> Figure:
+    """Every run as a dot with its interval, the mean of the repeats as a line."""
+    figure = Figure(figsize=(5.6, 3.8), layout="constrained")
+    axis = figure.subplots()
+    numeric = all(isinstance(value, int | float) for value in study.values)
+    places = {value: float(value) if numeric else float(k) for k, value in enumerate(study.values)}
+    for run in study.runs:
+        if run.angle is not None:
+            low, high = run.document["measurement"]["interval_deg"]
+            reach = [[run.angle - low], [high - run.angle]]
+            axis.errorbar(places[run.value], run.angle, yerr=reach, fmt="o", color="#0072b2", capsize=3)
+    means = [
+        (places[value], float(np.mean(study.angles(value)))) for value in study.values if study.angles(value)
+    ]
+    if means:
+        axis.plot(*np.array(means).T, color="0.4", linewidth=1.0, linestyle="-" if numeric else "none")
+    if not numeric:
+        axis.set_xticks(list(places.values()), [str(value) for value in places])
+        axis.margins(x=0.2)
+    axis.set_xlabel(study.runs[0].varied.replace("_", " ") if study.runs else "")
+    axis.set_ylabel("angle of repose (°)")
+    axis.grid(True, alpha=0.3)
+    return figure
+
+
+def write_repose_study(study: ReposeStudy, folder: Path, stem: str = "repose_study") -> tuple[Path, ...]:
+    """Table (CSV, JSON) and figure (PNG, SVG)."""
+    return (
+        *write_table(repose_table(study), folder, stem),
+        *write_figure(repose_study_figure(study), folder, stem),
+    )

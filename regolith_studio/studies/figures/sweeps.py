@@ -1,4 +1,4 @@
-"""Figures of the variations of a coarsening, and all their files."""
+"""Figures and files of parameter sweeps of a coarsening."""
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -9,29 +9,29 @@ from matplotlib.figure import Figure
 
 from regolith_studio.io.tables import write_table
 from regolith_studio.studies.coarsening import COLUMNS, CoarseningStudy, particle_table
-from regolith_studio.studies.coarsening_figures import column_symbol, facet_count_figure
-from regolith_studio.studies.figure_files import write_figure
-from regolith_studio.studies.variations import (
-    VARIATIONS,
-    beyond_chance,
-    change_text,
-    changes,
+from regolith_studio.studies.figures.coarsening import column_symbol, facet_count_figure
+from regolith_studio.studies.figures.files import write_figure
+from regolith_studio.studies.sweeps import (
+    SWEEPS,
     descriptor_error,
-    efficient,
+    differences,
+    format_difference,
+    pareto_front,
+    significant,
 )
 
-LEAST_SPAN = 0.01
+MIN_SPAN = 0.01
 """Percentage points: where all changes are smaller, they are drawn as none."""
 
 
 def tradeoff_figure(study: CoarseningStudy) -> Figure:
-    """Mean RMSRE of the descriptors against the mean Jaccard distance; a line through efficient rows."""
+    """Mean RMSRE of the descriptors against the mean Jaccard distance; a line through the Pareto front."""
     x, y = 100 * study.rmsre[:, -1], 100 * descriptor_error(study.rmsre)
     x_ends = 100 * study.bands[..., -1]
     y_ends = 100 * study.band_of(descriptor_error(study.resampled))
     figure = Figure(figsize=(7.5, 4.5), layout="constrained")
     axis = figure.subplots()
-    best = list(efficient(study))
+    best = list(pareto_front(study))
     axis.plot(
         x[best], y[best], color="#888888", linewidth=1, linestyle="--", label="no row is better in both"
     )
@@ -58,16 +58,16 @@ def tradeoff_figure(study: CoarseningStudy) -> Figure:
 
 def sensitivity_figure(study: CoarseningStudy) -> Figure:
     """Changes in percentage points, one row a changed weight; numbers in brackets may be chance."""
-    values, sure = 100 * changes(study)[0], beyond_chance(study)
+    values, sure = 100 * differences(study)[0], significant(study)
     n_rows = len(values)
     figure = Figure(figsize=(9.0, 1.6 + 0.34 * n_rows), layout="constrained")
     axis = figure.subplots()
-    span = max(LEAST_SPAN, float(np.abs(values).max(initial=0.0)))
+    span = max(MIN_SPAN, float(np.abs(values).max(initial=0.0)))
     norm = TwoSlopeNorm(0.0, -span, span)
     image = axis.imshow(values, aspect="auto", cmap="RdBu_r", norm=norm)
     for r in range(n_rows):
         for k in range(len(COLUMNS)):
-            text = change_text(values[r, k])
+            text = format_difference(values[r, k])
             axis.text(
                 k,
                 r,
@@ -87,17 +87,17 @@ def sensitivity_figure(study: CoarseningStudy) -> Figure:
 
 
 FIGURES: Mapping[str, Callable[[CoarseningStudy], Figure]] = {
-    "faces": facet_count_figure,
+    "facets": facet_count_figure,
     "tradeoff": tradeoff_figure,
     "sensitivity": sensitivity_figure,
 }
-"""By key of :data:`~regolith_studio.studies.variations.VARIATIONS`."""
+"""By key of :data:`~regolith_studio.studies.sweeps.SWEEPS`."""
 
 
-def write_variation(key: str, study: CoarseningStudy, folder: Path) -> tuple[Path, ...]:
+def write_sweep(key: str, study: CoarseningStudy, folder: Path) -> tuple[Path, ...]:
     """Tables (CSV, JSON) of rows and of particles, and the figure (PNG, SVG)."""
     return (
-        *write_table(VARIATIONS[key].table(study), folder, key),
+        *write_table(SWEEPS[key].table(study), folder, key),
         *write_table(particle_table(study), folder, f"{key}_particles"),
         *write_figure(FIGURES[key](study), folder, key),
     )

@@ -1,4 +1,4 @@
-"""Three ways to vary a coarsening: error against faces, overlap against descriptors, one weight at a time."""
+"""Parameter sweeps of a coarsening: number of facets, overlap against descriptors, one weight at a time."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -13,20 +13,20 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.io.tables import Column, Table
 from regolith_studio.studies.coarsening import COLUMNS, CoarseningStudy, rmsre_table, study_notes
-from regolith_studio.studies.loss_rows import (
+from regolith_studio.studies.loss_variants import (
     CHANGE_FACTORS,
     CONDITION_METHODS,
     FACET_COUNTS,
     OVERLAP_FACTORS,
-    StudyRow,
-    facet_count_rows,
-    sensitivity_rows,
-    tradeoff_rows,
+    LossVariant,
+    facet_count_variants,
+    sensitivity_variants,
+    tradeoff_variants,
 )
 
 
 @dataclass(frozen=True)
-class Variation:
+class Sweep:
     """What is varied.
 
     Parameters
@@ -49,7 +49,7 @@ class Variation:
     title: str
     asks: str
     values: tuple[float, ...]
-    rows: Callable[[StudyRow, Sequence[float]], tuple[StudyRow, ...]]
+    rows: Callable[[LossVariant, Sequence[float]], tuple[LossVariant, ...]]
     table: Callable[[CoarseningStudy], Table]
 
     def takes_values(self, method: str) -> bool:
@@ -57,7 +57,7 @@ class Variation:
         return self.key != "tradeoff" or method not in CONDITION_METHODS
 
 
-def parsed_values(text: str) -> tuple[float, ...]:
+def parse_values(text: str) -> tuple[float, ...]:
     """Numbers with commas between them.
 
     Raises
@@ -79,7 +79,7 @@ def descriptor_error(rmsre: FloatArray) -> FloatArray:
     return np.asarray(rmsre[..., :-1].mean(axis=-1))
 
 
-def efficient(study: CoarseningStudy) -> tuple[int, ...]:
+def pareto_front(study: CoarseningStudy) -> tuple[int, ...]:
     """Rows that no other row beats in both overlap and :func:`descriptor_error`, by their overlap."""
     distance, error = study.rmsre[:, -1], descriptor_error(study.rmsre)
     kept: list[int] = []
@@ -89,7 +89,7 @@ def efficient(study: CoarseningStudy) -> tuple[int, ...]:
     return tuple(kept)
 
 
-def changes(study: CoarseningStudy) -> tuple[FloatArray, FloatArray]:
+def differences(study: CoarseningStudy) -> tuple[FloatArray, FloatArray]:
     """RMSRE of the rows after the first minus that of the first, and the paired bootstrap band.
 
     Shapes (rows - 1, columns) and (2, rows - 1, columns); the last column is the Jaccard distance.
@@ -98,13 +98,13 @@ def changes(study: CoarseningStudy) -> tuple[FloatArray, FloatArray]:
     return study.rmsre[1:] - study.rmsre[:1], study.band_of(resampled)
 
 
-def beyond_chance(study: CoarseningStudy) -> NDArray[np.bool_]:
-    """Which :func:`changes` are larger than what :data:`EXACT` allows, with a band that leaves 0 out."""
-    values, (low, high) = changes(study)
+def significant(study: CoarseningStudy) -> NDArray[np.bool_]:
+    """Which :func:`differences` are larger than what :data:`EXACT` allows, with a band that leaves 0 out."""
+    values, (low, high) = differences(study)
     return np.asarray((np.abs(values) > EXACT) & ((low > 0) | (high < 0)))
 
 
-def change_text(points: float) -> str:
+def format_difference(points: float) -> str:
     """A change in percentage points with its sign; 0 where it cannot be seen."""
     return "0" if abs(points) < 0.005 else f"{points:+.2f}"
 
@@ -114,7 +114,7 @@ def tradeoff_table(study: CoarseningStudy) -> Table:
     values, (low, high) = 100 * study.rmsre, 100 * study.bands
     error = 100 * descriptor_error(study.rmsre)
     error_low, error_high = 100 * study.band_of(descriptor_error(study.resampled))
-    best = efficient(study)
+    best = pareto_front(study)
     lines = [
         (
             row.label,
@@ -148,8 +148,8 @@ def sensitivity_table(study: CoarseningStudy) -> Table:
     """What changing one weight changes: a row for each change and descriptor, in percentage points."""
     if len(study.rows) < 2:
         raise InputError("A sensitivity needs at least one changed weight.")
-    values, (low, high) = (100 * each for each in changes(study))
-    beyond = beyond_chance(study)
+    values, (low, high) = (100 * each for each in differences(study))
+    beyond = significant(study)
     lines = [
         (
             row.label,
@@ -178,31 +178,31 @@ def sensitivity_table(study: CoarseningStudy) -> Table:
     return Table("Sensitivity of coarsened particles to the weights", columns, tuple(lines), notes)
 
 
-VARIATIONS: Mapping[str, Variation] = {
+SWEEPS: Mapping[str, Sweep] = {
     each.key: each
     for each in (
-        Variation(
-            "faces",
+        Sweep(
+            "facets",
             "Error against the number of facets",
             "Numbers of facets",
             tuple(map(float, FACET_COUNTS)),
-            facet_count_rows,
+            facet_count_variants,
             rmsre_table,
         ),
-        Variation(
+        Sweep(
             "tradeoff",
             "Overlap against descriptors",
             "Factors on the weight of the overlap",
             OVERLAP_FACTORS,
-            tradeoff_rows,
+            tradeoff_variants,
             tradeoff_table,
         ),
-        Variation(
+        Sweep(
             "sensitivity",
             "Sensitivity to the weights",
             "Factors on one weight at a time",
             CHANGE_FACTORS,
-            sensitivity_rows,
+            sensitivity_variants,
             sensitivity_table,
         ),
     )

@@ -1,4 +1,4 @@
-"""The polyhedra that each loss makes of some particles, as a picture (Fig. 7)."""
+"""Polyhedra of some particles for each loss, as a picture (Fig. 7)."""
 
 from pathlib import Path
 
@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.io.tables import write_table
-from regolith_studio.studies.figure_files import write_figure
-from regolith_studio.studies.solid_study import SolidStudy, StudiedSolid, solid_table
+from regolith_studio.studies.figures.files import write_figure
+from regolith_studio.studies.polyhedron_gallery import GalleryPolyhedron, PolyhedronGallery, gallery_table
 
 VIEW = np.array([[-0.5, 0.866, 0.0], [-0.296, -0.171, 0.94], [0.814, 0.47, 0.342]])
 """Rows: to the right, up, and towards the eye."""
@@ -21,20 +21,20 @@ CELL = 1.7
 """Inches."""
 
 
-def solid_figure(study: SolidStudy) -> Figure:
+def gallery_figure(study: PolyhedronGallery) -> Figure:
     """A row a loss, a column a particle, those of a particle at one scale."""
     n_rows, n_columns = len(study.rows), len(study.names)
     figure = Figure(figsize=(1.6 + CELL * n_columns, 0.3 + CELL * n_rows), layout="constrained")
     axes = figure.subplots(n_rows, n_columns, squeeze=False)
     for column, name in enumerate(study.names):
         solids = [study.cells.get((row, column)) for row in range(n_rows)]
-        reaches = [_reach(each.polyhedron) for each in solids if isinstance(each, StudiedSolid)]
+        reaches = [_reach(each.polyhedron) for each in solids if isinstance(each, GalleryPolyhedron)]
         for row, found in enumerate(solids):
             axis = axes[row, column]
             axis.set_xticks([])
             axis.set_yticks([])
             axis.set_frame_on(False)
-            if isinstance(found, StudiedSolid):
+            if isinstance(found, GalleryPolyhedron):
                 _draw(axis, found.polyhedron, 1.05 * max(reaches))
                 axis.set_xlabel(f"J {found.jaccard_distance:.3f}", fontsize=7)
         axes[0, column].set_title(name, fontsize=8)
@@ -45,11 +45,11 @@ def solid_figure(study: SolidStudy) -> Figure:
     return figure
 
 
-def write_solids(study: SolidStudy, folder: Path) -> tuple[Path, ...]:
+def write_gallery(study: PolyhedronGallery, folder: Path) -> tuple[Path, ...]:
     """Table (CSV, JSON) and figure (PNG, SVG)."""
     return (
-        *write_table(solid_table(study), folder, "solids"),
-        *write_figure(solid_figure(study), folder, "solids"),
+        *write_table(gallery_table(study), folder, "solids"),
+        *write_figure(gallery_figure(study), folder, "solids"),
     )
 
 

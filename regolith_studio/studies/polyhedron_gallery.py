@@ -1,4 +1,4 @@
-"""The polyhedra that each loss makes of some particles, as numbers (Fig. 7)."""
+"""Polyhedra of some particles for each loss, as data and as a table (Fig. 7)."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -15,8 +15,8 @@ from regolith_studio.io.tables import Cell, Column, Table
 
 
 @dataclass(frozen=True, eq=False)
-class StudiedSolid:
-    """What a study keeps of a coarsened particle; it can become plain numbers and words, and come back.
+class GalleryPolyhedron:
+    """What a gallery keeps of a coarsened particle; can be converted to a JSON document and back.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ class StudiedSolid:
 
 
 @dataclass(frozen=True, eq=False)
-class SolidStudy:
+class PolyhedronGallery:
     """Some particles, each coarsened by every loss.
 
     Parameters
@@ -85,10 +85,10 @@ class SolidStudy:
 
     rows: tuple[str, ...]
     names: tuple[str, ...]
-    cells: Mapping[tuple[int, int], StudiedSolid | str]
+    cells: Mapping[tuple[int, int], GalleryPolyhedron | str]
 
 
-def solid_table(study: SolidStudy) -> Table:
+def gallery_table(study: PolyhedronGallery) -> Table:
     """Facets, errors and what no polyhedron can do better, a line a picture."""
     lines = [
         (study.rows[row], study.names[column], *_numbers(found))
@@ -102,7 +102,7 @@ def solid_table(study: SolidStudy) -> Table:
     return Table("Polyhedra by loss and particle", columns, tuple(lines), notes)
 
 
-def _numbers(found: StudiedSolid | str) -> tuple[Cell, ...]:
+def _numbers(found: GalleryPolyhedron | str) -> tuple[Cell, ...]:
     if isinstance(found, str):
         return (*(None,) * (4 + 2 * (len(LOSS_KEYS) + 1) + 1), found)
     errors = [100 * found.errors[key] for key in LOSS_KEYS]

@@ -10,12 +10,12 @@ from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.io.tables import write_table
 from regolith_studio.studies.coarsening import (
     COLUMNS,
-    LEAST_DRAWN,
+    MIN_PLOTTED,
     CoarseningStudy,
     particle_table,
     rmsre_table,
 )
-from regolith_studio.studies.figure_files import with_subscript, write_figure
+from regolith_studio.studies.figures.files import with_subscript, write_figure
 
 PAPER_SYMBOLS = {JACCARD: "IoU"}
 
@@ -27,11 +27,11 @@ def coarsening_figure(study: CoarseningStudy) -> Figure:
     figure = Figure(figsize=(9.0, 1.6 + 0.55 * n_rows), layout="constrained")
     axis = figure.subplots()
     image = axis.imshow(
-        np.log10(np.maximum(values, LEAST_DRAWN)), aspect="auto", cmap="viridis", vmin=-3, vmax=2
+        np.log10(np.maximum(values, MIN_PLOTTED)), aspect="auto", cmap="viridis", vmin=-3, vmax=2
     )
     for r in range(n_rows):
         for k in range(len(COLUMNS)):
-            dark = np.log10(max(values[r, k], LEAST_DRAWN)) < 0.5
+            dark = np.log10(max(values[r, k], MIN_PLOTTED)) < 0.5
             axis.text(
                 k, r, _printed(values[r, k]), ha="center", va="center", color="white" if dark else "black"
             )
@@ -53,21 +53,21 @@ def facet_count_figure(study: CoarseningStudy) -> Figure:
     for k, key in enumerate(COLUMNS):
         axis.fill_between(
             counts,
-            np.maximum(low[:, k], LEAST_DRAWN),
-            np.maximum(high[:, k], LEAST_DRAWN),
+            np.maximum(low[:, k], MIN_PLOTTED),
+            np.maximum(high[:, k], MIN_PLOTTED),
             alpha=0.15,
             linewidth=0,
         )
         axis.plot(
             counts,
-            np.maximum(values[:, k], LEAST_DRAWN),
+            np.maximum(values[:, k], MIN_PLOTTED),
             marker="o",
             markersize=3.5,
             label=column_symbol(key),
         )
     axis.set_yscale("log")
-    axis.set_xlabel("faces")
-    axis.set_ylabel(f"RMSRE (%), at least {LEAST_DRAWN:g}; IoU: mean (%)")
+    axis.set_xlabel("facets")
+    axis.set_ylabel(f"RMSRE (%), at least {MIN_PLOTTED:g}; IoU: mean (%)")
     axis.grid(True, which="major", alpha=0.3)
     figure.legend(loc="outside right upper", frameon=False)
     return figure

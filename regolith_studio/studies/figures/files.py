@@ -1,4 +1,4 @@
-"""Figures as files: PNG to look at, SVG to edit; the same bytes each time."""
+"""Writes figures as PNG and SVG, with the same bytes each time."""
 
 import re
 from io import BytesIO
@@ -8,7 +8,7 @@ import matplotlib
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from regolith_studio.studies.one_at_a_time import DRAWING
+from regolith_studio.studies.matplotlib_lock import MATPLOTLIB_LOCK
 
 DOTS_PER_INCH = 150
 
@@ -18,7 +18,7 @@ def write_figure(figure: Figure, folder: Path, stem: str) -> tuple[Path, Path]:
     folder.mkdir(parents=True, exist_ok=True)
     FigureCanvasAgg(figure)
     picture, drawing = folder / f"{stem}.png", folder / f"{stem}.svg"
-    with DRAWING:
+    with MATPLOTLIB_LOCK:
         figure.savefig(picture, dpi=DOTS_PER_INCH)
         with matplotlib.rc_context({"svg.hashsalt": "regolith-studio"}):
             figure.savefig(drawing, metadata={"Date": None})
@@ -34,6 +34,6 @@ def png_bytes(figure: Figure, dots_per_inch: int = DOTS_PER_INCH) -> bytes:
     """A figure as a PNG file in memory."""
     FigureCanvasAgg(figure)
     stream = BytesIO()
-    with DRAWING:
+    with MATPLOTLIB_LOCK:
         figure.savefig(stream, format="png", dpi=dots_per_inch)
     return stream.getvalue()

@@ -1,4 +1,4 @@
-"""Rows of a study of the coarsening: losses by name, face counts, weights that are varied."""
+"""Variants of a loss to be compared by a study: losses by name, numbers of facets, varied weights."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -11,7 +11,7 @@ from regolith_studio.coarsening.weights import JACCARD, WEIGHT_KEYS, LossWeights
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.errors import InputError
 
-PAPER_ROWS = (
+PAPER_LOSSES = (
     "quadric",
     "descriptors",
     "volume_sphericity_aspect_ratio",
@@ -36,8 +36,8 @@ CONDITION_METHODS = ("exact",)
 
 
 @dataclass(frozen=True)
-class StudyRow:
-    """One row of the study: how every particle is coarsened.
+class LossVariant:
+    """One way to coarsen every particle: a row of a study.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ def losses() -> dict[str, Loss]:
     return {name: Loss(each.label, each.weights) for name, each in presets().items()} | alone
 
 
-def loss_rows(names: Sequence[str], like: StudyRow) -> tuple[StudyRow, ...]:
+def loss_variants(names: Sequence[str], like: LossVariant) -> tuple[LossVariant, ...]:
     """A row for each name of :func:`losses`, in all else as `like`.
 
     Raises
@@ -102,13 +102,17 @@ def loss_rows(names: Sequence[str], like: StudyRow) -> tuple[StudyRow, ...]:
     return tuple(like.relabelled(known[name].label, weights=known[name].weights) for name in names)
 
 
-def paper_rows(method: str = DEFAULT_METHOD, n_facets: int = 20, **settings: Any) -> tuple[StudyRow, ...]:
+def paper_variants(
+    method: str = DEFAULT_METHOD, n_facets: int = 20, **settings: Any
+) -> tuple[LossVariant, ...]:
     """The rows of Fig. 8, coarsened by `method`."""
-    like = StudyRow("", LossWeights.of(), method, n_facets, tuple(settings.items()))
-    return loss_rows(PAPER_ROWS, like)
+    like = LossVariant("", LossWeights.of(), method, n_facets, tuple(settings.items()))
+    return loss_variants(PAPER_LOSSES, like)
 
 
-def facet_count_rows(like: StudyRow, counts: Sequence[float] = FACET_COUNTS) -> tuple[StudyRow, ...]:
+def facet_count_variants(
+    like: LossVariant, counts: Sequence[float] = FACET_COUNTS
+) -> tuple[LossVariant, ...]:
     """One row for each number of facets, ascending.
 
     Raises
@@ -124,7 +128,9 @@ def facet_count_rows(like: StudyRow, counts: Sequence[float] = FACET_COUNTS) -> 
     )
 
 
-def tradeoff_rows(like: StudyRow, factors: Sequence[float] = OVERLAP_FACTORS) -> tuple[StudyRow, ...]:
+def tradeoff_variants(
+    like: LossVariant, factors: Sequence[float] = OVERLAP_FACTORS
+) -> tuple[LossVariant, ...]:
     """Overlap against descriptors.
 
     Where weights are weighed against each other, one row for each factor on the weight of the overlap, and
@@ -136,14 +142,14 @@ def tradeoff_rows(like: StudyRow, factors: Sequence[float] = OVERLAP_FACTORS) ->
     InputError
         If `like` has no weight on a descriptor, a factor is negative, or the method has no loss.
     """
-    _check(like, factors)
+    _check_factors(like, factors)
     overlap = like.weights[JACCARD] or 1.0
     wanted = {key: like.weights[key] for key in LOSS_KEYS if like.weights[key]}
     if not wanted:
         raise InputError("A trade-off needs a weight above 0 on at least one descriptor.")
     alone = like.relabelled("Overlap only", weights=LossWeights.of(**{JACCARD: overlap}))
     if like.method in CONDITION_METHODS:
-        return (alone, *_choices_of_conditions(like, overlap, wanted))
+        return (alone, *_condition_variants(like, overlap, wanted))
     weighed = [
         like.relabelled(f"Overlap × {factor:g}", weights=like.weights.replaced(**{JACCARD: overlap * factor}))
         for factor in sorted(set(factors))
@@ -151,9 +157,9 @@ def tradeoff_rows(like: StudyRow, factors: Sequence[float] = OVERLAP_FACTORS) ->
     return (*weighed, alone)
 
 
-def _choices_of_conditions(
-    like: StudyRow, overlap: float, wanted: Mapping[str, float]
-) -> tuple[StudyRow, ...]:
+def _condition_variants(
+    like: LossVariant, overlap: float, wanted: Mapping[str, float]
+) -> tuple[LossVariant, ...]:
     groups = {name: [key for key in keys if key in wanted] for name, keys in GROUPS.items()}
     present = [name for name, keys in groups.items() if keys]
     rows = []
@@ -165,7 +171,9 @@ def _choices_of_conditions(
     return tuple(rows)
 
 
-def sensitivity_rows(like: StudyRow, factors: Sequence[float] = CHANGE_FACTORS) -> tuple[StudyRow, ...]:
+def sensitivity_variants(
+    like: LossVariant, factors: Sequence[float] = CHANGE_FACTORS
+) -> tuple[LossVariant, ...]:
     """The weights themselves, then each of them multiplied by each factor, alone.
 
     Raises
@@ -173,17 +181,17 @@ def sensitivity_rows(like: StudyRow, factors: Sequence[float] = CHANGE_FACTORS) 
     InputError
         If no weight is above 0, a factor is negative, or the method has no loss.
     """
-    _check(like, factors)
+    _check_factors(like, factors)
     rows = [like.relabelled("As given")]
     for key in WEIGHT_KEYS:
         for factor in sorted(set(factors) - {1.0}):
             changed = like.weights.replaced(**{key: like.weights[key] * factor})
             if like.weights[key] and not changed.all_zero:
-                rows.append(like.relabelled(f"{_named(key)} × {factor:g}", weights=changed))
+                rows.append(like.relabelled(f"{_label_of(key)} × {factor:g}", weights=changed))
     return tuple(rows)
 
 
-def _check(like: StudyRow, factors: Sequence[float]) -> None:
+def _check_factors(like: LossVariant, factors: Sequence[float]) -> None:
     if like.is_baseline:
         raise InputError("Quadric decimation has no loss whose weights could be varied; take another method.")
     for factor in factors:
@@ -191,5 +199,5 @@ def _check(like: StudyRow, factors: Sequence[float]) -> None:
             raise InputError(f"A factor on a weight must be 0 or a positive number, got {factor:g}.")
 
 
-def _named(key: str) -> str:
+def _label_of(key: str) -> str:
     return "Overlap" if key == JACCARD else CATALOGUE[key].label

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.io.tables import write_table
-from regolith_studio.studies.figure_files import with_subscript, write_figure
+from regolith_studio.studies.figures.files import with_subscript, write_figure
 from regolith_studio.studies.lmax import LmaxStudy, particle_table, rmsre_table
 
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")

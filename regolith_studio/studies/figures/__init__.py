@@ -1,0 +1,1 @@
+"""Figures of studies, drawn by matplotlib and written as PNG and SVG; imported when figures are wanted."""
