@@ -30,7 +30,7 @@ from regolith_studio.imaging.extraction import ExtractionSettings, extraction_st
 from regolith_studio.imaging.sample_volumes import sample_volume
 from regolith_studio.imaging.segmentation.denoising import DenoiseSettings
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings, segmentation_steps
-from regolith_studio.imaging.slabs import Scratch
+from regolith_studio.imaging.volume_slabs import ScratchArrays
 from regolith_studio.jobs.extraction_settings import VolumeInput
 
 CELL = 51
@@ -107,7 +107,7 @@ def extract(path: Path, grey: bool, memory: float) -> dict[str, float]:
     stages: dict[str, float] = {}
     begin, values = time.monotonic(), None
     volume = VolumeInput(path, 2.3, kind="grey" if grey else "labels").opened()
-    with Scratch(path.parent) as scratch:
+    with ScratchArrays(path.parent) as scratch:
         if grey:
             steps = segmentation_steps(volume, SegmentationSettings(DenoiseSettings("gaussian")), scratch)
             volume, values = _timed(steps, stages).labels, volume

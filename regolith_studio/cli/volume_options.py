@@ -125,8 +125,8 @@ class GrainOptions:
     def recipe(self) -> "GrainSettings":
         """The settings that the options stand for; a wrong one is bad use."""
         from regolith_studio.imaging.extraction import ExtractionSettings
-        from regolith_studio.imaging.segmentation.cleaning import CleaningSettings
         from regolith_studio.imaging.segmentation.denoising import DenoiseSettings
+        from regolith_studio.imaging.segmentation.morphology import CleaningSettings
         from regolith_studio.imaging.segmentation.segment import SegmentationSettings
         from regolith_studio.imaging.segmentation.splitting import SplittingSettings
         from regolith_studio.jobs.extraction_settings import GrainSettings

@@ -2,7 +2,7 @@
 
 A binary mask contoured as it is overstates the surface area by up to 9 % at any resolution. Each
 contour is therefore moved to lie smoothly between the centres of voxels, and has their volume
-(:mod:`~regolith_studio.imaging.mask_surface`); on spheres, ellipsoids, polyhedra and rough grains of
+(:mod:`~regolith_studio.imaging.grain_surface`); on spheres, ellipsoids, polyhedra and rough grains of
 24 voxels a diameter and more the area is then right within 2 %.
 Where the grey values are at hand, they can tell the surface and above all its volume better.
 
@@ -20,17 +20,17 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import BoolArray, FloatArray
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle, Source
-from regolith_studio.imaging.bodies import largest_body, pores_filled
-from regolith_studio.imaging.boxes import Box, box_between, grown, touches, within
-from regolith_studio.imaging.grey_surface import MARGIN, grey_mesh
+from regolith_studio.imaging.bounding_boxes import Box, box_between, grown, touches, within
+from regolith_studio.imaging.connected_components import largest_component, pores_filled
+from regolith_studio.imaging.grain_surface import MARGIN, grey_mesh, mask_mesh
 from regolith_studio.imaging.label_table import GrainCrop, grain_crops, label_masks, label_table
-from regolith_studio.imaging.mask_surface import mask_mesh
-from regolith_studio.imaging.slabs import SlabSource
+from regolith_studio.imaging.volume_slabs import SliceSource
 
 Surface = Literal["mask", "grey"]
 SURFACES: tuple[Surface, ...] = get_args(Surface)
 
 _COARSE, _OF_MASK = "Only", "The surface is that of the mask"
+_Made = tuple[int, Mesh, tuple[str, ...], Surface]
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class ExtractionSettings:
         Of the smoothing (:func:`~regolith_studio.imaging.smoothing.LowPass`).
     surface
         What surfaces are taken from: the ``grey`` values about each label where they are at hand
-        (:mod:`~regolith_studio.imaging.grey_surface`), or its ``mask`` always.
+        (:mod:`~regolith_studio.imaging.grain_surface`), or its ``mask`` always.
     """
 
     exclude_border: bool = True
@@ -77,7 +77,7 @@ class ExtractionSettings:
 
 
 @dataclass(frozen=True)
-class Extracted:
+class ExtractedParticle:
     """One label that became a particle.
 
     Parameters
@@ -105,7 +105,7 @@ class ExtractionProgress:
 
     done: int
     total: int
-    extracted: Extracted
+    extracted: ExtractedParticle
 
 
 @dataclass(frozen=True)
@@ -124,7 +124,7 @@ class Extraction:
         Labels that became particles.
     """
 
-    found: tuple[Extracted, ...]
+    found: tuple[ExtractedParticle, ...]
     border: tuple[int, ...]
     small: tuple[int, ...]
     n_found: int
@@ -152,11 +152,11 @@ class Extraction:
 
 
 def extract_particles(
-    volume: SlabSource,
+    volume: SliceSource,
     settings: ExtractionSettings | None = None,
     group: str = "",
     source: Source | None = None,
-    grey: SlabSource | None = None,
+    grey: SliceSource | None = None,
 ) -> Extraction:
     """Run :func:`extraction_steps` to its end."""
     steps = extraction_steps(volume, settings, group, source, grey=grey)
@@ -169,12 +169,12 @@ def extract_particles(
 
 
 def extraction_steps(
-    volume: SlabSource,
+    volume: SliceSource,
     settings: ExtractionSettings | None = None,
     group: str = "",
     source: Source | None = None,
     collect: bool = True,
-    grey: SlabSource | None = None,
+    grey: SliceSource | None = None,
 ) -> Generator[ExtractionProgress, None, Extraction]:
     """Make a particle of each label, telling after each how far it is.
 
@@ -194,7 +194,7 @@ def extraction_steps(
     ------
     InputError
         If the volume holds grey values, no label, or labels beyond
-        :data:`~regolith_studio.imaging.label_table.HIGHEST_LABEL`.
+        :data:`~regolith_studio.imaging.label_table.MAX_LABEL`.
     """
     settings = settings or ExtractionSettings()
     table = label_table(volume)
@@ -203,12 +203,12 @@ def extraction_steps(
     border = [k for k, box in boxes.items() if settings.exclude_border and touches(box, volume.shape)]
     small = [k for k in set(boxes).difference(border) if sizes[k] < settings.min_voxels]
     wanted = {k: box for k, box in boxes.items() if k not in {*border, *small}}
-    found: list[Extracted] = []
+    found: list[ExtractedParticle] = []
     made = _surfaces(volume, grey if settings.surface == "grey" else None, wanted, settings)
     for done, (label, mesh, notes, surface) in enumerate(made, start=1):
         weight = border_weight(boxes[label], volume.shape) if settings.exclude_border else 1.0
         particle = Particle(f"particle_{label:0{width}d}", mesh, group, source, notes, weight)
-        extracted = Extracted(particle, label, sizes[label], weight, surface)
+        extracted = ExtractedParticle(particle, label, sizes[label], weight, surface)
         if collect:
             found.append(extracted)
         yield ExtractionProgress(done, len(wanted), extracted)
@@ -239,11 +239,8 @@ def border_weight(box: Box, shape: tuple[int, int, int]) -> float:
     return float(1.0 / np.prod(np.maximum(1.0 - (lengths + 1.0) / size, 1.0 / size)))
 
 
-_Made = tuple[int, Mesh, tuple[str, ...], Surface]
-
-
 def _surfaces(
-    volume: SlabSource, grey: SlabSource | None, boxes: Mapping[int, Box], settings: ExtractionSettings
+    volume: SliceSource, grey: SliceSource | None, boxes: Mapping[int, Box], settings: ExtractionSettings
 ) -> Iterator[_Made]:
     """Label, mesh in micrometres, notes and origin of each surface."""
     edges = np.asarray(volume.voxel_size, float)
@@ -305,7 +302,7 @@ def _placed(mesh: Mesh, box: Box, voxel_size: FloatArray) -> Mesh:
 def _one_body(mask: BoolArray, settings: ExtractionSettings) -> tuple[BoolArray, list[str]]:
     """The largest face-connected body, its closed pores filled, and notes on it."""
     notes = []
-    body, count = largest_body(mask)
+    body, count = largest_component(mask)
     if count > 1:
         dropped = int(np.count_nonzero(mask) - np.count_nonzero(body))
         notes.append(f"The label had {count} separate parts; the largest was kept, {dropped} voxels dropped.")

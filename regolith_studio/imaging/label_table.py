@@ -14,13 +14,14 @@ from numpy.typing import NDArray
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import BoolArray, IntArray
-from regolith_studio.imaging.boxes import Box, box_between
-from regolith_studio.imaging.slabs import SlabSource, slab_ranges
+from regolith_studio.imaging.bounding_boxes import Box, box_between
+from regolith_studio.imaging.volume_slabs import SliceSource, slab_ranges
 
-HIGHEST_LABEL = 20_000_000
+MAX_LABEL = 20_000_000
 """Beyond this the table alone would fill the memory."""
 
 _statistics: Any = cc3d.statistics
+_Parts = tuple[NDArray[Any], ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,13 +70,13 @@ class GrainCrop:
     values: NDArray[Any]
 
 
-def label_table(source: SlabSource) -> LabelTable:
+def label_table(source: SliceSource) -> LabelTable:
     """The labels of a volume; 0 and less is no particle.
 
     Raises
     ------
     InputError
-        If the volume holds grey values, no label, or labels beyond :data:`HIGHEST_LABEL`.
+        If the volume holds grey values, no label, or labels beyond :data:`MAX_LABEL`.
     """
     if source.kind != "labels":
         raise InputError(f"{source.name} holds grey values; segment it before particles can be extracted.")
@@ -98,14 +99,14 @@ def label_table(source: SlabSource) -> LabelTable:
     return LabelTable(present, counts[present], low[present], high[present])
 
 
-def label_masks(source: SlabSource, boxes: Mapping[int, Box]) -> Iterator[tuple[int, BoolArray]]:
+def label_masks(source: SliceSource, boxes: Mapping[int, Box]) -> Iterator[tuple[int, BoolArray]]:
     """Each label with its mask in its box, in the order in which the slabs complete them."""
     for label, (mask,) in _cuts((source,), boxes, lambda label, parts: (parts[0] == label,)):
         yield label, mask
 
 
 def grain_crops(
-    labels: SlabSource, grey: SlabSource, boxes: Mapping[int, Box]
+    labels: SliceSource, grey: SliceSource, boxes: Mapping[int, Box]
 ) -> Iterator[tuple[int, GrainCrop]]:
     """Each label with what lies in its box, in the order in which the slabs complete them.
 
@@ -124,11 +125,8 @@ def grain_crops(
         yield label, GrainCrop(own, others, values)
 
 
-_Parts = tuple[NDArray[Any], ...]
-
-
 def _cuts(
-    sources: Sequence[SlabSource], boxes: Mapping[int, Box], taken: Callable[[int, _Parts], _Parts]
+    sources: Sequence[SliceSource], boxes: Mapping[int, Box], taken: Callable[[int, _Parts], _Parts]
 ) -> Iterator[tuple[int, _Parts]]:
     """What `taken` makes of each box of all sources, put together slab by slab."""
     waiting = sorted(boxes.items(), key=lambda entry: entry[1][2].start)
@@ -165,7 +163,7 @@ def _until(waiting: list[tuple[int, Box]], stop: int) -> Iterator[tuple[int, Box
 
 def _table_of(slab: NDArray[Any], first: int, name: str) -> LabelTable | None:
     highest = int(slab.max())
-    if highest > HIGHEST_LABEL:
+    if highest > MAX_LABEL:
         raise InputError(f"The labels of {name} go up to {highest}; number them from 1 without gaps.")
     if highest <= 0:
         return None

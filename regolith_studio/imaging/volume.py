@@ -73,7 +73,7 @@ class Volume:
         return self.array.dtype
 
     def read(self, z0: int, z1: int, /) -> NDArray[Any]:
-        """The slices ``z0 <= z < z1``, as every :class:`~regolith_studio.imaging.slabs.SlabSource` has it."""
+        """The slices ``z0 <= z < z1``, shape (nx, ny, z1 - z0)."""
         return self.array[:, :, z0:z1]
 
     @property

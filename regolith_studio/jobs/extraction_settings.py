@@ -10,12 +10,11 @@ from regolith_studio.errors import FileError, InputError
 from regolith_studio.imaging.extraction import (
     ExtractionSettings,
 )
-from regolith_studio.imaging.segmentation.cleaning import CleaningSettings
 from regolith_studio.imaging.segmentation.denoising import DenoiseSettings
+from regolith_studio.imaging.segmentation.morphology import CleaningSettings
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings
-from regolith_studio.imaging.segmentation.splitting import SplittingSettings
+from regolith_studio.imaging.segmentation.splitting import SplittingSettings, TileSettings
 from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
-from regolith_studio.imaging.segmentation.tiles import TileSettings
 from regolith_studio.imaging.volume import VolumeKind
 from regolith_studio.readers.file_bytes import read_bytes
 from regolith_studio.readers.volumes.header import RawLayout

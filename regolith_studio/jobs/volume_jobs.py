@@ -15,16 +15,15 @@ from numpy.typing import NDArray
 
 from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.geometry.particle import Source
-from regolith_studio.imaging.boxes import Box
+from regolith_studio.imaging.bounding_boxes import Box
 from regolith_studio.imaging.extraction import (
-    Extracted,
+    ExtractedParticle,
     Extraction,
     ExtractionProgress,
     ExtractionSettings,
     extraction_steps,
 )
 from regolith_studio.imaging.sample_volumes import SampleVolume, sample_volume
-from regolith_studio.imaging.sections import Sections, coarse_copy
 from regolith_studio.imaging.segmentation.segment import (
     Segmentation,
     SegmentationSettings,
@@ -32,8 +31,9 @@ from regolith_studio.imaging.segmentation.segment import (
     segmentation_steps,
 )
 from regolith_studio.imaging.segmentation.thresholding import Histogram, histogram, level_of
-from regolith_studio.imaging.slabs import Scratch, SlabSource, slab_ranges
+from regolith_studio.imaging.slice_images import SliceImages, coarse_copy
 from regolith_studio.imaging.volume import Volume, VolumeKind
+from regolith_studio.imaging.volume_slabs import ScratchArrays, SliceSource, slab_ranges
 from regolith_studio.jobs.events import Job, Progress, Started, Step, Steps
 from regolith_studio.jobs.executor import Executor, open_executor, value_of
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
@@ -70,8 +70,8 @@ class Scan:
     volume: Volume
     seen: Histogram | None
     contrast: tuple[float, float]
-    sections: Sections
-    scratch: Scratch = field(default_factory=Scratch)
+    sections: SliceImages
+    scratch: ScratchArrays = field(default_factory=ScratchArrays)
 
     def level(self, settings: SegmentationSettings) -> float | None:
         """Where the threshold lies by the volume as it was scanned; none where there is no answer."""
@@ -88,13 +88,15 @@ class GrainSegmentation:
     """The grains of a whole volume: what the segmentation says, pictures of the labels, and their files."""
 
     segmentation: Segmentation
-    sections: Sections
-    scratch: Scratch
+    sections: SliceImages
+    scratch: ScratchArrays
 
 
-def scan_of(volume: Volume, sections: Sections | None = None, scratch: Scratch | None = None) -> Scan:
+def scan_of(
+    volume: Volume, sections: SliceImages | None = None, scratch: ScratchArrays | None = None
+) -> Scan:
     """Histogram and contrast of a volume."""
-    sections, scratch = sections or Sections(volume.array), scratch or Scratch()
+    sections, scratch = sections or SliceImages(volume.array), scratch or ScratchArrays()
     if volume.kind == "labels":
         return Scan(volume, None, (0.0, 1.0), sections, scratch)
     seen = histogram(_subsample(sections.sample))
@@ -134,11 +136,11 @@ def read_scan(given: VolumeInput) -> Steps:
 def find_grains(scan: Scan, settings: SegmentationSettings) -> Steps:
     """Segment a volume, a large one in temporary files; returns :class:`GrainSegmentation`."""
     large = scan.volume.array.size * (_LABEL_BYTES + scan.volume.dtype.itemsize) > IN_MEMORY
-    scratch = Scratch(scratch_folder() if large else None)
+    scratch = ScratchArrays(scratch_folder() if large else None)
     try:
         found: Segmentation = yield from segment_volume(scan.volume, settings, scratch)
         if not large:
-            return GrainSegmentation(found, Sections(found.labels.array), scratch)
+            return GrainSegmentation(found, SliceImages(found.labels.array), scratch)
         yield Started("Preparing the view")
         return GrainSegmentation(found, (yield from _slice_images(found.labels)), scratch)
     except BaseException:
@@ -169,10 +171,10 @@ def preview_part(volume: Volume, box: Box, settings: SegmentationSettings, level
 
 
 def _map_volume(source: VolumeFile) -> Generator[Step, None, Scan]:
-    array, scratch = source.mapped(), Scratch()
+    array, scratch = source.mapped(), ScratchArrays()
     try:
         if array is None:
-            scratch = Scratch(scratch_folder())
+            scratch = ScratchArrays(scratch_folder())
             array = scratch.zeros(source.shape, source.dtype)
             ranges = slab_ranges(source.shape)
             for done, (first, stop) in enumerate(ranges, start=1):
@@ -185,13 +187,13 @@ def _map_volume(source: VolumeFile) -> Generator[Step, None, Scan]:
         raise
 
 
-def _slice_images(volume: Volume) -> Generator[Step, None, Sections]:
+def _slice_images(volume: Volume) -> Generator[Step, None, SliceImages]:
     steps = coarse_copy(volume)
     while True:
         try:
             done, total = next(steps)
         except StopIteration as end:
-            return Sections(volume.array, *end.value)
+            return SliceImages(volume.array, *end.value)
         if done % 16 == 0:
             yield Progress(done, total, "Looking through the slices")
 
@@ -208,7 +210,7 @@ def _subsample(array: NDArray[Any]) -> NDArray[Any]:
 
 _WORKING_BYTES = 4
 
-ParticleCallback = Callable[[Extracted, MeasuredParticle], None]
+ParticleCallback = Callable[[ExtractedParticle, MeasuredParticle], None]
 
 
 @dataclass(frozen=True)
@@ -265,7 +267,7 @@ def extract_file(given: VolumeInput, recipe: GrainSettings, scratch: Path | None
 
 
 def extract_each(
-    given: VolumeInput, recipe: GrainSettings, scratch: Path | None, sink: Callable[[Extracted], None]
+    given: VolumeInput, recipe: GrainSettings, scratch: Path | None, sink: Callable[[ExtractedParticle], None]
 ) -> Steps:
     """As :func:`extract_file`, but each particle is handed to `sink` and forgotten, in the order of slabs."""
     return (yield from _extract(given, recipe, scratch, partial(_pass_on, sink=sink)))
@@ -293,7 +295,7 @@ def extract_measured(
 
 
 def segment_volume(
-    source: SlabSource, settings: SegmentationSettings, scratch: Scratch | None = None
+    source: SliceSource, settings: SegmentationSettings, scratch: ScratchArrays | None = None
 ) -> Steps:
     """Find the grains in grey values; returns a ``Segmentation``."""
     steps = segmentation_steps(source, settings, scratch)
@@ -310,7 +312,7 @@ def segment_volume(
 
 
 def extract_labels(
-    labels: SlabSource, settings: ExtractionSettings, path: Path, grey: SlabSource | None = None
+    labels: SliceSource, settings: ExtractionSettings, path: Path, grey: SliceSource | None = None
 ) -> Steps:
     """Particles of a label volume, in memory or not, that `path` has led to; returns an ``Extraction``.
 
@@ -321,7 +323,7 @@ def extract_labels(
     return (yield from _collect(extraction_steps(labels, settings, path.stem, source, grey=grey)))
 
 
-def _source_of(path: Path, volume: SlabSource) -> Source:
+def _source_of(path: Path, volume: SliceSource) -> Source:
     edges = "x".join(f"{float(edge):g}" for edge in np.ravel(np.asarray(volume.voxel_size)))
     return Source(str(path), volume_sha256(path), f"voxel:{edges}")
 
@@ -353,9 +355,9 @@ def _extract(
     volume = given.opened()
     sizes = tuple(float(edge) for edge in np.ravel(np.asarray(volume.voxel_size)))
     source = _source_of(given.path, volume)
-    with Scratch(folder if _working_bytes(volume) > IN_MEMORY else None) as scratch:
+    with ScratchArrays(folder if _working_bytes(volume) > IN_MEMORY else None) as scratch:
         facts: SegmentationSummary | None = None
-        labels: SlabSource = volume
+        labels: SliceSource = volume
         if volume.kind == "grey":
             segmentation: Segmentation = yield from segment_volume(volume, recipe.segmentation, scratch)
             facts, labels = _summary_of(segmentation), segmentation.labels
@@ -371,7 +373,9 @@ def _extract(
     )
 
 
-def _pass_on(steps: _Extraction, sink: Callable[[Extracted], None]) -> Generator[Step, None, Extraction]:
+def _pass_on(
+    steps: _Extraction, sink: Callable[[ExtractedParticle], None]
+) -> Generator[Step, None, Extraction]:
     while True:
         try:
             step = next(steps)
@@ -413,7 +417,7 @@ def _measure_and_pass_on(
     return ended[0]
 
 
-def _working_bytes(volume: SlabSource) -> int:
+def _working_bytes(volume: SliceSource) -> int:
     voxels = int(np.prod([int(edge) for edge in volume.shape]))
     return voxels * (_WORKING_BYTES + volume.dtype.itemsize) if volume.kind == "grey" else 0
 

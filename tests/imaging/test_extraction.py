@@ -9,8 +9,8 @@ from scipy.special import ellipeinc, ellipkinc
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.imaging import slabs
-from regolith_studio.imaging.boxes import touches
+from regolith_studio.imaging import volume_slabs
+from regolith_studio.imaging.bounding_boxes import touches
 from regolith_studio.imaging.extraction import (
     ExtractionSettings,
     border_weight,
@@ -220,7 +220,7 @@ def test_that_voxel_diameter_is_that_of_a_ball() -> None:
 def test_that_slabs_give_the_particles_of_the_whole(monkeypatch: pytest.MonkeyPatch) -> None:
     volume = sample_volume("labels")
     whole = extract_particles(volume)
-    monkeypatch.setattr(slabs.slab_ranges, "__defaults__", (1,))
+    monkeypatch.setattr(volume_slabs.slab_ranges, "__defaults__", (1,))
     thin = extract_particles(volume)
     assert (thin.labels, thin.border, thin.small) == (whole.labels, whole.border, whole.small)
     assert [p.mesh.content_hash for p in thin.particles] == [p.mesh.content_hash for p in whole.particles]

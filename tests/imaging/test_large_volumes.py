@@ -20,7 +20,7 @@ from regolith_studio.imaging.extraction import extraction_steps
 from regolith_studio.imaging.segmentation.denoising import DenoiseSettings
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings, segmentation_steps
 from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
-from regolith_studio.imaging.slabs import Scratch
+from regolith_studio.imaging.volume_slabs import ScratchArrays
 from regolith_studio.jobs.extraction_settings import VolumeInput
 
 path, kind, limit = Path(sys.argv[1]), sys.argv[2], int(sys.argv[3])
@@ -31,7 +31,7 @@ try:
 except MemoryError:
     pass
 volumes = []
-with Scratch(path.parent) as scratch:
+with ScratchArrays(path.parent) as scratch:
     source = VolumeInput(path, 1.0, kind=kind).opened()
     if kind == "grey":
         settings = SegmentationSettings(DenoiseSettings("none"), ThresholdSettings("manual", 100.0))

@@ -7,7 +7,7 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QDialogButtonBox, QFileDialog, QVBoxLayout, QWidget
 
-from regolith_studio.imaging import sections
+from regolith_studio.imaging import slice_images
 from regolith_studio.imaging.sample_volumes import sample_volume
 from regolith_studio.imaging.segmentation.segment import segment
 from regolith_studio.imaging.volume import Volume
@@ -236,7 +236,7 @@ def test_that_a_large_volume_stays_on_the_disk_and_gives_the_same_grains(
 ):
     monkeypatch.setattr(volume_jobs, "IN_MEMORY", 100_000)
     monkeypatch.setattr(volume_jobs, "scratch_folder", lambda: tmp_path)
-    monkeypatch.setattr(sections, "COARSE_BYTES", 100_000)
+    monkeypatch.setattr(slice_images, "COARSE_BYTES", 100_000)
     array = sample_volume("grey").array[:90, :80, :70]
     if suffix == "npy":
         np.save(tmp_path / "big.npy", np.ascontiguousarray(array.T))

@@ -1,7 +1,7 @@
 """From grey values to labels: denoise, threshold, clean, find bodies, part touching grains.
 
 Everything happens slab by slab or body by body, so that the volume never has to be in memory
-whole: give a :class:`~regolith_studio.imaging.slabs.Scratch` in a folder for that.
+whole: give a :class:`~regolith_studio.imaging.volume_slabs.ScratchArrays` in a folder for that.
 """
 
 from collections.abc import Generator
@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.imaging.boxes import Box
-from regolith_studio.imaging.segmentation.cleaning import CleaningSettings, cleaned
-from regolith_studio.imaging.segmentation.components import Bodies, BodyCounter
+from regolith_studio.imaging.bounding_boxes import Box
+from regolith_studio.imaging.connected_components import ComponentCounter, ConnectedComponents
 from regolith_studio.imaging.segmentation.denoising import DenoiseSettings, denoised, noise_of
-from regolith_studio.imaging.segmentation.splitting import SplittingSettings
+from regolith_studio.imaging.segmentation.morphology import CleaningSettings, cleaned
+from regolith_studio.imaging.segmentation.splitting import GrainSplitter, SplittingSettings, TileSettings
 from regolith_studio.imaging.segmentation.thresholding import (
     Histogram,
     ThresholdSettings,
@@ -28,9 +28,8 @@ from regolith_studio.imaging.segmentation.thresholding import (
     level_of,
     span,
 )
-from regolith_studio.imaging.segmentation.tiles import BodySplitter, TileSettings
-from regolith_studio.imaging.slabs import Scratch, SlabSource, slab_ranges, thick_slabs
 from regolith_studio.imaging.volume import Volume
+from regolith_studio.imaging.volume_slabs import ScratchArrays, SliceSource, slab_ranges, thick_slabs
 
 
 @dataclass(frozen=True)
@@ -70,7 +69,7 @@ class Segmentation:
     n_bodies
         Connected bodies before they were parted, the small ones left out.
     n_small
-        Bodies and grains that were dropped for their size.
+        ConnectedComponents and grains that were dropped for their size.
     """
 
     labels: Volume
@@ -113,9 +112,9 @@ def segment(volume: Volume, settings: SegmentationSettings | None = None) -> Seg
 
 
 def segmentation_steps(
-    source: SlabSource,
+    source: SliceSource,
     settings: SegmentationSettings | None = None,
-    scratch: Scratch | None = None,
+    scratch: ScratchArrays | None = None,
 ) -> Steps:
     """Find the grains in grey values, telling after each step how far it is.
 
@@ -131,14 +130,14 @@ def segmentation_steps(
     InputError
         If the volume is too uniform for an automatic threshold, or no grain is found.
     """
-    settings, scratch = settings or SegmentationSettings(), scratch or Scratch()
+    settings, scratch = settings or SegmentationSettings(), scratch or ScratchArrays()
     edges = np.asarray(source.voxel_size, dtype=np.float64)
     values, seen = yield from _denoised(source, settings, scratch)
     level = level_of(seen, settings.threshold, source.dtype)
     numbers: NDArray[np.int32] = scratch.zeros(source.shape, np.int32)
     bodies = yield from _numbered(values, level, settings, numbers)
     least = settings.cleaning.min_voxels
-    splitter = BodySplitter(
+    splitter = GrainSplitter(
         numbers, bodies, edges, settings.splitting, settings.cleaning.fill_pores, settings.tiles
     )
     for done, total in splitter.steps(least):
@@ -172,10 +171,10 @@ def preview(
     return segment(part, settings)
 
 
-_Values = Generator[SegmentationProgress, None, tuple[SlabSource, Histogram]]
+_Values = Generator[SegmentationProgress, None, tuple[SliceSource, Histogram]]
 
 
-def _denoised(source: SlabSource, settings: SegmentationSettings, scratch: Scratch) -> _Values:
+def _denoised(source: SliceSource, settings: SegmentationSettings, scratch: ScratchArrays) -> _Values:
     """Grey values without noise, and their histogram; probabilities are taken as they are."""
     how = settings.denoise
     ranges = slab_ranges(source.shape)
@@ -195,7 +194,7 @@ def _denoised(source: SlabSource, settings: SegmentationSettings, scratch: Scrat
     return Volume(values, np.asarray(source.voxel_size), "grey", source.name), seen
 
 
-def _first_look(source: SlabSource) -> tuple[FloatArray, float]:
+def _first_look(source: SliceSource) -> tuple[FloatArray, float]:
     """Edges of the histogram's bins, and the noise of the middle slice."""
     middle, noise, spans = source.shape[2] // 2, 0.0, []
     for first, stop in slab_ranges(source.shape):
@@ -209,10 +208,10 @@ def _first_look(source: SlabSource) -> tuple[FloatArray, float]:
 
 
 def _numbered(
-    values: SlabSource, level: float, settings: SegmentationSettings, numbers: NDArray[np.int32]
-) -> Generator[SegmentationProgress, None, Bodies]:
+    values: SliceSource, level: float, settings: SegmentationSettings, numbers: NDArray[np.int32]
+) -> Generator[SegmentationProgress, None, ConnectedComponents]:
     """Write the provisional numbers of the bodies into `numbers`."""
-    counter, ranges = BodyCounter(), slab_ranges(values.shape)
+    counter, ranges = ComponentCounter(), slab_ranges(values.shape)
     for done, slab in enumerate(thick_slabs(values, ranges, settings.cleaning.margin), start=1):
         mask = cleaned(grain_voxels(slab.values, level, settings.threshold), settings.cleaning)
         numbers[:, :, slab.first : slab.stop] = counter.numbered(mask[:, :, slab.inner], slab.first)

@@ -6,21 +6,28 @@ neighbour. h is the one control against over-segmentation (too small) and grains
 together (too large).
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import product
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage, sparse
 from scipy.sparse import csgraph
+from skimage import segmentation
 
 from regolith_studio.errors import InputError
-from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.imaging.segmentation.flooding import Flooded, flood
+from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
+from regolith_studio.imaging.bounding_boxes import Box, box_between, grown, n_voxels, within
+from regolith_studio.imaging.connected_components import ConnectedComponents, pores_filled
+from regolith_studio.imaging.segmentation.watershed import WatershedBasins, find_basins
 
-Continued = tuple[tuple[bool, bool], ...]
+OpenEnds = tuple[tuple[bool, bool], ...]
 """For each axis, whether a mask goes on beyond the array at its low and its high end."""
-_CLOSED: Continued = ((False, False),) * 3
+_CLOSED: OpenEnds = ((False, False),) * 3
+_ATTEMPTS = 3
+_expand_labels: Any = segmentation.expand_labels
 
 
 @dataclass(frozen=True)
@@ -49,7 +56,7 @@ class SplittingSettings:
             raise InputError(f"The relative h of the h-maxima is a share, 0 to 1, got {self.relative}.")
 
 
-def joined(flooded: Flooded, settings: SplittingSettings) -> IntArray:
+def joined(flooded: WatershedBasins, settings: SplittingSettings) -> IntArray:
     """Grain of each basin, 1 to the number of grains; entry 0 is 0, shape (n + 1,)."""
     bump = np.maximum(settings.h_maxima, settings.relative * flooded.summits)
     joins = (flooded.summits - flooded.passes <= bump) | (not settings.enabled)
@@ -61,7 +68,7 @@ def joined(flooded: Flooded, settings: SplittingSettings) -> IntArray:
 
 
 def distance_map(
-    mask: NDArray[np.bool_], edges: FloatArray, continued: Continued = _CLOSED
+    mask: NDArray[np.bool_], edges: FloatArray, continued: OpenEnds = _CLOSED
 ) -> NDArray[np.float32]:
     """Distance of each voxel of the mask to the nearest one outside, in mean voxel edges.
 
@@ -81,10 +88,10 @@ def distance_map(
 
 
 def split(
-    mask: NDArray[np.bool_], edges: FloatArray, settings: SplittingSettings, continued: Continued = _CLOSED
+    mask: NDArray[np.bool_], edges: FloatArray, settings: SplittingSettings, continued: OpenEnds = _CLOSED
 ) -> tuple[IntArray, IntArray]:
     """Grain of each voxel of a mask, 1 to n, 0 outside; and the voxel of each grain's peak, shape (n, 3)."""
-    flooded = flood(distance_map(mask, edges, continued), in_mean_edges(edges))
+    flooded = find_basins(distance_map(mask, edges, continued), in_mean_edges(edges))
     grain_of_basin = joined(flooded, settings)
     _, highest = np.unique(grain_of_basin[1:], return_index=True)
     return grain_of_basin[flooded.basins], flooded.sites[highest]
@@ -93,3 +100,150 @@ def split(
 def in_mean_edges(edges: FloatArray) -> FloatArray:
     """Voxel edges divided by their geometric mean."""
     return np.asarray(edges / np.prod(edges) ** (1 / 3), dtype=np.float64)
+
+
+@dataclass(frozen=True)
+class TileSettings:
+    """When and how a body is cut into tiles, in voxels.
+
+    Parameters
+    ----------
+    largest
+        Voxels of the box of a body that is not cut.
+    core
+        Edge of a tile.
+    margin
+        Looked at around a tile at first; doubled, at most twice, where it cuts a grain.
+    """
+
+    largest: int = 2**23
+    core: int = 128
+    margin: int = 40
+
+
+class GrainSplitter:
+    """Parts bodies into grains, in place.
+
+    Parameters
+    ----------
+    numbers
+        Provisional numbers of bodies, shape (nx, ny, nz), int32; a voxel of grain k becomes -k.
+    bodies
+        What the numbers stand for.
+    edges
+        Of a voxel, shape (3,).
+    settings
+        How touching grains are parted.
+    fill_pores
+        Whether pores inside a body become part of it.
+    """
+
+    def __init__(
+        self,
+        numbers: NDArray[np.int32],
+        bodies: ConnectedComponents,
+        edges: FloatArray,
+        settings: SplittingSettings,
+        fill_pores: bool = True,
+        tiles: TileSettings | None = None,
+    ) -> None:
+        self._numbers, self._bodies, self._edges = numbers, bodies, edges
+        self._settings, self._fill = settings, fill_pores
+        self._tiles = tiles or TileSettings()
+        self.n_grains = 0
+
+    def steps(self, min_voxels: int = 0) -> Iterator[tuple[int, int]]:
+        """Part all bodies of at least `min_voxels`; yields voxels done and voxels in all after each piece."""
+        wanted = np.flatnonzero(self._bodies.sizes >= min_voxels) + 1
+        total, done = int(self._bodies.sizes[wanted - 1].sum()), 0
+        for body in wanted.tolist():
+            size = int(self._bodies.sizes[body - 1])
+            for share in self._part(body, self._bodies.box(body)):
+                yield done + int(size * share), total
+            done += size
+
+    def _part(self, body: int, box: Box) -> Iterator[float]:
+        """Part one body; yields the share of it that is done."""
+        before, cores = self.n_grains, self._cores(box)
+        for done, core in enumerate(cores, start=1):
+            self._find_grains(body, box, core, before, whole=len(cores) == 1)
+            yield done / len(cores)
+        if len(cores) > 1:
+            for core in cores:
+                self._give_away_rest(body, grown(core, 1, box))
+
+    def _cores(self, box: Box) -> list[Box]:
+        if n_voxels(box) <= self._tiles.largest or not self._settings.enabled:
+            return [box]
+        step = self._tiles.core
+        corners = product(*(range(side.start, side.stop, step) for side in box))
+        high = [side.stop for side in box]
+        return [box_between(low, np.minimum(np.add(low, step), high).tolist()) for low in corners]
+
+    def _find_grains(self, body: int, box: Box, core: Box, before: int, whole: bool) -> None:
+        """Find the grains whose peak lies in `core` and write them down."""
+        for attempt in range(_ATTEMPTS):
+            outer = box if whole else grown(core, self._tiles.margin * 2**attempt, box)
+            region = self._numbers[outer]
+            own = np.ascontiguousarray(self._is_body(region, body) | (region < -before))
+            if not own[within(core, outer)].any():
+                return
+            mask = own | (pores_filled(own) & (region == 0)) if self._fill else own
+            grains, sites = split(mask, self._edges, self._settings, self._continued(outer, box))
+            owned = _inside(sites, within(core, outer))
+            cut = _touching(grains, _ends(outer, box))
+            if outer == box or not owned[cut - 1].any():
+                break
+        self._write(region, grains, owned)
+
+    def _is_body(self, region: NDArray[np.int32], body: int) -> BoolArray:
+        return np.asarray(self._bodies.body_of[np.maximum(region, 0)] == body)
+
+    def _continued(self, outer: Box, box: Box) -> OpenEnds:
+        """Ends at which grains may go on: the border of the scan, and where a tile cuts the body."""
+        x, y, z = (
+            (side.start == 0 or cut_low, side.stop == n or cut_high)
+            for side, n, (cut_low, cut_high) in zip(
+                outer, self._numbers.shape, _ends(outer, box), strict=True
+            )
+        )
+        return x, y, z
+
+    def _write(self, region: NDArray[np.int32], grains: IntArray, owned: BoolArray) -> None:
+        number = np.zeros(len(owned) + 1, dtype=np.int32)
+        number[1:][owned] = self.n_grains + 1 + np.arange(np.count_nonzero(owned))
+        new = number[grains]
+        free = (new > 0) & (region >= 0)
+        region[free] = -new[free]
+        self.n_grains += int(np.count_nonzero(owned))
+
+    def _give_away_rest(self, body: int, box: Box) -> None:
+        """Voxels that no tile claimed go to the nearest grain."""
+        region = self._numbers[box]
+        rest = self._is_body(region, body)
+        if rest.any():
+            nearest = _expand_labels(np.maximum(-region, 0), distance=float(self._tiles.core))
+            region[rest] = -nearest[rest]
+
+
+def _ends(outer: Box, box: Box) -> OpenEnds:
+    """For each axis whether `outer` ends before `box` does, at its low and its high end."""
+    x, y, z = ((a.start > b.start, a.stop < b.stop) for a, b in zip(outer, box, strict=True))
+    return x, y, z
+
+
+def _inside(sites: IntArray, box: Box) -> BoolArray:
+    low, high = [side.start for side in box], [side.stop for side in box]
+    return np.asarray(((sites >= low) & (sites < high)).all(axis=1))
+
+
+def _touching(grains: IntArray, ends: OpenEnds) -> IntArray:
+    """Grains that touch the marked ends of their array."""
+    faces = [
+        np.moveaxis(grains, axis, 0)[end].ravel()
+        for axis, marks in enumerate(ends)
+        for end, marked in zip((0, -1), marks, strict=True)
+        if marked
+    ]
+    found = np.unique(np.concatenate(faces)) if faces else np.empty(0, dtype=np.int64)
+    return np.asarray(found[found > 0])

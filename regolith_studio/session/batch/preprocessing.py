@@ -18,7 +18,7 @@ import numpy as np
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle, Source
-from regolith_studio.imaging.extraction import Extracted
+from regolith_studio.imaging.extraction import ExtractedParticle
 from regolith_studio.imaging.sample_volumes import SampleVolume, sample_file
 from regolith_studio.io.atomic import staged_folder
 from regolith_studio.io.json_text import json_bytes
@@ -154,7 +154,7 @@ def _grains(entry: VolumeEntry, base: Path, place: Path, over: bool) -> Steps:
     with _tidy(place), staged_folder(folder) as stage:
         rows: dict[int, dict[str, Any]] = {}
 
-        def keep(found: Extracted) -> None:
+        def keep(found: ExtractedParticle) -> None:
             rows[found.label] = _stored(stage, found)
 
         done = yield from extract_each(given, settings, place.parent, keep)
@@ -167,7 +167,7 @@ def _is_whole(folder: Path) -> bool:
     return all((folder / entry["file"]).is_file() for entry in read_index(folder))
 
 
-def _stored(stage: Path, found: Extracted) -> dict[str, Any]:
+def _stored(stage: Path, found: ExtractedParticle) -> dict[str, Any]:
     particle, name = found.particle, f"{found.label:08d}.npz"
     np.savez(stage / name, vertices=particle.mesh.vertices, faces=particle.mesh.faces)
     source = particle.source

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from regolith_studio.dataset.build import software_versions
-from regolith_studio.imaging.extraction import Extracted
+from regolith_studio.imaging.extraction import ExtractedParticle
 from regolith_studio.io.atomic import write_bytes
 from regolith_studio.io.json_text import json_bytes
 from regolith_studio.io.stl import stl_bytes
@@ -36,7 +36,7 @@ class ExtractionFolder:
         self._rows: dict[int, dict[Column, Cell]] = {}
         self._entries: dict[int, dict[str, Any]] = {}
 
-    def add(self, found: Extracted, facts: MeasuredParticle) -> None:
+    def add(self, found: ExtractedParticle, facts: MeasuredParticle) -> None:
         """Write one particle's STL and remember its row."""
         particle = found.particle
         write_bytes(self._folder / f"{particle.name}.stl", stl_bytes(particle.mesh.triangles, STL_HEADER))

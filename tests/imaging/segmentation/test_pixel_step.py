@@ -7,13 +7,13 @@ from skimage import filters
 
 from regolith_studio.errors import InputError
 from regolith_studio.imaging.sample_volumes import sample_volume
-from regolith_studio.imaging.segmentation.cleaning import CleaningSettings, cleaned
 from regolith_studio.imaging.segmentation.denoising import (
     DENOISE_METHODS,
     DenoiseSettings,
     denoised,
     noise_of,
 )
+from regolith_studio.imaging.segmentation.morphology import CleaningSettings, cleaned
 from regolith_studio.imaging.segmentation.thresholding import (
     Histogram,
     ThresholdSettings,

@@ -5,23 +5,21 @@ import pytest
 from scipy import ndimage
 
 from regolith_studio.errors import InputError
-from regolith_studio.imaging import slabs
-from regolith_studio.imaging.bodies import largest_body, pores_filled
+from regolith_studio.imaging import volume_slabs
+from regolith_studio.imaging.connected_components import ComponentCounter, largest_component, pores_filled
 from regolith_studio.imaging.sample_volumes import sample_volume
-from regolith_studio.imaging.segmentation.cleaning import CleaningSettings
-from regolith_studio.imaging.segmentation.components import BodyCounter
 from regolith_studio.imaging.segmentation.denoising import DENOISE_METHODS, DenoiseSettings
+from regolith_studio.imaging.segmentation.morphology import CleaningSettings
 from regolith_studio.imaging.segmentation.segment import (
     SegmentationSettings,
     preview,
     segment,
     segmentation_steps,
 )
-from regolith_studio.imaging.segmentation.splitting import SplittingSettings
+from regolith_studio.imaging.segmentation.splitting import SplittingSettings, TileSettings
 from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
-from regolith_studio.imaging.segmentation.tiles import TileSettings
-from regolith_studio.imaging.slabs import Scratch
 from regolith_studio.imaging.volume import Volume
+from regolith_studio.imaging.volume_slabs import ScratchArrays
 
 PLAIN = SegmentationSettings(
     DenoiseSettings("none"), cleaning=CleaningSettings(min_voxels=1, fill_pores=False)
@@ -119,7 +117,7 @@ def test_that_h_trades_grains_apart_for_grains_together() -> None:
 
 @pytest.fixture
 def thin_slabs(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(slabs.slab_ranges, "__defaults__", (1,))
+    monkeypatch.setattr(volume_slabs.slab_ranges, "__defaults__", (1,))
 
 
 @pytest.mark.usefixtures("thin_slabs")
@@ -127,7 +125,7 @@ def test_that_slabs_on_disk_give_the_same_grains_as_memory(tmp_path) -> None:
     volume = sample_volume("grey")
     settings = SegmentationSettings(DenoiseSettings("gaussian"), cleaning=CleaningSettings(1, 1))
     stages = []
-    with Scratch(tmp_path) as scratch:
+    with ScratchArrays(tmp_path) as scratch:
         steps = segmentation_steps(volume, settings, scratch)
         while True:
             try:
@@ -140,7 +138,7 @@ def test_that_slabs_on_disk_give_the_same_grains_as_memory(tmp_path) -> None:
         counts = np.array(found.labels.array)
     assert not list(tmp_path.iterdir())
     assert len([stage for stage in stages if stage.stage == "Denoising"]) == 18
-    slabs.slab_ranges.__defaults__ = (slabs.SLAB_VOXELS,)
+    volume_slabs.slab_ranges.__defaults__ = (volume_slabs.SLAB_VOXELS,)
     whole = segment(volume, settings)
     assert whole.level == found.level
     assert overlaps(whole.labels.array, counts).min() == 1.0
@@ -151,7 +149,7 @@ def test_that_bodies_are_those_of_scipy_whatever_the_slabs() -> None:
     mask = noise > 0
     expected, count = ndimage.label(mask)
     for thickness in (1, 5, 32):
-        counter = BodyCounter()
+        counter = ComponentCounter()
         parts = [
             counter.numbered(mask[:, :, z : z + thickness], z) for z in range(0, mask.shape[2], thickness)
         ]
@@ -228,7 +226,7 @@ def test_that_a_preview_agrees_with_the_whole_at_the_same_level() -> None:
 def test_that_the_largest_body_and_closed_pores_are_those_of_scipy() -> None:
     noise = ndimage.gaussian_filter(np.random.default_rng(4).standard_normal((24, 25, 26)), 1.5)
     mask = noise > -0.02
-    body, count = largest_body(mask)
+    body, count = largest_component(mask)
     bodies, expected = ndimage.label(mask)
     assert count == expected
     assert np.array_equal(body, bodies == np.bincount(bodies.ravel())[1:].argmax() + 1)

@@ -8,7 +8,7 @@ from PySide6.QtCore import QEvent, QSignalBlocker, Signal
 from PySide6.QtWidgets import QCheckBox, QComboBox, QDoubleSpinBox, QFormLayout, QVBoxLayout, QWidget
 
 from regolith_studio.imaging.extraction import voxel_diameter
-from regolith_studio.imaging.segmentation.cleaning import CleaningSettings
+from regolith_studio.imaging.segmentation.morphology import CleaningSettings
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings
 from regolith_studio.jobs.extraction_settings import GrainSettings
 from regolith_studio.ui.translation import mark, tr

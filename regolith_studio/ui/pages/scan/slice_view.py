@@ -9,8 +9,8 @@ from PySide6.QtCore import QPointF, QRectF, QSignalBlocker, Qt, Signal
 from PySide6.QtGui import QColor, QWheelEvent
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QSlider, QVBoxLayout, QWidget
 
-from regolith_studio.imaging.boxes import Box
-from regolith_studio.imaging.sections import Sections
+from regolith_studio.imaging.bounding_boxes import Box
+from regolith_studio.imaging.slice_images import SliceImages
 from regolith_studio.imaging.volume import Volume
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
@@ -47,7 +47,7 @@ class SliceView(QWidget):
         self.axis = axis
         self.across, self.down = (each for each in range(3) if each != axis)
         self._volume: Volume | None = None
-        self._sections: Sections | None = None
+        self._sections: SliceImages | None = None
         self._colours = label_colours()
         self.title = QLabel()
         self.title.setProperty("role", "heading")
@@ -69,7 +69,7 @@ class SliceView(QWidget):
         for line in self._cross:
             line.setPen(pg.mkPen(QColor(theme.accent).lighter(120), width=1, style=Qt.PenStyle.DotLine))
 
-    def set_volume(self, volume: Volume, sections: Sections, contrast: tuple[float, float]) -> None:
+    def set_volume(self, volume: Volume, sections: SliceImages, contrast: tuple[float, float]) -> None:
         """Show another volume as a whole, in micrometres."""
         self._volume, self._sections = volume, sections
         self._grey.setLevels(contrast)
@@ -111,7 +111,7 @@ class SliceView(QWidget):
         self._frame.setRect(corner)
         self._frame.setVisible(box[self.axis].start <= number < box[self.axis].stop)
 
-    def show_grains(self, labels: Sections | None, box: Box, number: int) -> None:
+    def show_grains(self, labels: SliceImages | None, box: Box, number: int) -> None:
         """Overlay the grains of a part of the volume, if it intersects the slice."""
         side = box[self.axis]
         if self._volume is None or self._volume.kind == "labels":

@@ -3,9 +3,9 @@
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QStackedLayout, QVBoxLayout, QWidget
 
-from regolith_studio.imaging.boxes import Box, box_about, box_between
-from regolith_studio.imaging.sections import Sections
+from regolith_studio.imaging.bounding_boxes import Box, box_about, box_between
 from regolith_studio.imaging.segmentation.segment import Segmentation
+from regolith_studio.imaging.slice_images import SliceImages
 from regolith_studio.jobs.volume_jobs import Scan
 from regolith_studio.ui.layout import equal_parts
 from regolith_studio.ui.pages.scan.histogram_plot import HistogramPlot
@@ -31,7 +31,7 @@ class SlicesView(QWidget):
         self.place = (0, 0, 0)
         self.box: Box = box_between((0, 0, 0), (1, 1, 1))
         self._scan: Scan | None = None
-        self._labels: Sections | None = None
+        self._labels: SliceImages | None = None
         self._part: Box = self.box
         self._arrange()
         for view in self.slices:
@@ -71,14 +71,14 @@ class SlicesView(QWidget):
 
     def show_preview(self, found: Segmentation | None, box: Box) -> None:
         """Overlay the grains of the preview."""
-        self._labels = None if found is None else Sections(found.labels.array)
+        self._labels = None if found is None else SliceImages(found.labels.array)
         self._part = box
         self.histogram.set_denoised(None if found is None else found.seen)
         for view in self.slices:
             view.set_box_shown(True)
         self._lay_over()
 
-    def show_whole(self, found: Segmentation, labels: Sections) -> None:
+    def show_whole(self, found: Segmentation, labels: SliceImages) -> None:
         """Overlay the grains of the whole volume."""
         self._labels, self._part = labels, box_between((0, 0, 0), found.labels.shape)
         self.histogram.set_denoised(found.seen)

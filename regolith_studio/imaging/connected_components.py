@@ -1,4 +1,4 @@
-"""Connected bodies of a volume that is seen slab by slab: numbers joined across slabs by union-find."""
+"""Connected components of masks, and of volumes that are processed slab by slab (union-find across slabs)."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -10,15 +10,42 @@ from scipy import sparse
 from scipy.sparse import csgraph
 
 from regolith_studio.geometry.arrays import IntArray
-from regolith_studio.imaging.bodies import connected_bodies
-from regolith_studio.imaging.boxes import Box, box_between
+from regolith_studio.imaging.bounding_boxes import Box, box_between
 
+_components: Any = cc3d.connected_components
 _statistics: Any = cc3d.statistics
 
 
+def connected_components(mask: NDArray[np.bool_]) -> tuple[NDArray[Any], int]:
+    """Number of the face-connected component of each voxel, 0 outside, and the number of components."""
+    bodies, count = _components(mask.view(np.uint8), connectivity=6, return_N=True, binary_image=True)
+    return bodies, int(count)
+
+
+def largest_component(mask: NDArray[np.bool_]) -> tuple[NDArray[np.bool_], int]:
+    """The largest face-connected component of a mask, and the number of components."""
+    bodies, count = connected_components(mask)
+    if count < 2:
+        return mask, count
+    return np.asarray(bodies == np.bincount(bodies.ravel())[1:].argmax() + 1), count
+
+
+def pores_filled(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """The mask with its pores: empty components that do not reach the border of the array."""
+    hollows, count = connected_components(~mask)
+    if count == 0:
+        return mask
+    is_open = np.zeros(count + 1, dtype=bool)
+    for axis in range(3):
+        for end in (0, -1):
+            is_open[np.unique(np.moveaxis(hollows, axis, 0)[end])] = True
+    is_open[0] = False
+    return np.asarray(~is_open[hollows]) if not is_open[1:].all() else mask
+
+
 @dataclass(frozen=True, eq=False)
-class Bodies:
-    """What is known of the bodies once the last slab is seen.
+class ConnectedComponents:
+    """The components of a volume, after its last slab.
 
     Parameters
     ----------
@@ -27,7 +54,7 @@ class Bodies:
     sizes
         Voxels of each body, shape (n,).
     low, high
-        First and last-but-one voxel of its box along x, y, z, shape (n, 3).
+        First voxel of each box along x, y, z and the one after its last, shape (n, 3).
     """
 
     body_of: IntArray
@@ -40,8 +67,8 @@ class Bodies:
         return box_between(self.low[body - 1].tolist(), self.high[body - 1].tolist())
 
 
-class BodyCounter:
-    """Numbers the bodies of one slab after the other."""
+class ComponentCounter:
+    """Numbers the components of one slab after the other."""
 
     def __init__(self) -> None:
         self._count = 0
@@ -61,7 +88,7 @@ class BodyCounter:
         first
             z of its first slice.
         """
-        bodies, count = connected_bodies(mask)
+        bodies, count = connected_components(mask)
         self._remember(bodies, count, first)
         numbers = bodies.astype(np.int32)
         numbers[bodies > 0] += self._count
@@ -73,8 +100,8 @@ class BodyCounter:
         self._count += count
         return numbers
 
-    def finish(self) -> Bodies:
-        """The bodies, in the order in which they were first met."""
+    def finish(self) -> ConnectedComponents:
+        """The components, in the order of their first voxels."""
         links = np.concatenate([np.empty((0, 2), dtype=np.int64), *self._links])
         shape = (self._count + 1, self._count + 1)
         graph = sparse.coo_array((np.ones(len(links), dtype=np.int8), tuple(links.T)), shape=shape)
@@ -87,7 +114,7 @@ class BodyCounter:
             np.add.at(sizes, body_of[1:], np.concatenate(self._sizes))
             np.minimum.at(low, body_of[1:], np.concatenate(self._low))
             np.maximum.at(high, body_of[1:], np.concatenate(self._high))
-        return Bodies(body_of, sizes[1:], low[1:], high[1:])
+        return ConnectedComponents(body_of, sizes[1:], low[1:], high[1:])
 
     def _remember(self, bodies: NDArray[Any], count: int, first: int) -> None:
         if count == 0:

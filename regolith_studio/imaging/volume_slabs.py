@@ -1,7 +1,7 @@
 """Volumes that are read slab by slab, so that they never have to be in memory whole.
 
-A slab is a run of slices along z. Whatever reads one, a file or an array, is a :class:`SlabSource`;
-what is written slab by slab lies in a :class:`Scratch`, in memory or in files that vanish with it.
+A slab is a run of slices along z. Whatever reads one, a file or an array, is a :class:`SliceSource`;
+what is written slab by slab lies in a :class:`ScratchArrays`, in memory or in files that vanish with it.
 """
 
 import math
@@ -22,10 +22,10 @@ from regolith_studio.imaging.volume import VolumeKind
 
 SLAB_VOXELS = 2**24
 """Voxels that are worked on at a time, unless a few slices are more."""
-_THINNEST = 8
+_MIN_SLICES = 8
 
 
-class SlabSource(Protocol):
+class SliceSource(Protocol):
     """Anything that gives slices of a volume: a :class:`~regolith_studio.imaging.volume.Volume`, a file.
 
     `shape` is (nx, ny, nz), `dtype` the type of a voxel, `voxel_size` its edges along x, y, z in
@@ -54,7 +54,7 @@ class SlabSource(Protocol):
 def slab_ranges(shape: tuple[int, int, int], voxels: int = SLAB_VOXELS) -> list[tuple[int, int]]:
     """First and last-but-one slice of each slab of about `voxels` voxels, at least eight slices thick."""
     nx, ny, nz = shape
-    thickness = max(voxels // (nx * ny), _THINNEST)
+    thickness = max(voxels // (nx * ny), _MIN_SLICES)
     return [(first, min(first + thickness, nz)) for first in range(0, nz, thickness)]
 
 
@@ -78,7 +78,7 @@ class ThickSlab:
     inner: slice
 
 
-def thick_slabs(source: SlabSource, ranges: list[tuple[int, int]], margin: int) -> Iterator[ThickSlab]:
+def thick_slabs(source: SliceSource, ranges: list[tuple[int, int]], margin: int) -> Iterator[ThickSlab]:
     """The slabs `ranges` of a volume, each with `margin` slices more on either side where there are any.
 
     Every slice is read once and in order, since a file that is one compressed stream must begin anew to go
@@ -97,7 +97,7 @@ def thick_slabs(source: SlabSource, ranges: list[tuple[int, int]], margin: int) 
         yield ThickSlab(first, stop, values, slice(first - low, stop - low))
 
 
-class Scratch:
+class ScratchArrays:
     """Arrays for the time of one calculation: in memory, or in files of a temporary folder.
 
     The folder vanishes when the scratch is closed, is forgotten, or the program ends.
@@ -115,7 +115,7 @@ class Scratch:
             self._folder = Path(tempfile.mkdtemp(dir=folder, prefix="regolith-"))
             self._clear = weakref.finalize(self, _removed, self._folder)
 
-    def __enter__(self) -> "Scratch":
+    def __enter__(self) -> "ScratchArrays":
         return self
 
     def __exit__(

@@ -5,10 +5,9 @@ import pytest
 from scipy import ndimage
 from skimage.measure import label
 from skimage.morphology import local_maxima, reconstruction
-from skimage.segmentation import watershed
+from skimage.segmentation import watershed as skimage_watershed
 
-from regolith_studio.imaging.segmentation import flooding
-from regolith_studio.imaging.segmentation.flooding import flood
+from regolith_studio.imaging.segmentation import watershed
 from regolith_studio.imaging.segmentation.splitting import (
     SplittingSettings,
     distance_map,
@@ -16,6 +15,7 @@ from regolith_studio.imaging.segmentation.splitting import (
     joined,
     split,
 )
+from regolith_studio.imaging.segmentation.watershed import find_basins
 
 EVERY = np.ones((3, 3, 3), dtype=bool)
 CUBE = np.ones(3)
@@ -41,17 +41,19 @@ def test_that_grains_are_as_many_as_h_maxima(seed: int, h: float) -> None:
     domes = label(local_maxima(filled, connectivity=3) & (distance > 0), connectivity=3).max()
     bodies, count = ndimage.label(distance > 0, EVERY)
     flat = np.count_nonzero(ndimage.maximum(distance, bodies, np.arange(1, count + 1)) <= h)
-    grains = joined(flood(distance.astype(np.float32), CUBE), SplittingSettings(h_maxima=h, relative=0.0))
+    grains = joined(
+        find_basins(distance.astype(np.float32), CUBE), SplittingSettings(h_maxima=h, relative=0.0)
+    )
     assert grains.max() == domes + flat  # a flat body has no dome, but is a grain
 
 
 def test_that_the_parts_are_those_of_a_watershed_from_the_same_markers() -> None:
     distance = distance_map(blobs(5), CUBE)
-    flooded = flood(distance, CUBE)
+    flooded = find_basins(distance, CUBE)
     grain_of_basin = joined(flooded, SplittingSettings())
     markers = np.zeros(distance.shape, dtype=int)
     markers[tuple(flooded.sites.T)] = grain_of_basin[1:]
-    other = watershed(-distance, markers, connectivity=3, mask=distance > 0)
+    other = skimage_watershed(-distance, markers, connectivity=3, mask=distance > 0)
     assert np.mean(grain_of_basin[flooded.basins][distance > 0] == other[distance > 0]) > 0.95
     assert np.array_equal(flooded.basins > 0, distance > 0)
     assert (np.diff(flooded.peaks) <= 0).all()
@@ -61,7 +63,7 @@ def test_that_the_parts_are_those_of_a_watershed_from_the_same_markers() -> None
 def test_that_the_pass_between_two_hills_is_where_they_meet() -> None:
     hills = np.zeros((11, 3, 3), dtype=np.float32)
     hills[:, 1, 1] = [1, 3, 5, 4, 2, 3, 7, 6, 1, 2, 1]
-    flooded = flood(hills, CUBE)
+    flooded = find_basins(hills, CUBE)
     assert flooded.peaks.tolist() == [7.0, 5.0, 2.0]
     assert sorted(zip(flooded.summits, flooded.passes, strict=True)) == [(2.0, 1.0), (5.0, 2.0)]
     assert joined(flooded, SplittingSettings(h_maxima=0.9, relative=0.0)).max() == 3
@@ -73,10 +75,10 @@ def test_that_the_pass_between_two_hills_is_where_they_meet() -> None:
 
 def test_that_compiled_and_plain_flooding_agree(monkeypatch: pytest.MonkeyPatch) -> None:
     distance = distance_map(blobs(2, 14), CUBE)
-    compiled = flood(distance, CUBE)
+    compiled = find_basins(distance, CUBE)
     for name in ("_flood", "_root"):
-        monkeypatch.setattr(flooding, name, getattr(flooding, name).py_func)
-    plain = flood(distance, CUBE)
+        monkeypatch.setattr(watershed, name, getattr(watershed, name).py_func)
+    plain = find_basins(distance, CUBE)
     assert np.array_equal(compiled.basins, plain.basins)
     assert np.array_equal(compiled.passes, plain.passes)
 

@@ -7,14 +7,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from regolith_studio.imaging.slabs import SlabSource
+from regolith_studio.imaging.volume_slabs import SliceSource
 
 COARSE_BYTES = 2**28
 """Of the copy with fewer voxels; 512^3 voxels of 16 bits."""
 
 
 @dataclass(frozen=True, eq=False)
-class Sections:
+class SliceImages:
     """Slices in the three directions.
 
     In a file whose slices along z follow each other, a slice along x is scattered over every page: it is
@@ -51,7 +51,7 @@ def coarse_step(nbytes: int) -> int:
     return max(1, int(np.ceil((nbytes / COARSE_BYTES) ** (1 / 3) - 1e-9)))
 
 
-def coarse_copy(source: SlabSource) -> Generator[tuple[int, int], None, tuple[NDArray[Any], int]]:
+def coarse_copy(source: SliceSource) -> Generator[tuple[int, int], None, tuple[NDArray[Any], int]]:
     """Every n-th voxel of a volume and n, read slice by slice; tells how many are done, of how many."""
     nx, ny, nz = source.shape
     step = coarse_step(nx * ny * nz * source.dtype.itemsize)

@@ -8,12 +8,14 @@ from scipy import ndimage
 from scipy.spatial import ConvexHull, HalfspaceIntersection
 
 from regolith_studio.errors import InputError
-from regolith_studio.imaging import slabs
-from regolith_studio.imaging.extraction import Extracted, ExtractionSettings, extract_particles
+from regolith_studio.imaging import volume_slabs
+from regolith_studio.imaging.extraction import ExtractedParticle, ExtractionSettings, extract_particles
+from regolith_studio.imaging.grain_surface import MAX_DEPTH, _fill_squared, depth
 from regolith_studio.imaging.label_table import grain_crops
 from regolith_studio.imaging.sample_volumes import sample_volume
 from regolith_studio.imaging.segmentation.segment import segment
 from regolith_studio.imaging.volume import Volume
+from tests.filling import filled
 from tools.make_samples.grains import even_sphere, random_rotation
 
 GREY = ExtractionSettings(exclude_border=False, min_voxels=0, surface="grey")
@@ -45,7 +47,7 @@ def labelled(grey: Volume, level: float = (RESIN + GRAIN) / 2) -> Volume:
     return Volume(ndimage.label(bright)[0].astype(np.uint16), (1, 1, 1), "labels", "grains")
 
 
-def only(labels: Volume, grey: Volume | None, settings: ExtractionSettings = GREY) -> Extracted:
+def only(labels: Volume, grey: Volume | None, settings: ExtractionSettings = GREY) -> ExtractedParticle:
     (found,) = extract_particles(labels, settings, grey=grey).found
     return found
 
@@ -196,8 +198,8 @@ def test_that_slabs_give_the_grey_surfaces_of_the_whole(monkeypatch: pytest.Monk
     share = sum(coverage(ball(centre, 9.0), (30, 30, 52)) for centre in centres)
     grey = scanned(share, 0.05)
     whole = extract_particles(labelled(grey), GREY, grey=grey).found
-    monkeypatch.setattr(slabs, "SLAB_VOXELS", 1)
-    monkeypatch.setattr(slabs.slab_ranges, "__defaults__", (1,))
+    monkeypatch.setattr(volume_slabs, "SLAB_VOXELS", 1)
+    monkeypatch.setattr(volume_slabs.slab_ranges, "__defaults__", (1,))
     thin = extract_particles(labelled(grey), GREY, grey=grey).found
     assert [each.surface for each in whole] == ["grey", "grey"]
     for one, other in zip(whole, thin, strict=True):
@@ -228,3 +230,28 @@ def test_that_every_grain_of_the_shipped_scan_has_its_volume_within_two_percent(
     assert np.abs(errors["grey"]).max() < 0.02
     assert np.abs(errors["mask"]).max() > 0.15
     assert np.std(errors["grey"]) < 0.006 < 0.06 < np.std(errors["mask"])
+
+
+def masks() -> list[np.ndarray]:
+    generator = np.random.default_rng(0)
+    holes = generator.random((24, 19, 31)) < 0.995
+    blobs = ndimage.gaussian_filter(generator.standard_normal((21, 22, 23)), 2.0) > 0.0
+    return [holes, blobs, ~blobs, blobs[:, ::2], np.zeros((3, 4, 5), dtype=bool)]
+
+
+@pytest.mark.parametrize("case", range(5))
+def test_that_depths_are_those_of_scipy_where_they_matter(case: int) -> None:
+    mask = masks()[case]
+    expected = np.minimum(ndimage.distance_transform_edt(mask), MAX_DEPTH)
+    assert depth(mask) == pytest.approx(expected, abs=1e-6)
+
+
+def test_that_a_mask_without_an_outside_is_deep_everywhere() -> None:
+    assert (depth(np.ones((3, 4, 5), dtype=bool)) == MAX_DEPTH).all()
+
+
+def test_that_the_kernel_is_its_python() -> None:
+    mask = masks()[1][:9, :8, :7].copy()
+    farthest = np.full(mask.shape, 9, dtype=np.int32)
+    one, other = (filled(f, (mask, 3), farthest)[0] for f in (_fill_squared, _fill_squared.py_func))
+    assert np.array_equal(one, other)

@@ -5,7 +5,7 @@ import pytest
 
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.imaging.coverage import _fill_coverage, coverage
+from regolith_studio.imaging.voxelize import _fill_coverage, coverage
 from tests.filling import filled
 
 CORNERS = np.array(list(np.ndindex(2, 2, 2)), dtype=float)

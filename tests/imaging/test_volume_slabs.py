@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from regolith_studio.errors import MissingRequirement
-from regolith_studio.imaging.slabs import Scratch, slab_ranges, thick_slabs
+from regolith_studio.imaging.volume_slabs import ScratchArrays, slab_ranges, thick_slabs
 
 
 @pytest.mark.parametrize("shape", [(5, 5, 1), (7, 3, 8), (100, 100, 103), (3000, 3000, 20)])
@@ -48,7 +48,7 @@ def test_that_thick_slabs_read_each_slice_once_and_in_order(depth: int, margin: 
 
 
 def test_that_scratch_arrays_are_the_same_in_memory_and_on_disk(tmp_path: Path) -> None:
-    with Scratch() as memory, Scratch(tmp_path) as disk:
+    with ScratchArrays() as memory, ScratchArrays(tmp_path) as disk:
         for scratch in (memory, disk):
             array = scratch.zeros((3, 4, 5), np.int32)
             array[1, 2, 3] = 7
@@ -63,6 +63,6 @@ def test_that_a_full_disk_is_one_sentence_and_no_crash(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(shutil, "disk_usage", lambda _: SimpleNamespace(free=2**20))
-    with Scratch(tmp_path) as scratch, pytest.raises(MissingRequirement, match="do not fit"):
+    with ScratchArrays(tmp_path) as scratch, pytest.raises(MissingRequirement, match="do not fit"):
         scratch.zeros((1024, 1024, 2), np.uint8)
     assert not list(tmp_path.iterdir())

@@ -5,14 +5,22 @@ import pytest
 from scipy import ndimage
 
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.self_intersection import count_self_intersections
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.imaging.contour import contour
-from regolith_studio.imaging.coverage import coverage
-from regolith_studio.imaging.grey_surface import grey_mesh
+from regolith_studio.imaging.grain_surface import contour, grey_mesh, mask_mesh
 from regolith_studio.imaging.label_table import GrainCrop
-from regolith_studio.imaging.mask_surface import mask_mesh
 from regolith_studio.imaging.smoothing import windowed_sinc
-from regolith_studio.imaging.surface_fit import FitSettings, fitted, fitted_to_mask
+from regolith_studio.imaging.surface_refinement import (
+    RefinementSettings,
+    _add_corner_normals,
+    _mark_doubtful,
+    corner_normals,
+    refined_to_mask,
+    refined_to_scan,
+    without_crossings,
+)
+from regolith_studio.imaging.voxelize import coverage
+from tests.filling import filled
 from tools.make_samples.random_fields import SphereField, power_law
 
 EDGE, BLUR = 45, 0.8
@@ -88,7 +96,7 @@ def test_that_the_surface_of_a_mask_lies_between_the_centres_of_its_voxels() -> 
     start = windowed_sinc(contour(mask.astype(np.float32), 0.5, (1, 1, 1)), 20, 0.05)
     wrong = [
         np.count_nonzero((coverage(mesh, (EDGE,) * 3, 1) >= 0.5) != mask)
-        for mesh in (start, fitted_to_mask(start, mask, FitSettings(8, 20, 0.4)))
+        for mesh in (start, refined_to_mask(start, mask, RefinementSettings(8, 20, 0.4)))
     ]
     assert wrong[0] > 500
     assert wrong[1] < 50
@@ -99,11 +107,11 @@ def test_that_a_surface_that_explains_all_stays_where_it_is() -> None:
     share = ndimage.gaussian_filter(coverage(ball, (EDGE,) * 3, 3), BLUR).astype(np.float32)
     total = float(np.sqrt(BLUR**2 + 1 / 12))
     told = np.ones(share.shape, dtype=bool)
-    same = fitted(ball, share, told, total, FitSettings(12, 20, 1.5))
+    same = refined_to_scan(ball, share, told, total, RefinementSettings(12, 20, 1.5))
     assert np.linalg.norm(same.vertices - CENTRE, axis=1) == pytest.approx(12.0, abs=0.1)
     assert same.volume == pytest.approx(ball.volume, rel=1e-3)
     small = Mesh(CENTRE + 11.0 * SPHERE.vertices, SPHERE.faces)
-    grown = fitted(small, share, told, total, FitSettings(12, 20, 1.5))
+    grown = refined_to_scan(small, share, told, total, RefinementSettings(12, 20, 1.5))
     assert grown.volume == pytest.approx(ball.volume, rel=5e-3)
 
 
@@ -113,7 +121,62 @@ def test_that_what_is_not_told_is_not_moved() -> None:
     share = coverage(Mesh(CENTRE + 12.0 * SPHERE.vertices, SPHERE.faces), (EDGE,) * 3, 3).astype(np.float32)
     told = np.zeros(share.shape, dtype=bool)
     told[:22] = True
-    found = fitted(small, share, told, 0.3, FitSettings(12, 20, 1.0)).vertices - CENTRE
+    found = refined_to_scan(small, share, told, 0.3, RefinementSettings(12, 20, 1.0)).vertices - CENTRE
     radius = np.linalg.norm(found, axis=1)
     assert np.median(radius[found[:, 0] < -4]) == pytest.approx(12.0, abs=0.05)
     assert np.median(radius[found[:, 0] > 4]) == pytest.approx(11.5, abs=0.05)
+
+
+COARSE_SPHERE = icosphere(3)
+BALL = Mesh(9.0 * COARSE_SPHERE.vertices + 12.2, COARSE_SPHERE.faces)
+
+
+def plate_and_ring() -> list[np.ndarray]:
+    plate = np.zeros((16, 16, 3), dtype=bool)
+    plate[:, :, 1] = True
+    x, y, z = np.indices((22, 22, 9)) - np.array([10.5, 10.5, 4.0])[:, None, None, None]
+    return [plate, (np.abs(np.hypot(x, y) - 7) < 2.4) & (np.abs(z) < 3)]
+
+
+@pytest.mark.parametrize("case", [0, 1])
+def test_that_thin_grains_do_not_cross_themselves(case: int) -> None:
+    mask = plate_and_ring()[case]
+    found = mask_mesh(mask)
+    assert count_self_intersections(found.vertices, found.faces) == 0
+    assert found.volume == pytest.approx(mask.sum())
+
+
+def test_that_corners_go_back_only_where_faces_cross() -> None:
+    """A disc two voxels thick, the middle of whose upper side is pushed through the lower."""
+    flat = np.array([1.0, 1.0, 0.11])
+    disc = Mesh(BALL.vertices * flat, BALL.faces)
+    aside = np.linalg.norm(COARSE_SPHERE.vertices[:, :2], axis=1)
+    upper = COARSE_SPHERE.vertices[:, 2] > 0
+    pushed = disc.vertices + np.where(upper & (aside < 0.3), -2.6, 0.02)[:, None] * [0.11, 0.06, 1]
+    broken = Mesh(pushed, COARSE_SPHERE.faces)
+    assert count_self_intersections(broken.vertices, broken.faces) > 0
+    found = without_crossings(broken, disc)
+    assert count_self_intersections(found.vertices, found.faces) == 0
+    assert np.array_equal(found.vertices[aside > 0.9], pushed[aside > 0.9])
+    assert found.volume == pytest.approx(disc.volume, rel=0.1)
+
+
+def test_that_a_surface_that_does_not_cross_stays_as_it_is() -> None:
+    larger = Mesh(9.3 * COARSE_SPHERE.vertices + 12.2, COARSE_SPHERE.faces)
+    assert without_crossings(larger, BALL) is larger
+
+
+def test_that_normals_of_a_ball_point_away_from_its_centre() -> None:
+    assert corner_normals(BALL.vertices, BALL.faces) == pytest.approx(COARSE_SPHERE.vertices, abs=0.02)
+
+
+def test_that_the_kernels_are_their_python() -> None:
+    inside = np.linalg.norm(np.moveaxis(np.indices((24, 24, 24)), 0, -1) - 12.2, axis=-1) < 9.0
+    inside[8:16] = False
+    normals = corner_normals(BALL.vertices, BALL.faces)
+    plain, _ = filled(_add_corner_normals.py_func, (BALL.vertices, BALL.faces), np.zeros(normals.shape))
+    assert np.allclose(normals, plain)
+    arguments, unmarked = (BALL.vertices, BALL.faces, normals, inside), np.zeros(len(BALL.faces), dtype=bool)
+    one, other = (filled(f, arguments, unmarked)[0] for f in (_mark_doubtful, _mark_doubtful.py_func))
+    assert np.array_equal(one, other)
+    assert 0 < np.count_nonzero(one) < len(one)

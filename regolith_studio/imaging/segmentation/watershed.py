@@ -23,7 +23,7 @@ _STEPS = np.array(
 
 
 @dataclass(frozen=True, eq=False)
-class Flooded:
+class WatershedBasins:
     """The basins of a height map, and how they meet.
 
     Parameters
@@ -48,7 +48,7 @@ class Flooded:
     passes: FloatArray
 
 
-def flood(heights: NDArray[np.float32], step_lengths: FloatArray) -> "Flooded":
+def find_basins(heights: NDArray[np.float32], step_lengths: FloatArray) -> "WatershedBasins":
     """Basins of `heights`, and how they meet.
 
     Parameters
@@ -69,7 +69,7 @@ def flood(heights: NDArray[np.float32], step_lengths: FloatArray) -> "Flooded":
     founders, pairs, ridges = _flooded(flat, order, offsets, distances, basins)
     inner = np.ascontiguousarray(basins.reshape(padded.shape)[1:-1, 1:-1, 1:-1])
     sites = np.column_stack(np.unravel_index(founders, padded.shape)) - 1
-    return Flooded(inner, sites, flat[founders].astype(np.float64), pairs, ridges[:, 0], ridges[:, 1])
+    return WatershedBasins(inner, sites, flat[founders].astype(np.float64), pairs, ridges[:, 0], ridges[:, 1])
 
 
 @kernel
