@@ -12,7 +12,6 @@ from regolith_studio.harmonics.surface import reconstruct
 from regolith_studio.jobs.events import Job, Started, Steps
 from regolith_studio.jobs.executor import Executor, call, open_executor, value_of
 from regolith_studio.jobs.particle_jobs import measure_particle
-from regolith_studio.jobs.thrift import load_runtime_of_kernels
 
 
 def warm_up(workers: int | Executor = 0) -> Steps:
@@ -40,11 +39,9 @@ def _body() -> Mesh:
 
 
 def _measure_and_fit(_name: str) -> None:
-    load_runtime_of_kernels()
     measure_particle(Particle("body", _body()))
     reconstruct(fit_harmonics(_body(), 4, sampling_degree=8), 2, level=1)
 
 
 def _coarsen(method: str) -> None:
-    load_runtime_of_kernels()
     coarsen(_body(), 12, method)
