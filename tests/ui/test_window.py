@@ -16,6 +16,7 @@ from regolith_studio.resources import resource
 from regolith_studio.ui.app import make_excepthook, open_window
 from regolith_studio.ui.dialogs.export import ExportDialog
 from regolith_studio.ui.dialogs.unit import UnitDialog
+from regolith_studio.ui.page_stack import PageStack
 from regolith_studio.ui.startup import check_display
 from regolith_studio.ui.theme import DARK, LIGHT, current_theme
 
@@ -271,10 +272,10 @@ def test_that_the_window_follows_dark_and_light(window, wait):
     window.menus.by_name["theme_system"].trigger()
 
 
-def test_that_memory_is_handed_back_when_work_has_ended(monkeypatch, shown, preferences, wait):
+def test_that_closed_particles_are_released_when_work_has_ended(monkeypatch, shown, preferences, wait):
     busy = []
-    monkeypatch.setattr("regolith_studio.ui.app.REST", 20)
-    monkeypatch.setattr("regolith_studio.ui.app.give_back", lambda: busy.append(len(window.session.tasks)))
+    monkeypatch.setattr("regolith_studio.ui.app.IDLE", 20)
+    monkeypatch.setattr(PageStack, "let_go", lambda _stack: busy.append(len(window.session.tasks)))
     window = open_window(views="image", preferences=preferences)
     shown(window)
     wait(lambda: window.session.results.coarsened is not None and bool(busy), SECONDS)
