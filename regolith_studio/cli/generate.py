@@ -164,7 +164,7 @@ def _write(stage: Path, made: Any, format_: str, level: int, jobs: int) -> dict[
 
 
 def _save(stem: Path, made: Any) -> None:
-    from regolith_studio.shape_models.files import write_model
+    from regolith_studio.shape_models.io import write_model
 
     bare = stem.with_suffix("") if stem.suffix in (".json", ".npz") else stem
     write_model(bare, made.model, {"source": made.source.name, "sha256": made.source.sha256 or None})

@@ -29,9 +29,9 @@ from regolith_studio.harmonics.surface import gallery
 from regolith_studio.harmonics.synthesis import radii_on_icosphere
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
 from regolith_studio.jobs.events import Partial, Progress, Started, Steps
-from regolith_studio.shape_models.draws import virtual_mesh
 from regolith_studio.shape_models.materials import materials
-from regolith_studio.shape_models.spectra import with_amplitudes
+from regolith_studio.shape_models.realizations import virtual_mesh
+from regolith_studio.shape_models.spectrum_sliders import with_amplitudes
 
 MAX_ITERATIONS = 2_000
 """Iterations of a lesson at most: every one of them keeps its polyhedra."""

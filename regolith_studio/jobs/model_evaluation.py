@@ -9,8 +9,8 @@ import numpy as np
 
 from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
 from regolith_studio.jobs.study_jobs import study_population
-from regolith_studio.shape_models.draws import Draws
 from regolith_studio.shape_models.models import MODELS
+from regolith_studio.shape_models.realizations import Realizations
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.studies.population import (
     KEYS,
@@ -138,12 +138,12 @@ class DistributionComparison:
         return Distribution(table[:, self.keys.index(key)], weights)
 
 
-def compare_distributions(sample: Sample | None, draws: Draws) -> Steps:
+def compare_distributions(sample: Sample | None, draws: Realizations) -> Steps:
     """Measure both at the degree of the draws; returns :class:`DistributionComparison`. A job."""
     kinds = [draws.chosen(range(min(len(draws), MAX_COMPARED)))]
     if sample is not None:
         rows = sample.truncated(min(draws.l_max, sample.l_max)).coefficients[:MAX_COMPARED]
-        kinds.append(Draws(rows, "radius", "measured", draws.seed, sample.unit))
+        kinds.append(Realizations(rows, "radius", "measured", draws.seed, sample.unit))
     total = sum(len(each) for each in kinds)
     yield Started("Comparing distributions", total)
     tables, done = [], 0
@@ -154,7 +154,7 @@ def compare_distributions(sample: Sample | None, draws: Draws) -> Steps:
     return DistributionComparison(KEYS, measured, drawn)
 
 
-def _descriptor_table(draws: Draws, done: int, total: int) -> Generator[Progress, None, FloatArray]:
+def _descriptor_table(draws: Realizations, done: int, total: int) -> Generator[Progress, None, FloatArray]:
     tables = []
     for first in range(0, len(draws), MEASURE_BATCH):
         last = min(first + MEASURE_BATCH, len(draws))

@@ -13,9 +13,9 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.surface import reconstruct
 from regolith_studio.jobs.events import Progress, Started, Steps
 from regolith_studio.readers.shape_files import ShapeSource
-from regolith_studio.shape_models.draws import Draws, virtual_mesh
 from regolith_studio.shape_models.models import MODELS
 from regolith_studio.shape_models.protocol import FittedModel
+from regolith_studio.shape_models.realizations import Realizations, virtual_mesh
 from regolith_studio.shape_models.sample import Sample
 
 if TYPE_CHECKING:  # matplotlib: the page is opened more often than models are draw_evaluation_figures on it
@@ -37,11 +37,10 @@ from regolith_studio.jobs.particle_jobs import (
     measure_particle,
 )
 from regolith_studio.readers.shape_files import radius_of
-from regolith_studio.shape_models.chunks import joined
+from regolith_studio.shape_models.chunked_sampling import joined
 from regolith_studio.shape_models.materials import MaterialCard
-from regolith_studio.shape_models.models import DEFAULT_MODEL
+from regolith_studio.shape_models.models import DEFAULT_MODEL, model_settings
 from regolith_studio.shape_models.protocol import SizeRange
-from regolith_studio.shape_models.settings import model_settings
 from regolith_studio.shape_models.size_law import checked_bounds
 
 STL_HEADER = "Regolith Studio, virtual particle, micrometres"
@@ -147,10 +146,10 @@ def fit_model(source: ShapeSource, request: GenerationRequest) -> Steps:
 
 
 def draw(model: FittedModel, request: GenerationRequest) -> Steps:
-    """The particles of an order, chunk by chunk; returns :class:`Draws`."""
+    """The particles of an order, chunk by chunk; returns :class:`Realizations`."""
     yield Started("Drawing", request.n)
-    parts: list[Draws] = []
-    for part in model.parts(request.n, request.seed, request.size_range):
+    parts: list[Realizations] = []
+    for part in model.draw_chunks(request.n, request.seed, request.size_range):
         parts.append(part)
         yield Progress(sum(map(len, parts)), request.n)
     return joined(parts)
@@ -185,14 +184,14 @@ def drawn_names(title: str, n: int) -> tuple[str, ...]:
     return tuple(f"{title}-{index:0{digits}d}" for index in range(n))
 
 
-def groups_of(draws: Draws, model: FittedModel) -> tuple[str, ...]:
+def groups_of(draws: Realizations, model: FittedModel) -> tuple[str, ...]:
     """Name of the mixture's part that each particle was drawn from; empty where a model has no parts."""
     names = getattr(model, "names", ())
     return tuple(names[c] for c in np.asarray(draws.components)) if names else ("",) * len(draws)
 
 
 def particles_of(
-    draws: Draws, groups: Sequence[str] = (), level: int = DEFAULT_LEVEL, first: int = 0
+    draws: Realizations, groups: Sequence[str] = (), level: int = DEFAULT_LEVEL, first: int = 0
 ) -> tuple[Particle, ...]:
     """The drawn particles as closed meshes on ``icosphere(level)``.
 
@@ -210,11 +209,11 @@ def particles_of(
     )
 
 
-def _origin(draws: Draws) -> str:
+def _origin(draws: Realizations) -> str:
     return f"Drawn by {draws.model} with seed {draws.seed}."
 
 
-def make_particles(draws: Draws, model: FittedModel, title: str, level: int = DEFAULT_LEVEL) -> Steps:
+def make_particles(draws: Realizations, model: FittedModel, title: str, level: int = DEFAULT_LEVEL) -> Steps:
     """The drawn particles as a recipe with a population of the name `title` has them, with progress.
 
     Returns a tuple of :class:`Particle`.
@@ -229,7 +228,7 @@ def make_particles(draws: Draws, model: FittedModel, title: str, level: int = DE
 
 
 def write_meshes(
-    draws: Draws, groups: Sequence[str], level: int, folder: Path, workers: int | Executor = 1
+    draws: Realizations, groups: Sequence[str], level: int, folder: Path, workers: int | Executor = 1
 ) -> Steps:
     """Write ``<name>.stl`` of each particle into `folder`; returns what is known of each, in order.
 
@@ -258,7 +257,7 @@ def write_meshes(
     return tuple(facts)
 
 
-def _write_batch(draws: Draws, groups: tuple[str, ...], level: int, folder: Path, first: int) -> Steps:
+def _write_batch(draws: Realizations, groups: tuple[str, ...], level: int, folder: Path, first: int) -> Steps:
     yield Started("Writing particles", len(draws))
     facts = []
     for particle in particles_of(draws, groups, level, first):
@@ -313,7 +312,7 @@ class GenerationResult:
     `radii` is left out where there are more than :data:`MAX_SIZED`.
     """
 
-    draws: Draws
+    draws: Realizations
     examples: tuple[Mesh, ...]
     model: FittedModel
     request: GenerationRequest
@@ -353,7 +352,7 @@ def fit_shapes(origin: ModelOrigin, request: GenerationRequest, half: bool = Fal
 
 def draw_shapes(model: FittedModel, request: GenerationRequest) -> Steps:
     """Draw the particles of an order; returns :class:`GenerationResult`."""
-    draws: Draws = yield from draw(model, request)
+    draws: Realizations = yield from draw(model, request)
     meshes = [virtual_mesh(draws, i, EXAMPLE_LEVEL) for i in range(min(N_EXAMPLES, len(draws)))]
     radii = draws.equivalent_radii() if 0 < len(draws) <= MAX_SIZED else None
     ends = None if radii is None else (float(radii.min()), float(radii.max()))

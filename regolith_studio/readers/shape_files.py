@@ -19,7 +19,7 @@ from regolith_studio.harmonics.surface import radii
 from regolith_studio.readers.error_messages import message_about, printable
 from regolith_studio.readers.file_bytes import read_bytes, read_npz
 from regolith_studio.readers.units import unit_factor
-from regolith_studio.shape_models import files as model_files
+from regolith_studio.shape_models import io as model_io
 from regolith_studio.shape_models.materials import MaterialCard, card_from, materials
 from regolith_studio.shape_models.protocol import FittedModel
 from regolith_studio.shape_models.sample import Sample
@@ -83,7 +83,7 @@ def read_shape_source(text: str) -> ShapeSource:
     try:
         if kind == fit_io.FORMAT:
             return _sample(path, document, found)
-        if kind == model_files.FORMAT:
+        if kind == model_io.FORMAT:
             return ShapeSource(_model(path, document), path.stem, found)
         if "relative_amplitudes" in document:
             return ShapeSource(_in_micrometres(card_from(content, path.name)), path.stem, found)
@@ -151,7 +151,7 @@ def _model(path: Path, document: Mapping[str, Any]) -> FittedModel:
     check_document(ModelDocument, document, path, "model")
     arrays, digest = read_npz(path.with_suffix(".npz"))
     try:
-        model = model_files.model_from(document, arrays, digest)
+        model = model_io.model_from(document, arrays, digest)
         unit_factor(model.unit)
     except InputError as error:
         raise FileError(message_about(path, f"is a broken model: {_lower(str(error))}")) from None

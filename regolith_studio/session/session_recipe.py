@@ -17,7 +17,7 @@ from regolith_studio.session.provenance import (
 )
 from regolith_studio.session.recipe import SAMPLE, DatasetRequest, FilesEntry, NamedParticle, Outputs, Recipe
 from regolith_studio.session.results import ParticleEntry
-from regolith_studio.shape_models.files import write_model
+from regolith_studio.shape_models.io import write_model
 from regolith_studio.shape_models.protocol import FittedModel
 
 

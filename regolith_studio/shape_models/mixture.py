@@ -17,10 +17,10 @@ from scipy.special import logsumexp
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray
 
-MOST_STEPS = 300
+MAX_STEPS = 300
 TOLERANCE = 1e-7
-LEAST_SHARE = 1e-3
-LEAST_DEVIATION = 1e-3
+MIN_SHARE = 1e-3
+MIN_DEVIATION = 1e-3
 """Of the size within a component; sizes are logarithms, or shares of their mean."""
 
 
@@ -32,7 +32,7 @@ class MixtureSettings:
         Degree of the particles.
     n_components
         Number of parts; 0 for the best by the criterion.
-    most_components
+    max_components
         Highest number tried.
     n_starts
         Starts for each number; the most likely one is kept.
@@ -49,7 +49,7 @@ class MixtureSettings:
             "tip": "0 for the best number by Bayes' criterion.",
         },
     )
-    most_components: int = field(
+    max_components: int = field(
         default=8, metadata={"label": "At most", "minimum": 1, "maximum": 50, "tip": "Highest number tried."}
     )
     n_starts: int = field(
@@ -103,7 +103,7 @@ class Mixture:
         return np.asarray(np.log(self.weights) - 0.5 * (shape + far))
 
 
-class NamedParts:
+class NamedComponents:
     """What fitted mixtures have in common: parts with spectra, and names for them."""
 
     spectra: FloatArray
@@ -130,7 +130,7 @@ class NamedParts:
         return replace(self, names=tuple(names))  # type: ignore[type-var]
 
 
-def part_names(names: Sequence[str], k: int) -> tuple[str, ...]:
+def component_names(names: Sequence[str], k: int) -> tuple[str, ...]:
     """One name for each of `k` parts: those given, or "part 1", "part 2" and so on.
 
     Raises
@@ -176,7 +176,7 @@ def chosen_mixture(
 def _numbers(n: int, settings: MixtureSettings) -> list[int]:
     most = max(1, n // 4)
     if settings.n_components == 0:
-        return list(range(1, max(1, min(settings.most_components, most)) + 1))
+        return list(range(1, max(1, min(settings.max_components, most)) + 1))
     if not 1 <= settings.n_components <= most:
         raise InputError(
             f"{n} particles are enough for 1 to {most} parts, got {settings.n_components}: four particles "
@@ -206,7 +206,7 @@ def fit_mixture(sizes: FloatArray, powers: FloatArray, k: int, rng: np.random.Ge
     floor = np.maximum(powers.mean(axis=0) * 1e-9, 1e-300)
     shares = _start(sizes, np.log(np.maximum(powers[:, 1:], floor[1:])), k, rng)
     before = -np.inf
-    for _ in range(MOST_STEPS):
+    for _ in range(MAX_STEPS):
         mixture = _maximised(sizes, powers, shares, floor)
         joint = mixture._joint(sizes, powers)
         total = logsumexp(joint, axis=1, keepdims=True)
@@ -235,11 +235,11 @@ def _start(sizes: FloatArray, heights: FloatArray, k: int, rng: np.random.Genera
 
 
 def _maximised(sizes: FloatArray, powers: FloatArray, shares: FloatArray, floor: FloatArray) -> Mixture:
-    members = np.maximum(shares.sum(axis=0), LEAST_SHARE)
+    members = np.maximum(shares.sum(axis=0), MIN_SHARE)
     means = shares.T @ sizes / members
     variances = (shares * (sizes[:, None] - means) ** 2).sum(axis=0) / members
     orders = 2 * np.arange(powers.shape[1]) + 1
     spectra = np.maximum(shares.T @ powers / members[:, None], floor) / orders
     spectra[:, 0] = 0.0
-    deviations = np.sqrt(np.maximum(variances, LEAST_DEVIATION**2))
+    deviations = np.sqrt(np.maximum(variances, MIN_DEVIATION**2))
     return Mixture(members / members.sum(), means, deviations, spectra, 0.0)

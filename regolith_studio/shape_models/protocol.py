@@ -5,7 +5,7 @@ from typing import Any, Protocol
 
 from numpy.typing import NDArray
 
-from regolith_studio.shape_models.draws import Draws
+from regolith_studio.shape_models.realizations import Realizations
 from regolith_studio.shape_models.sample import Sample
 
 SizeRange = tuple[float, float]
@@ -27,10 +27,10 @@ class FittedModel(Protocol):
     def unit(self) -> str:
         """Length unit of the sample."""
 
-    def draw(self, n: int, seed: int, size_range: SizeRange | None = None) -> Draws:
+    def draw(self, n: int, seed: int, size_range: SizeRange | None = None) -> Realizations:
         """`n` particles; the first of them do not depend on `n`, nor on how the work is shared out."""
 
-    def parts(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Draws]:
+    def draw_chunks(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Realizations]:
         """The same particles some hundreds at a time."""
 
     def stored(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:

@@ -18,7 +18,7 @@ from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
 
 Bounds = tuple[float, float] | None
 _TABLE = 4001
-MOST_MODES = 6
+MAX_MODES = 6
 FEWEST_A_MODE = 10
 """Particles for each part of a mixture of log-normal laws."""
 NARROWEST = 0.05
@@ -100,13 +100,13 @@ class LogNormalSizes:
 
     @classmethod
     def mixture(cls, radii: FloatArray) -> "LogNormalSizes":
-        """Several log-normal laws, 1 to :data:`MOST_MODES` of them by Bayes' criterion.
+        """Several log-normal laws, 1 to :data:`MAX_MODES` of them by Bayes' criterion.
 
         Expectation and maximisation, from parts of equal numbers in the order of size; no part is narrower
         than a twentieth of the whole.
         """
         logs = np.log(radii)
-        most = max(1, min(MOST_MODES, len(logs) // FEWEST_A_MODE))
+        most = max(1, min(MAX_MODES, len(logs) // FEWEST_A_MODE))
         fits = [_modes(logs, k) for k in range(1, most + 1)]
         criterion = [(3 * k - 1) * np.log(len(logs)) - 2 * fit[1] for k, fit in enumerate(fits, start=1)]
         return fits[int(np.argmin(criterion))][0]

@@ -15,10 +15,10 @@ from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.shape_models.draws import Draws, virtual_mesh
-from regolith_studio.shape_models.judging import novelty_in_frame
+from regolith_studio.shape_models.goodness_of_fit import nearest_neighbour_ratio_in_frame
+from regolith_studio.shape_models.inertia_ellipsoid import canonical
 from regolith_studio.shape_models.models import MODELS
-from regolith_studio.shape_models.principal_axes import canonical
+from regolith_studio.shape_models.realizations import Realizations, virtual_mesh
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.studies.population_distances import (
     Distances,
@@ -66,7 +66,7 @@ class FitTask:
     seeds: tuple[int, ...]
 
 
-def fit_and_draw(order: FitTask) -> tuple[tuple[Draws, ...], tuple[float, ...]]:
+def fit_and_draw(order: FitTask) -> tuple[tuple[Realizations, ...], tuple[float, ...]]:
     """Drawings from a fitted model, and Bayes' criterion of its parts if it has one."""
     fitted = MODELS[order.key].fit(order.sample, order.options)
     drawn = tuple(fitted.draw(order.n_draws, seed) for seed in order.seeds)
@@ -85,7 +85,7 @@ class StudyExecutor:
         """How far the study is."""
         return StudyProgress(self.done, self.total, message)
 
-    def measured(self, draws: Draws, message: str) -> Generator[StudyProgress, None, FloatArray]:
+    def measured(self, draws: Realizations, message: str) -> Generator[StudyProgress, None, FloatArray]:
         """Descriptors of every particle, shape (n, keys); NaN where its series bounds no solid."""
         tables = [np.empty((0, len(self.keys)))]
         measure = partial(descriptors_of, keys=self.keys, level=self.level)
@@ -96,7 +96,9 @@ class StudyExecutor:
             yield self.progress(message)
         return np.concatenate(tables)
 
-    def framed(self, draws: Draws, l_max: int, message: str) -> Generator[StudyProgress, None, FloatArray]:
+    def framed(
+        self, draws: Realizations, l_max: int, message: str
+    ) -> Generator[StudyProgress, None, FloatArray]:
         """Every particle in the frame of its axes, shape (n, (l_max + 1)^2)."""
         rows = [np.empty((0, (l_max + 1) ** 2))]
         for part in self.mapper(partial(frames_of, l_max=l_max), _batches(draws, FRAME_BATCH)):
@@ -107,9 +109,9 @@ class StudyExecutor:
 
     def drawn(
         self, order: FitTask, message: str
-    ) -> Generator[StudyProgress, None, tuple[tuple[Draws, ...], tuple[float, ...]]]:
+    ) -> Generator[StudyProgress, None, tuple[tuple[Realizations, ...], tuple[float, ...]]]:
         """As :func:`fit_and_draw`, by one process."""
-        found: tuple[tuple[Draws, ...], tuple[float, ...]] = (), ()
+        found: tuple[tuple[Realizations, ...], tuple[float, ...]] = (), ()
         yield self.progress(message)
         for answer in self.mapper(fit_and_draw, (order,)):
             if answer is not None:
@@ -118,13 +120,13 @@ class StudyExecutor:
         return found
 
 
-def descriptors_of(draws: Draws, keys: tuple[str, ...], level: int = MESH_LEVEL) -> FloatArray:
+def descriptors_of(draws: Realizations, keys: tuple[str, ...], level: int = MESH_LEVEL) -> FloatArray:
     """Descriptors of each particle, shape (n, keys); NaN where its series bounds no solid."""
     rows = [_descriptor_row(draws, index, keys, level) for index in range(len(draws))]
     return np.array(rows, dtype=np.float64).reshape(len(draws), len(keys))
 
 
-def _descriptor_row(draws: Draws, index: int, keys: tuple[str, ...], level: int) -> tuple[float, ...]:
+def _descriptor_row(draws: Realizations, index: int, keys: tuple[str, ...], level: int) -> tuple[float, ...]:
     try:
         found = describe(virtual_mesh(draws, index, level), keys)
     except RegolithError:
@@ -132,14 +134,14 @@ def _descriptor_row(draws: Draws, index: int, keys: tuple[str, ...], level: int)
     return tuple(found[key] for key in keys)
 
 
-def frames_of(draws: Draws, l_max: int) -> FloatArray:
+def frames_of(draws: Realizations, l_max: int) -> FloatArray:
     """The radius of every particle in the frame of its axes, shape (n, (l_max + 1)^2)."""
     if draws.scale == "radius" and draws.l_max == l_max:
         return canonical(draws.coefficients)
     return canonical(np.stack([draws.particle(index, l_max).values for index in range(len(draws))]))
 
 
-def _batches(draws: Draws, size: int) -> Iterable[Draws]:
+def _batches(draws: Realizations, size: int) -> Iterable[Realizations]:
     return (draws.chosen(range(i, min(i + size, len(draws)))) for i in range(0, len(draws), size))
 
 
@@ -268,7 +270,7 @@ def population_study(
     drawn = default_draws(len(sample)) if n_draws is None else n_draws
     _check_arguments(sample, chosen, keys, (drawn, n_splits, n_repeats))
     work = StudyExecutor(tuple(keys), level, mapper, len(sample) + len(chosen) * n_splits * n_repeats * drawn)
-    known = Draws(sample.truncated(l_max).coefficients, "radius", "measured", seed, sample.unit)
+    known = Realizations(sample.truncated(l_max).coefficients, "radius", "measured", seed, sample.unit)
     table = yield from work.measured(known, "measured particles")
     keep = np.flatnonzero(np.isfinite(table).all(axis=1))
     if len(keep) < MIN_PARTICLES:
@@ -372,10 +374,12 @@ class _TrainTestSplit:
             found.append(_Round(apart, ends, new, 1 - draws.acceptance, table, criterion))
         return found
 
-    def _novelty(self, train: IntArray, draws: Draws, message: str) -> Generator[StudyProgress, None, float]:
+    def _novelty(
+        self, train: IntArray, draws: Realizations, message: str
+    ) -> Generator[StudyProgress, None, float]:
         l_max = round(self.frames.shape[1] ** 0.5) - 1
         drawn = yield from self.work.framed(draws, l_max, message)
-        return float(np.median(novelty_in_frame(self.frames[train], drawn)))
+        return float(np.median(nearest_neighbour_ratio_in_frame(self.frames[train], drawn)))
 
 
 def _evaluation_of(key: str, rounds: Sequence[_Round]) -> ModelEvaluation:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.shape_models.judging import (
+from regolith_studio.shape_models.goodness_of_fit import (
     classifier_accuracy,
     energy_distance,
     kolmogorov_smirnov,

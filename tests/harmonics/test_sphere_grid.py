@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from regolith_studio.harmonics.sphere_grid import GRIDS_KEPT, sphere_grid
-from regolith_studio.shape_models.hull_radii import hull_grid
+from regolith_studio.shape_models.convex_hull import hull_grid
 
 
 def test_that_harmonics_are_orthonormal_under_the_quadrature() -> None:

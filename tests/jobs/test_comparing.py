@@ -5,7 +5,7 @@ import pytest
 
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.jobs.model_evaluation import compare_distributions
-from regolith_studio.shape_models.draws import Draws
+from regolith_studio.shape_models.realizations import Realizations
 from regolith_studio.shape_models.sample import Sample
 
 RADII = np.array([1.0, 2.0, 3.0, 4.0])
@@ -29,7 +29,7 @@ def outcome(steps):
 def test_that_spheres_have_their_radii_by_number_and_by_volume():
     assert ShCoefficients(spheres(RADII)[1]).mean_radius == pytest.approx(2.0)
     compared = outcome(
-        compare_distributions(Sample(spheres(RADII)), Draws(spheres(RADII[:2]), "radius", "x", 0))
+        compare_distributions(Sample(spheres(RADII)), Realizations(spheres(RADII[:2]), "radius", "x", 0))
     )
     measured, drawn = compared.distributions("equivalent_radius")
     assert measured.mean == pytest.approx(2.5, rel=1e-3)
@@ -41,7 +41,7 @@ def test_that_spheres_have_their_radii_by_number_and_by_volume():
 
 
 def test_that_a_model_without_particles_has_drawn_ones_only():
-    compared = outcome(compare_distributions(None, Draws(spheres(RADII), "radius", "x", 0)))
+    compared = outcome(compare_distributions(None, Realizations(spheres(RADII), "radius", "x", 0)))
     measured, drawn = compared.distributions("aspect_ratio")
     assert measured is None
     assert len(drawn.values) == 4

@@ -18,7 +18,7 @@ from regolith_studio.harmonics.surface import radii
 from regolith_studio.readers.file_bytes import read_npz
 from regolith_studio.readers.shape_files import is_shape_source, radius_of, read_shape_source
 from regolith_studio.session.outputs.fits import FittedSample, write_fits
-from regolith_studio.shape_models.files import write_model
+from regolith_studio.shape_models.io import write_model
 from regolith_studio.shape_models.materials import MaterialCard, materials, write_card
 from regolith_studio.shape_models.models import MODELS
 from regolith_studio.shape_models.sample import Sample

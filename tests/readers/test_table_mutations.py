@@ -30,7 +30,7 @@ from regolith_studio.readers.shape_files import read_shape_source
 from regolith_studio.session.outputs.fits import FittedSample, write_fits
 from regolith_studio.session.project import Project, read_project
 from regolith_studio.session.recipe import Recipe, read_recipe
-from regolith_studio.shape_models.files import write_model
+from regolith_studio.shape_models.io import write_model
 from regolith_studio.shape_models.materials import materials, write_card
 from regolith_studio.shape_models.models import MODELS
 from regolith_studio.shape_models.sample import Sample

@@ -21,7 +21,7 @@ from regolith_studio.resources import resource
 from regolith_studio.session.batch.preprocessing import read_grain, read_index
 from regolith_studio.session.recipe import recipe_of
 from regolith_studio.session.run_recipe import run_recipe
-from regolith_studio.shape_models.files import write_model
+from regolith_studio.shape_models.io import write_model
 from regolith_studio.shape_models.materials import materials
 
 BASE: dict[str, Any] = {"method": "quadric", "level": 2, "l_max": 4, "n_facets": 12, "target": "particle"}

@@ -34,7 +34,7 @@ from regolith_studio.session.run_recipe import run_recipe
 from regolith_studio.session.session import Session
 from regolith_studio.session.session_recipe import SessionRecipe
 from regolith_studio.shape_models.materials import materials
-from regolith_studio.shape_models.spectra import relative_amplitudes, with_amplitudes
+from regolith_studio.shape_models.spectrum_sliders import relative_amplitudes, with_amplitudes
 
 CHOICES = Choices(method="annealing", settings=(("iterations", 12),), level=2, l_max=4, n_facets=12, seed=3)
 ONLY_DATASET = Outputs(descriptors=False, meshes=False, summary=False)

@@ -10,22 +10,24 @@ from scipy.stats import spearmanr
 
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.errors import InputError
+from regolith_studio.shape_models.calibration import features_and_target, measured_features
+from regolith_studio.shape_models.convex_hull import ROWS, hull_grid, supports
 from regolith_studio.shape_models.copula import GaussianCopula
-from regolith_studio.shape_models.draws import Draws, virtual_mesh
-from regolith_studio.shape_models.forms import forms, log_ellipsoids, with_forms
-from regolith_studio.shape_models.hull_aims import come_to, numbers_and_aim
-from regolith_studio.shape_models.hull_radii import ROWS, hull_grid, supports
+from regolith_studio.shape_models.inertia_ellipsoid import forms, log_ellipsoids, with_forms
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.shape_models.models import MODELS
 from regolith_studio.shape_models.models.hull_field import HullFieldSettings
-from regolith_studio.shape_models.outer_numbers import SPHERICITY, of_log_radii, of_radii
+from regolith_studio.shape_models.realizations import Realizations, virtual_mesh
 from regolith_studio.shape_models.sample import Sample
-from regolith_studio.shape_models.shape_numbers import (
+from regolith_studio.shape_models.shape_features import (
     CONVEXITY,
     FORM,
     POWERS,
+    SPHERICITY,
+    outer_features_of_log_radii,
+    outer_features_of_radii,
+    shape_features,
     shape_grid,
-    shape_numbers,
 )
 from tests.filling import filled
 
@@ -116,7 +118,7 @@ def test_that_numbers_that_are_no_distribution_are_refused() -> None:
 def test_that_the_numbers_of_an_ellipsoid_are_its_own() -> None:
     shapes = shape_grid(10)
     logs = log_ellipsoids(shapes.grid.directions, np.array([[0.25, 0.15]]), np.eye(3)[None])
-    found = shape_numbers(shapes.grid.expanded(7 * np.exp(logs)))[0]
+    found = shape_features(shapes.grid.expanded(7 * np.exp(logs)))[0]
     assert np.exp(found[0]) == pytest.approx(7.0, rel=1e-3)
     np.testing.assert_allclose(found[FORM], [0.25, 0.15], atol=2e-3)
     assert found[POWERS].max() < -10
@@ -151,16 +153,16 @@ def test_that_the_form_on_the_grid_is_that_of_the_solid() -> None:
     coefficients[0, [0, 4, 6, 8, 20]] = 10.0, 0.3, 0.8, -0.5, 0.4
     grid = shape_grid(10).grid
     on_grid, _ = forms(np.log(coefficients @ grid.basis), grid)
-    np.testing.assert_allclose(on_grid, shape_numbers(coefficients)[:, FORM], atol=1e-6)
-    mesh = virtual_mesh(Draws(coefficients, "radius", "measured", 0), 0, 5)
+    np.testing.assert_allclose(on_grid, shape_features(coefficients)[:, FORM], atol=1e-6)
+    mesh = virtual_mesh(Realizations(coefficients, "radius", "measured", 0), 0, 5)
     second = np.linalg.eigvalsh(np.trace(mesh.inertia) / 2 * np.eye(3) - mesh.inertia)
     np.testing.assert_allclose(on_grid[0], np.diff(0.5 * np.log(second))[::-1], atol=2e-3)
 
 
 def test_that_outer_numbers_are_those_of_meshes(cement: Sample) -> None:
     few = cement.truncated(10).chosen(range(12))
-    found = of_radii(few.coefficients, np.zeros(12))
-    draws = Draws(few.coefficients, "radius", "measured", 0)
+    found = outer_features_of_radii(few.coefficients, np.zeros(12))
+    draws = Realizations(few.coefficients, "radius", "measured", 0)
     sphericities = [describe(virtual_mesh(draws, i, 4), ["sphericity"])["sphericity"] for i in range(12)]
     np.testing.assert_allclose(1 / (1 + np.exp(-found[:, SPHERICITY])), sphericities, atol=4e-3)
 
@@ -169,16 +171,16 @@ def test_that_outer_numbers_of_ellipsoids_are_the_ratios_of_their_axes() -> None
     grid = shape_grid(16).grid
     form = np.array([[0.2, 0.15], [0.4, 0.0]])
     logs = log_ellipsoids(grid.directions, form, np.stack([np.eye(3)] * 2))
-    found = of_log_radii(grid.expanded(logs), np.zeros(2))
+    found = outer_features_of_log_radii(grid.expanded(logs), np.zeros(2))
     np.testing.assert_allclose(found[:, 0], form.sum(axis=1), atol=0.02)
 
 
 def test_that_drawn_particles_have_the_outer_numbers_of_real_ones(cement: Sample) -> None:
     cut = cement.truncated(10).coefficients
-    measured, aim = numbers_and_aim(cut)
+    measured, aim = features_and_target(cut)
     fitted: Any = MODEL.fit(cement)
     drawn = fitted.draw(500, 2)
-    numbers, outer = come_to(drawn.coefficients, drawn.equivalent_radii())
+    numbers, outer = measured_features(drawn.coefficients, drawn.equivalent_radii())
     gap = np.abs(numbers.mean(axis=0) - measured.mean(axis=0)) / measured.std(axis=0)
     assert gap[:3].max() < 0.1
     assert gap.max() < 0.6
@@ -186,8 +188,8 @@ def test_that_drawn_particles_have_the_outer_numbers_of_real_ones(cement: Sample
     np.testing.assert_allclose(numbers.std(axis=0) / measured.std(axis=0), 1.0, atol=0.2)
     assert aim.distance(outer) < 0.35
     plain = MODELS["log_field"].fit(cement).draw(500, 2)
-    assert aim.distance(come_to(plain.coefficients, plain.equivalent_radii())[1]) > 0.6
-    real = _mean_share_of_hull(Draws(cut, "radius", "measured", 0))
+    assert aim.distance(measured_features(plain.coefficients, plain.equivalent_radii())[1]) > 0.6
+    real = _mean_share_of_hull(Realizations(cut, "radius", "measured", 0))
     assert abs(_mean_share_of_hull(drawn) - real) < 0.012
     assert abs(_mean_share_of_hull(plain) - real) > 0.02
 
@@ -200,6 +202,6 @@ def test_that_the_faceting_follows_the_sample() -> None:
     assert MODEL.restored(*fitted.stored()).faceting == fitted.faceting
 
 
-def _mean_share_of_hull(draws: Draws) -> float:
+def _mean_share_of_hull(draws: Realizations) -> float:
     meshes = (virtual_mesh(draws, i, 3) for i in range(150))
     return float(np.mean([mesh.volume / ConvexHull(mesh.vertices).volume for mesh in meshes]))

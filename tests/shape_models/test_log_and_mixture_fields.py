@@ -5,14 +5,14 @@ import pytest
 
 from regolith_studio.errors import InputError
 from regolith_studio.harmonics.coefficients import degrees
-from regolith_studio.shape_models.draws import Draws
-from regolith_studio.shape_models.log_shapes import directed, log_shapes, sized
+from regolith_studio.shape_models.log_radius import directed, log_shapes, sized
 from regolith_studio.shape_models.mixture import MixtureSettings
 from regolith_studio.shape_models.models.gaussian_field import MODEL as GAUSSIAN_FIELD
 from regolith_studio.shape_models.models.gaussian_mixture import MODEL as GAUSSIAN_MIXTURE
 from regolith_studio.shape_models.models.log_field import MODEL as LOG_FIELD
 from regolith_studio.shape_models.models.log_field import LogField, LogFieldSettings
 from regolith_studio.shape_models.models.mixture_field import MODEL as MIXTURE
+from regolith_studio.shape_models.realizations import Realizations
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.shape_models.size_law import LogNormalSizes
 
@@ -22,21 +22,21 @@ def log_sample(n: int, amplitude: float, size: float, seed: int) -> Sample:
     rng = np.random.default_rng(seed)
     rows = rng.normal(size=(n, 16)) * np.where(degrees(16) >= 1, amplitude, 0.0)
     logs = sized(np.pad(rows, ((0, 0), (0, 81 - 16))), size * np.exp(0.1 * rng.normal(size=n)))
-    draws = Draws(logs, "log_radius", "test", 0)
+    draws = Realizations(logs, "log_radius", "test", 0)
     return Sample(np.stack([draws.particle(i).values for i in range(n)]))
 
 
 def test_that_sized_shapes_have_the_radius_asked_for(rough_sample: Callable[..., Sample]) -> None:
     rows = log_shapes(rough_sample(20, 6)).coefficients
     radii = np.linspace(1, 5, 20)
-    draws = Draws(sized(rows, radii), "log_radius", "test", 0)
+    draws = Realizations(sized(rows, radii), "log_radius", "test", 0)
     np.testing.assert_allclose(draws.equivalent_radii(), radii, rtol=1e-12)
 
 
 def test_that_the_logarithm_of_a_weak_field_gives_the_radius_back() -> None:
     sample = log_sample(6, 0.05, 2.0, 0)
     shapes = log_shapes(sample)
-    draws = Draws(sized(shapes.coefficients, shapes.equivalent_radii), "log_radius", "test", 0)
+    draws = Realizations(sized(shapes.coefficients, shapes.equivalent_radii), "log_radius", "test", 0)
     again = np.stack([draws.particle(i).values for i in range(6)])
     np.testing.assert_allclose(again, sample.coefficients, atol=2e-4)
 
@@ -91,7 +91,7 @@ def test_that_sizes_far_outside_the_sample_are_drawn() -> None:
 def test_that_two_constituents_are_told_apart_by_the_criterion() -> None:
     round_ones, angular = log_sample(120, 0.03, 2.0, 0), log_sample(60, 0.15, 2.2, 1)
     sample = Sample(np.concatenate([round_ones.coefficients, angular.coefficients]))
-    mixture = MIXTURE.fit(sample, MixtureSettings(l_max=3, most_components=4))
+    mixture = MIXTURE.fit(sample, MixtureSettings(l_max=3, max_components=4))
     assert mixture.n_components == 2
     assert len(mixture.bic) == 4
     np.testing.assert_allclose(mixture.sizes.weights, [2 / 3, 1 / 3], atol=0.05)
@@ -110,7 +110,7 @@ def test_that_the_papers_mixture_finds_two_constituents_and_draws_them_apart() -
     scales = np.repeat([10.0, 20.0], [200, 100])
     rows = rng.normal(size=(300, 9)) * np.repeat([0.1, 0.3], [200, 100])[:, None]
     rows[:, 0] = np.sqrt(4 * np.pi) * scales * (1 + 0.02 * rng.normal(size=300))
-    mixture = GAUSSIAN_MIXTURE.fit(Sample(rows), MixtureSettings(l_max=2, most_components=4))
+    mixture = GAUSSIAN_MIXTURE.fit(Sample(rows), MixtureSettings(l_max=2, max_components=4))
     assert mixture.n_components == 2
     np.testing.assert_allclose(mixture.weights, [2 / 3, 1 / 3], atol=0.01)
     np.testing.assert_allclose(mixture.means, np.sqrt(4 * np.pi) * np.array([10, 20]), rtol=0.01)

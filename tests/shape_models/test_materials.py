@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 
 from regolith_studio.errors import FileError, InputError
-from regolith_studio.shape_models.draws import Draws
-from regolith_studio.shape_models.log_shapes import sized
+from regolith_studio.shape_models.log_radius import sized
 from regolith_studio.shape_models.materials import MaterialCard, materials, read_card, write_card
 from regolith_studio.shape_models.models.log_field import MODEL, LogFieldSettings
+from regolith_studio.shape_models.realizations import Realizations
 from regolith_studio.shape_models.sample import Sample
 
 
@@ -38,7 +38,7 @@ def test_that_the_card_of_drawn_particles_is_the_card_that_drew_them() -> None:
     card = materials()["ma165"]
     draws = card.model(6).draw(800, 0)
     wide = sized(np.pad(draws.coefficients, ((0, 0), (0, 13**2 - 49))), draws.equivalent_radii())
-    fine = Draws(wide, "log_radius", "test", 0)
+    fine = Realizations(wide, "log_radius", "test", 0)
     sample = Sample(np.stack([fine.particle(i).values for i in range(800)]))
     again = MaterialCard.of(sample, "again", "Again", "A test.", l_max=6)
     assert again.median_radius == pytest.approx(card.median_radius, rel=0.05)

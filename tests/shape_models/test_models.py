@@ -10,10 +10,10 @@ import pytest
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.mesh_health import inspect
 from regolith_studio.readers.shape_files import read_shape_source
-from regolith_studio.shape_models.draws import virtual_mesh
-from regolith_studio.shape_models.files import write_model
+from regolith_studio.shape_models.io import write_model
 from regolith_studio.shape_models.models import DEFAULT_MODEL, MODELS
 from regolith_studio.shape_models.protocol import FittedModel
+from regolith_studio.shape_models.realizations import virtual_mesh
 from regolith_studio.shape_models.sample import Sample
 
 L_MAX = 4
@@ -66,7 +66,7 @@ def test_that_every_particle_is_a_closed_solid_with_the_volume_of_its_series(
 def test_that_parts_are_the_same_particles_some_hundreds_at_a_time(
     key: str, fitted: dict[str, FittedModel]
 ) -> None:
-    parts, whole = list(fitted[key].parts(1203, 4)), fitted[key].draw(1203, 4)
+    parts, whole = list(fitted[key].draw_chunks(1203, 4)), fitted[key].draw(1203, 4)
     assert [len(part) for part in parts] == [500, 500, 203]
     for name in ("coefficients", "parents", "components"):
         joined = np.concatenate([getattr(part, name) for part in parts])

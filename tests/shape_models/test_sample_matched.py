@@ -10,14 +10,14 @@ from regolith_studio.harmonics.coefficients import ShCoefficients, orders
 from regolith_studio.harmonics.legendre import harmonics
 from regolith_studio.harmonics.sphere_grid import sphere_grid
 from regolith_studio.harmonics.surface import reconstruct
-from regolith_studio.shape_models.draws import virtual_mesh
-from regolith_studio.shape_models.judging import novelty
+from regolith_studio.shape_models.goodness_of_fit import nearest_neighbour_ratio
+from regolith_studio.shape_models.inertia_ellipsoid import canonical, principal_axes
 from regolith_studio.shape_models.linear_maps import _cubic, mapped_radii, radius_tables
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.shape_models.models.sample_matched import MODEL, SampleMatchedSettings
-from regolith_studio.shape_models.outer_numbers import SPHERICITY, of_radii
-from regolith_studio.shape_models.principal_axes import canonical, principal_axes
+from regolith_studio.shape_models.realizations import virtual_mesh
 from regolith_studio.shape_models.sample import Sample
+from regolith_studio.shape_models.shape_features import SPHERICITY, outer_features_of_radii
 from tests.filling import filled
 
 
@@ -95,7 +95,7 @@ def test_that_turning_within_the_ellipsoid_keeps_the_share_of_the_hull(cement: S
     ]
     assert np.mean(own) == pytest.approx(np.mean(theirs), rel=0.003)
     assert ks_2samp(own, theirs).statistic < 0.1
-    assert np.median(novelty(cement.truncated(10).coefficients, draws.coefficients)) > 0.6
+    assert np.median(nearest_neighbour_ratio(cement.truncated(10).coefficients, draws.coefficients)) > 0.6
 
 
 def test_that_turning_makes_long_particles_hardly_rougher_than_measured() -> None:
@@ -105,7 +105,7 @@ def test_that_turning_makes_long_particles_hardly_rougher_than_measured() -> Non
     rows = np.stack([drawn.particle(i).values for i in range(300)])
     draws = MODEL.fit(Sample(rows)).draw(1500, 1)
     own, theirs = (
-        np.log(1 / (1 + np.exp(-of_radii(each, np.zeros(len(each)))[:, SPHERICITY])))
+        np.log(1 / (1 + np.exp(-outer_features_of_radii(each, np.zeros(len(each)))[:, SPHERICITY])))
         for each in (draws.coefficients, rows[np.asarray(draws.parents), :121])
     )
     assert -0.0016 < (own - theirs).mean() < 0.0

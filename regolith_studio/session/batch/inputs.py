@@ -21,9 +21,9 @@ from regolith_studio.readers.particles import (
 from regolith_studio.readers.shape_files import read_shape_source
 from regolith_studio.session.batch.preprocessing import MODEL, PreparedInputs, read_grain, read_index
 from regolith_studio.session.recipe import SAMPLE, NamedParticle, Population, Recipe
-from regolith_studio.shape_models.draws import Draws, virtual_mesh
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.shape_models.protocol import FittedModel
+from regolith_studio.shape_models.realizations import Realizations, virtual_mesh
 
 NOTHING = PreparedInputs()
 
@@ -239,13 +239,15 @@ def model_of(population: Population, folder: Path | None) -> FittedModel:
     return fitted
 
 
-def _draws(population: Population, folder: Path | None, seed: int) -> tuple[Draws, tuple[str, ...]]:
+def _draws(population: Population, folder: Path | None, seed: int) -> tuple[Realizations, tuple[str, ...]]:
     """All draws of a population and their groups: a kilobyte each, made once in each process."""
     return _remembered_draws(population.model_dump_json(), folder, seed)
 
 
 @lru_cache(maxsize=1)
-def _remembered_draws(population: str, folder: Path | None, seed: int) -> tuple[Draws, tuple[str, ...]]:
+def _remembered_draws(
+    population: str, folder: Path | None, seed: int
+) -> tuple[Realizations, tuple[str, ...]]:
     wish = Population.model_validate_json(population)
     model = model_of(wish, folder)
     draws = model.draw(wish.n, seed, wish.bounds)

@@ -34,7 +34,7 @@ from regolith_studio.readers.shape_files import is_shape_source, read_shape_sour
 from regolith_studio.readers.volumes.header import RawLayout
 from regolith_studio.session.outputs.extraction import RECIPE, recipe_document
 from regolith_studio.session.recipe import Population, RawVolume, Recipe, VolumeEntry
-from regolith_studio.shape_models.files import write_model
+from regolith_studio.shape_models.io import write_model
 from regolith_studio.shape_models.materials import materials
 
 INDEX = "grains.json"

@@ -17,8 +17,8 @@ from regolith_studio.jobs.model_jobs import GenerationRequest, particle_names
 from regolith_studio.jobs.particle_jobs import MeasuredParticle
 from regolith_studio.readers.shape_files import ShapeSource
 from regolith_studio.session.outputs.descriptors import descriptor_table
-from regolith_studio.shape_models.draws import Draws
 from regolith_studio.shape_models.protocol import FittedModel
+from regolith_studio.shape_models.realizations import Realizations
 from regolith_studio.shape_models.sample import Sample
 
 FORMAT = "regolith-studio virtual particles"
@@ -48,7 +48,7 @@ class Generated:
     source: ShapeSource
     order: GenerationRequest
     model: FittedModel
-    draws: Draws
+    draws: Realizations
     groups: tuple[str, ...]
 
 
@@ -116,7 +116,7 @@ def _components(made: Generated) -> list[dict[str, Any]]:
     return [{"name": name, "drawn": int(count)} for name, count in zip(names, counts, strict=False)]
 
 
-def _write_table(folder: Path, table: Table, draws: Draws) -> None:
+def _write_table(folder: Path, table: Table, draws: Realizations) -> None:
     """The table with the number of the measured particle that each draw began with, where there is one."""
     parents: list[Cell] = [int(p) if p >= 0 else None for p in np.asarray(draws.parents)]
     if any(parent is not None for parent in parents):

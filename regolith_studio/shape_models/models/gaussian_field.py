@@ -15,10 +15,9 @@ from numpy.typing import ArrayLike, NDArray
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, locked_floats
 from regolith_studio.harmonics.coefficients import degrees
-from regolith_studio.shape_models.chunks import DrawnByChunks, accepted, chunks
-from regolith_studio.shape_models.draws import Draws
-from regolith_studio.shape_models.positive import acceptable
+from regolith_studio.shape_models.chunked_sampling import ChunkedSampler, accepted, chunks
 from regolith_studio.shape_models.protocol import SizeRange
+from regolith_studio.shape_models.realizations import Realizations, acceptable
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.shape_models.size_law import checked_bounds
 
@@ -37,7 +36,7 @@ class GaussianFieldSettings:
 
 
 @dataclass(frozen=True, eq=False)
-class GaussianField(DrawnByChunks):
+class GaussianField(ChunkedSampler):
     """The field's numbers.
 
     Parameters
@@ -80,7 +79,7 @@ class GaussianField(DrawnByChunks):
         """The field with another spectrum, edited by hand."""
         return replace(self, spectrum=np.asarray(spectrum, dtype=np.float64))
 
-    def parts(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Draws]:
+    def draw_chunks(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Realizations]:
         """`n` particles of the field with a positive radius, and in the range of equivalent radii if given.
 
         Raises
@@ -91,7 +90,7 @@ class GaussianField(DrawnByChunks):
         bounds = checked_bounds(size_range)
         for rng, wanted in chunks(n, seed):
             rows, rejected = accepted(partial(self._propose, rng), partial(acceptable, bounds), wanted)
-            yield Draws(rows, "radius", KEY, seed, self.unit, rejected)
+            yield Realizations(rows, "radius", KEY, seed, self.unit, rejected)
 
     def _propose(self, rng: np.random.Generator, n: int) -> FloatArray:
         length = (self.l_max + 1) ** 2

@@ -17,11 +17,15 @@ from numpy.typing import NDArray
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray, locked_floats
 from regolith_studio.harmonics.coefficients import degrees
-from regolith_studio.shape_models.chunks import DrawnByChunks, accepted, chunks
-from regolith_studio.shape_models.draws import Draws
-from regolith_studio.shape_models.mixture import MixtureSettings, NamedParts, chosen_mixture, part_names
-from regolith_studio.shape_models.positive import acceptable
+from regolith_studio.shape_models.chunked_sampling import ChunkedSampler, accepted, chunks
+from regolith_studio.shape_models.mixture import (
+    MixtureSettings,
+    NamedComponents,
+    chosen_mixture,
+    component_names,
+)
 from regolith_studio.shape_models.protocol import SizeRange
+from regolith_studio.shape_models.realizations import Realizations, acceptable
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.shape_models.size_law import checked_bounds
 
@@ -29,7 +33,7 @@ KEY = "gaussian_mixture"
 
 
 @dataclass(frozen=True, eq=False)
-class GaussianMixture(NamedParts, DrawnByChunks):
+class GaussianMixture(NamedComponents, ChunkedSampler):
     """The parts, the largest share first.
 
     Parameters
@@ -72,13 +76,13 @@ class GaussianMixture(NamedParts, DrawnByChunks):
         if not ((self.spectra >= 0).all() and (self.weights >= 0).all() and self.weights.sum() > 0):
             raise InputError("Shares and variances of a mixture must not be negative.")
         object.__setattr__(self, "bic", tuple(float(value) for value in self.bic))
-        object.__setattr__(self, "names", part_names(self.names, k))
+        object.__setattr__(self, "names", component_names(self.names, k))
 
     def __reduce__(self) -> tuple[Callable[..., "GaussianMixture"], tuple[Any, ...]]:
         fields = (self.weights, self.means, self.spectra, self.unit, self.bic, self.names, self.labels)
         return GaussianMixture, fields
 
-    def parts(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Draws]:
+    def draw_chunks(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Realizations]:
         """`n` particles with a positive radius, and in the range of equivalent radii if given.
 
         Raises
@@ -90,7 +94,7 @@ class GaussianMixture(NamedParts, DrawnByChunks):
         for rng, wanted in chunks(n, seed):
             rows, rejected = accepted(partial(self._propose, rng), partial(_acceptable, bounds), wanted)
             component = rows[:, -1].astype(np.int64)
-            yield Draws(rows[:, :-1], "radius", KEY, seed, self.unit, rejected, components=component)
+            yield Realizations(rows[:, :-1], "radius", KEY, seed, self.unit, rejected, components=component)
 
     def _propose(self, rng: np.random.Generator, n: int) -> FloatArray:
         """Coefficients, and the part of each in a last column."""

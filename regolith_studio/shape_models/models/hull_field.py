@@ -20,15 +20,20 @@ from scipy.spatial.transform import Rotation
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, locked_floats
-from regolith_studio.shape_models.chunks import CHUNK, DrawnByChunks, chunks
+from regolith_studio.shape_models.calibration import (
+    CalibrationOffset,
+    CalibrationTarget,
+    features_and_target,
+    measured_features,
+)
+from regolith_studio.shape_models.chunked_sampling import CHUNK, ChunkedSampler, chunks
 from regolith_studio.shape_models.copula import GaussianCopula
-from regolith_studio.shape_models.draws import Draws
-from regolith_studio.shape_models.forms import log_ellipsoids, with_forms
-from regolith_studio.shape_models.hull_aims import Aim, Request, come_to, numbers_and_aim
-from regolith_studio.shape_models.log_shapes import log_shapes, sized
+from regolith_studio.shape_models.inertia_ellipsoid import log_ellipsoids, with_forms
+from regolith_studio.shape_models.log_radius import log_shapes, sized
 from regolith_studio.shape_models.protocol import SizeRange
+from regolith_studio.shape_models.realizations import Realizations
 from regolith_studio.shape_models.sample import Sample
-from regolith_studio.shape_models.shape_numbers import CONVEXITY, FORM, POWERS, shape_grid, with_powers
+from regolith_studio.shape_models.shape_features import CONVEXITY, FORM, POWERS, shape_grid, with_powers
 from regolith_studio.shape_models.size_law import SIZE_LAWS, SizeLaw, checked_bounds, size_law_from
 
 KEY = "hull_field"
@@ -37,7 +42,7 @@ ROUGHNESS = 2.5
 """Amplitude of the field that is drawn to its hull, over that of the finished surface."""
 FACETINGS = (0.6, 0.7, 0.8, 0.9, 1.0)
 """How far it may be drawn to its hull first; the fit chooses."""
-USUAL_FACETING, FEWEST_TO_CHOOSE = 0.9, 50
+DEFAULT_FACETING, MIN_TO_CHOOSE = 0.9, 50
 """That of a fit to so few particles that they cannot tell."""
 N_TRIED, N_COMPARED = CHUNK, 2 * CHUNK
 """Particles by which what comes out is compared with the sample: to choose, and after."""
@@ -62,13 +67,13 @@ class HullFieldSettings:
 
 
 @dataclass(frozen=True, eq=False)
-class HullField(DrawnByChunks):
+class HullField(ChunkedSampler):
     """The field's numbers.
 
     Parameters
     ----------
     numbers
-        Joint distribution of the columns of :mod:`~regolith_studio.shape_models.shape_numbers`, as measured.
+        Joint distribution of the columns of :mod:`~regolith_studio.shape_models.shape_features`, as measured.
     sizes
         Law of equivalent radii.
     spectrum
@@ -87,7 +92,7 @@ class HullField(DrawnByChunks):
     unit: str = "um"
     shift: FloatArray | None = None
     spread: FloatArray | None = None
-    faceting: float = USUAL_FACETING
+    faceting: float = DEFAULT_FACETING
     key: ClassVar[str] = KEY
 
     def __post_init__(self) -> None:
@@ -108,7 +113,7 @@ class HullField(DrawnByChunks):
         """Degree of ln r."""
         return len(self.spectrum) - 1
 
-    def parts(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Draws]:
+    def draw_chunks(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Realizations]:
         """`n` particles; their equivalent radii follow the law of sizes, cut to the range if given.
 
         Raises
@@ -120,7 +125,7 @@ class HullField(DrawnByChunks):
         for rng, wanted in chunks(n, seed):
             radii, _ = self.sizes.draw(CHUNK, rng, bounds)
             shapes = self._shapes(self.numbers.draw(np.log(radii), rng), rng)
-            yield Draws(sized(shapes, radii)[:wanted], "log_radius", KEY, seed, self.unit)
+            yield Realizations(sized(shapes, radii)[:wanted], "log_radius", KEY, seed, self.unit)
 
     def _shapes(self, numbers: FloatArray, rng: np.random.Generator) -> FloatArray:
         """Coefficients of ln r, up to size, of particles that come out with these numbers (n, d)."""
@@ -142,12 +147,12 @@ class HullField(DrawnByChunks):
         middle = self.numbers.quantiles[len(self.numbers.quantiles) // 2]
         return np.asarray(middle + self.shift + np.asarray(self.spread) * (numbers - middle))
 
-    def corrected(self, aim: Aim, n: int) -> tuple["HullField", float]:
+    def corrected(self, aim: CalibrationTarget, n: int) -> tuple["HullField", float]:
         """The field with one more round of correction, and how far its particles were from the aim."""
         rng = np.random.default_rng(np.random.SeedSequence(0))
         radii, _ = self.sizes.draw(n, rng)
-        numbers, outer = come_to(self._shapes(self.numbers.draw(np.log(radii), rng), rng), radii)
-        request = Request(np.asarray(self.shift), np.asarray(self.spread))
+        numbers, outer = measured_features(self._shapes(self.numbers.draw(np.log(radii), rng), rng), radii)
+        request = CalibrationOffset(np.asarray(self.shift), np.asarray(self.spread))
         better = aim.corrected(request, numbers, outer)
         return replace(self, shift=better.shift, spread=better.spread), aim.distance(outer)
 
@@ -191,15 +196,15 @@ class HullFieldModel:
                 f"A field drawn to its hull has l_max {DEGREES[0]} to {DEGREES[1]}, got {chosen.l_max}."
             )
         usable = cut.star_shaped()
-        table, aim = numbers_and_aim(usable.coefficients)
+        table, aim = features_and_target(usable.coefficients)
         mean_powers = log_shapes(usable).powers.mean(axis=0)
         sizes = SIZE_LAWS[chosen.size_law](usable.equivalent_radii)
         spectrum = mean_powers / (2 * np.arange(chosen.l_max + 1) + 1)
         plain = HullField(GaussianCopula.of(table), sizes, spectrum, sample.unit)
-        if len(usable) < FEWEST_TO_CHOOSE:
-            return _settled(plain, aim, N_COMPARED)[0]
-        tried = [_settled(replace(plain, faceting=share), aim, N_TRIED) for share in FACETINGS]
-        return _settled(min(tried, key=lambda each: each[1])[0], aim, N_COMPARED)[0]
+        if len(usable) < MIN_TO_CHOOSE:
+            return _calibrated(plain, aim, N_COMPARED)[0]
+        tried = [_calibrated(replace(plain, faceting=share), aim, N_TRIED) for share in FACETINGS]
+        return _calibrated(min(tried, key=lambda each: each[1])[0], aim, N_COMPARED)[0]
 
     def restored(self, values: Mapping[str, Any], _arrays: Mapping[str, NDArray[Any]]) -> HullField:
         """The field from what it stored."""
@@ -215,7 +220,7 @@ class HullFieldModel:
         )
 
 
-def _settled(field: HullField, aim: Aim, n: int) -> tuple[HullField, float]:
+def _calibrated(field: HullField, aim: CalibrationTarget, n: int) -> tuple[HullField, float]:
     """The field after some rounds of correction, and how far from the aim it was in the last."""
     distance = np.inf
     for _ in range(ROUNDS):

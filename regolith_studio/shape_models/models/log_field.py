@@ -15,10 +15,10 @@ from numpy.typing import ArrayLike, NDArray
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
 from regolith_studio.harmonics.coefficients import degrees
-from regolith_studio.shape_models.chunks import CHUNK, DrawnByChunks, chunks
-from regolith_studio.shape_models.draws import Draws
-from regolith_studio.shape_models.log_shapes import directed, log_shapes, sized
+from regolith_studio.shape_models.chunked_sampling import CHUNK, ChunkedSampler, chunks
+from regolith_studio.shape_models.log_radius import directed, log_shapes, sized
 from regolith_studio.shape_models.protocol import SizeRange
+from regolith_studio.shape_models.realizations import Realizations
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.shape_models.size_law import SIZE_LAWS, SizeLaw, checked_bounds, size_law_from
 
@@ -52,7 +52,7 @@ class LogFieldSettings:
 
 
 @dataclass(frozen=True, eq=False)
-class LogField(DrawnByChunks):
+class LogField(ChunkedSampler):
     """The field's numbers.
 
     Parameters
@@ -114,7 +114,7 @@ class LogField(DrawnByChunks):
         """The field with one spectrum for all particles, edited by hand."""
         return replace(self, spectrum=np.asarray(spectrum, dtype=np.float64), powers=None, radii=None)
 
-    def parts(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Draws]:
+    def draw_chunks(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Realizations]:
         """`n` particles; their equivalent radii follow the law of sizes, cut to the range if given.
 
         Raises
@@ -127,7 +127,7 @@ class LogField(DrawnByChunks):
             radii, _ = self.sizes.draw(CHUNK, rng, bounds)
             shapes, parents = self._shapes(radii, rng)
             rows = sized(shapes, radii)[:wanted]
-            yield Draws(rows, "log_radius", KEY, seed, self.unit, parents=parents[:wanted])
+            yield Realizations(rows, "log_radius", KEY, seed, self.unit, parents=parents[:wanted])
 
     def _shapes(self, radii: FloatArray, rng: np.random.Generator) -> tuple[FloatArray, IntArray]:
         """Coefficients of ln r up to size, and the measured particles that lent their spectra."""

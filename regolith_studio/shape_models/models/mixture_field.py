@@ -15,11 +15,16 @@ from numpy.typing import NDArray
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
 from regolith_studio.harmonics.coefficients import degrees
-from regolith_studio.shape_models.chunks import CHUNK, DrawnByChunks, chunks
-from regolith_studio.shape_models.draws import Draws
-from regolith_studio.shape_models.log_shapes import log_shapes, sized
-from regolith_studio.shape_models.mixture import MixtureSettings, NamedParts, chosen_mixture, part_names
+from regolith_studio.shape_models.chunked_sampling import CHUNK, ChunkedSampler, chunks
+from regolith_studio.shape_models.log_radius import log_shapes, sized
+from regolith_studio.shape_models.mixture import (
+    MixtureSettings,
+    NamedComponents,
+    chosen_mixture,
+    component_names,
+)
 from regolith_studio.shape_models.protocol import SizeRange
+from regolith_studio.shape_models.realizations import Realizations
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.shape_models.size_law import LogNormalSizes, checked_bounds
 
@@ -27,7 +32,7 @@ KEY = "mixture_field"
 
 
 @dataclass(frozen=True, eq=False)
-class MixtureField(NamedParts, DrawnByChunks):
+class MixtureField(NamedComponents, ChunkedSampler):
     """The parts, the largest share first.
 
     Parameters
@@ -60,13 +65,13 @@ class MixtureField(NamedParts, DrawnByChunks):
         if not (self.spectra >= 0).all():
             raise InputError("A spectrum needs one variance A_l for each degree, none of them negative.")
         object.__setattr__(self, "bic", tuple(float(value) for value in self.bic))
-        object.__setattr__(self, "names", part_names(self.names, k))
+        object.__setattr__(self, "names", component_names(self.names, k))
 
     def __reduce__(self) -> tuple[Callable[..., "MixtureField"], tuple[Any, ...]]:
         fields = (self.sizes, self.spectra, self.unit, self.bic, self.names, self.labels)
         return MixtureField, fields
 
-    def parts(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Draws]:
+    def draw_chunks(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Realizations]:
         """`n` particles; `components` of the draws tells the part of each.
 
         Raises
@@ -80,7 +85,7 @@ class MixtureField(NamedParts, DrawnByChunks):
             radii, component = self.sizes.draw(CHUNK, rng, bounds)
             scales = np.sqrt(self.spectra[component])[:, degrees(length)]
             rows = sized(rng.standard_normal((CHUNK, length)) * scales, radii)[:wanted]
-            yield Draws(rows, "log_radius", KEY, seed, self.unit, components=component[:wanted])
+            yield Realizations(rows, "log_radius", KEY, seed, self.unit, components=component[:wanted])
 
     def stored(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
         """Plain values for JSON; the labels of the measured particles."""

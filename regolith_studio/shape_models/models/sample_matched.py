@@ -26,13 +26,11 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
 from regolith_studio.harmonics.coefficients import degrees
 from regolith_studio.harmonics.sphere_grid import enclosed_volumes, sphere_grid
-from regolith_studio.shape_models.chunks import CHUNK, DrawnByChunks, chunks
-from regolith_studio.shape_models.draws import Draws
+from regolith_studio.shape_models.chunked_sampling import CHUNK, ChunkedSampler, chunks
+from regolith_studio.shape_models.inertia_ellipsoid import PrincipalAxes, principal_axes
 from regolith_studio.shape_models.linear_maps import Tables, mapped_radii, radius_tables
-from regolith_studio.shape_models.positive import positive_rows
-from regolith_studio.shape_models.principal_axes import PrincipalAxes, principal_axes
 from regolith_studio.shape_models.protocol import SizeRange
-from regolith_studio.shape_models.roughness import roughness_gain
+from regolith_studio.shape_models.realizations import Realizations, positive_rows
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.shape_models.size_law import LogNormalSizes, checked_bounds
 
@@ -43,6 +41,9 @@ N_COMPARED = 2 * CHUNK
 """Particles by which the power of mapped ones is compared with that of measured ones."""
 HALVINGS = 4
 """A mapped particle whose cut has a negative radius is turned by half as much, so often, then not at all."""
+MIN_MATCHED_DEGREE = 3
+"""Degrees below belong to the ellipsoid and are left alone."""
+LIMITS = (0.8, 1.3)
 
 
 @dataclass(frozen=True)
@@ -89,7 +90,7 @@ class SampleMatchedSettings:
 
 
 @dataclass(frozen=True, eq=False)
-class SampleMatched(DrawnByChunks):
+class SampleMatched(ChunkedSampler):
     """The measured particles and how far to leave them.
 
     Parameters
@@ -155,7 +156,7 @@ class SampleMatched(DrawnByChunks):
         mutual = (found[found] == own[:, :, None]).any(axis=2)
         return np.asarray(np.where(mutual, found, own), dtype=np.int64)
 
-    def parts(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Draws]:
+    def draw_chunks(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Realizations]:
         """`n` particles; their equivalent radii are the measured ones blurred, cut to the range if given.
 
         Where nothing was measured in the range, sizes are even in ln r and shapes those nearest in size.
@@ -172,7 +173,7 @@ class SampleMatched(DrawnByChunks):
             forms = self._neighbours[parents, column]
             spins = _spins(rng, self.settings.turn) * self._roundness(parents, forms)[:, None]
             rows = _sized(self._turned(parents, forms, spins), radii)
-            yield Draws(rows[:wanted], "radius", KEY, seed, self.unit, parents=parents[:wanted])
+            yield Realizations(rows[:wanted], "radius", KEY, seed, self.unit, parents=parents[:wanted])
 
     def _roundness(self, parents: IntArray, forms: IntArray) -> FloatArray:
         """Short over long axis of whichever ellipsoid is the longer one, shape (n,)."""
@@ -280,6 +281,29 @@ class SampleMatchedModel:
             str(values["unit"]),
             values["gain"],
         )
+
+
+def roughness_gain(mapped: FloatArray, measured: FloatArray) -> FloatArray:
+    """A factor for each degree with which mapped particles have the mean power of the measured ones.
+
+    Parameters
+    ----------
+    mapped, measured
+        Coefficients of the radii of the same particles, shapes (n, (l_max + 1)^2).
+
+    Returns
+    -------
+    Shape (l_max + 1,); ones for the lowest degrees.
+    """
+    ratio = np.sqrt(_power(measured) / np.maximum(_power(mapped), 1e-300))
+    ratio[:MIN_MATCHED_DEGREE] = 1.0
+    return np.asarray(np.clip(ratio, *LIMITS))
+
+
+def _power(rows: FloatArray) -> FloatArray:
+    """Mean over the particles of the sum of squares at each degree, sizes divided out."""
+    starts = np.arange(round(rows.shape[1] ** 0.5)) ** 2
+    return np.asarray(np.add.reduceat(((rows / rows[:, :1]) ** 2).mean(axis=0), starts))
 
 
 MODEL = SampleMatchedModel()

@@ -7,7 +7,7 @@ from PySide6.QtWidgets import QFileDialog, QWidget
 
 from regolith_studio.errors import RegolithError
 from regolith_studio.readers.shape_files import ShapeSource
-from regolith_studio.shape_models.files import write_model
+from regolith_studio.shape_models.io import write_model
 from regolith_studio.shape_models.materials import MaterialCard, write_card
 from regolith_studio.shape_models.protocol import FittedModel
 from regolith_studio.shape_models.sample import Sample

@@ -26,7 +26,7 @@ from regolith_studio.readers.shape_files import ShapeSource, read_shape_source
 from regolith_studio.session.provenance import VirtualSource
 from regolith_studio.shape_models.protocol import FittedModel
 from regolith_studio.shape_models.sample import Sample
-from regolith_studio.shape_models.spectra import can_be_edited, relative_amplitudes, with_amplitudes
+from regolith_studio.shape_models.spectrum_sliders import can_be_edited, relative_amplitudes, with_amplitudes
 from regolith_studio.ui.following import Following
 from regolith_studio.ui.layout import padded, scrolled_column, side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget

@@ -13,11 +13,11 @@ import numpy as np
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import BoolArray, FloatArray
-from regolith_studio.shape_models.draws import Draws
 from regolith_studio.shape_models.protocol import SizeRange
+from regolith_studio.shape_models.realizations import Realizations
 
 CHUNK = 500
-MOST_ROUNDS = 200
+MAX_ROUNDS = 200
 """Rounds of redrawing in one chunk after which a range of sizes counts as out of reach."""
 
 
@@ -36,11 +36,11 @@ def chunks(n: int, seed: int) -> Iterator[tuple[np.random.Generator, int]]:
         yield np.random.default_rng(sequence), min(CHUNK, n - first)
 
 
-class DrawnByChunks(ABC):
+class ChunkedSampler(ABC):
     """A fitted model that draws chunk by chunk: whoever draws many can tell how far it is, and stop."""
 
     @abstractmethod
-    def parts(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Draws]:
+    def draw_chunks(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Realizations]:
         """The chunks of :meth:`draw`, in order.
 
         Raises
@@ -49,19 +49,19 @@ class DrawnByChunks(ABC):
             If `n` is negative, the range is none, or hardly any draw is acceptable.
         """
 
-    def draw(self, n: int, seed: int, size_range: SizeRange | None = None) -> Draws:
+    def draw(self, n: int, seed: int, size_range: SizeRange | None = None) -> Realizations:
         """`n` particles, in the range of equivalent radii if given.
 
         Raises
         ------
         InputError
-            As :meth:`parts`.
+            As :meth:`draw_chunks`.
         """
-        found = list(self.parts(n, seed, size_range))
-        return joined(found) if found else replace(next(self.parts(1, seed)).chosen([]), rejected=0)
+        found = list(self.draw_chunks(n, seed, size_range))
+        return joined(found) if found else replace(next(self.draw_chunks(1, seed)).chosen([]), rejected=0)
 
 
-def joined(parts: Sequence[Draws]) -> Draws:
+def joined(parts: Sequence[Realizations]) -> Realizations:
     """The chunks, at least one, as one."""
     first = parts[0]
     return replace(
@@ -92,7 +92,7 @@ def accepted(
     """
     kept: list[FloatArray] = []
     count = rejected = 0
-    for _ in range(MOST_ROUNDS):
+    for _ in range(MAX_ROUNDS):
         rows = propose(CHUNK)
         good = np.flatnonzero(acceptable(rows))
         if count + len(good) >= wanted:
@@ -104,6 +104,6 @@ def accepted(
         count += len(good)
         rejected += len(rows) - len(good)
     raise InputError(
-        f"Of {MOST_ROUNDS * CHUNK} particles that the model drew only {count} have a positive radius and the "
+        f"Of {MAX_ROUNDS * CHUNK} particles that the model drew only {count} have a positive radius and the "
         "size asked for: widen the range of sizes, lower l_max, or take a model of log r."
     )

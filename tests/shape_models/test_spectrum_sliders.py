@@ -7,7 +7,7 @@ from regolith_studio.errors import InputError
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.shape_models.models import MODELS
 from regolith_studio.shape_models.sample import Sample
-from regolith_studio.shape_models.spectra import can_be_edited, relative_amplitudes, with_amplitudes
+from regolith_studio.shape_models.spectrum_sliders import can_be_edited, relative_amplitudes, with_amplitudes
 
 
 @pytest.mark.parametrize("key", sorted(MODELS))

@@ -98,7 +98,7 @@ class HullGrid:
 
 
 @kernel
-def _largest(a: float, b: float, c: float, d: float, e: float) -> float:
+def _max_of_five(a: float, b: float, c: float, d: float, e: float) -> float:
     left = a if a > b else b  # noqa: FURB136  vectorised, as below
     right = c if c > d else d  # noqa: FURB136
     both = left if left > right else right  # noqa: FURB136
@@ -134,8 +134,8 @@ def supports(radii: Floats, cosines: Floats, reaches: IntArray, found: Floats) -
                 q0, q1, q2, q3 = radii[q, k0], radii[q, k1], radii[q, k2], radii[q, k3]
                 for j in range(len(mine)):
                     a, b, c, d = c0[j], c1[j], c2[j], c3[j]  # once, before anything is written
-                    mine[j] = _largest(p0 * a, p1 * b, p2 * c, p3 * d, mine[j])
-                    other[j] = _largest(q0 * a, q1 * b, q2 * c, q3 * d, other[j])
+                    mine[j] = _max_of_five(p0 * a, p1 * b, p2 * c, p3 * d, mine[j])
+                    other[j] = _max_of_five(q0 * a, q1 * b, q2 * c, q3 * d, other[j])
 
 
 @lru_cache(maxsize=2)

@@ -5,11 +5,11 @@ from scipy.stats import ks_2samp, wasserstein_distance
 from regolith_studio.errors import InputError
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.rotation import rotated
-from regolith_studio.shape_models.judging import (
+from regolith_studio.shape_models.goodness_of_fit import (
     classifier_accuracy,
     energy_distance,
     kolmogorov_smirnov,
-    novelty,
+    nearest_neighbour_ratio,
     relative_wasserstein,
     resampled_distances,
 )
@@ -91,7 +91,7 @@ def test_that_turned_and_enlarged_copies_are_not_new() -> None:
     matrix = np.linalg.qr(rng.normal(size=(3, 3)))[0]
     matrix *= np.linalg.det(matrix)
     copies = np.stack([3 * rotated(ShCoefficients(row), matrix).values for row in rows])
-    assert novelty(rows, copies).max() < 1e-6
+    assert nearest_neighbour_ratio(rows, copies).max() < 1e-6
     others = rng.normal(size=(30, 25)) * 0.4 * np.maximum(degree, 1.0) ** -2.0
     others[:, 0] = np.sqrt(4 * np.pi)
-    assert np.median(novelty(rows, others)) == pytest.approx(1.0, abs=0.25)
+    assert np.median(nearest_neighbour_ratio(rows, others)) == pytest.approx(1.0, abs=0.25)

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from math import isqrt
 from typing import Any, Literal
 
@@ -9,10 +10,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from regolith_studio.errors import GeometryError
-from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats, locked_integers
+from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray, locked_floats, locked_integers
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.coefficients import ShCoefficients
+from regolith_studio.harmonics.legendre import harmonics
 from regolith_studio.harmonics.sphere_grid import enclosed_volumes, sphere_grid
 from regolith_studio.harmonics.surface import DEFAULT_LEVEL, reconstruct
 from regolith_studio.harmonics.synthesis import icosphere_edges, radii_between, radii_on_icosphere
@@ -20,10 +22,13 @@ from regolith_studio.harmonics.synthesis import icosphere_edges, radii_between, 
 Scale = Literal["radius", "log_radius"]
 EXPONENTIAL_DEGREE = 3
 """Grids for the exponential of an expansion have this many times its degree."""
+SAFE_SHARE = 0.15
+"""Lowest radius on the coarse grid, as a share of the mean, above which no closer look is taken."""
+CLOSE_LEVEL = 5
 
 
 @dataclass(frozen=True, eq=False)
-class Draws:
+class Realizations:
     """Particles drawn from a fitted model.
 
     Parameters
@@ -63,8 +68,8 @@ class Draws:
             values = np.full(len(rows), filler) if given is None else given
             object.__setattr__(self, name, locked_integers(values, (len(rows),), name))
 
-    def __reduce__(self) -> tuple[Callable[..., "Draws"], tuple[Any, ...]]:
-        return Draws, tuple(getattr(self, name) for name in self.__dataclass_fields__)
+    def __reduce__(self) -> tuple[Callable[..., "Realizations"], tuple[Any, ...]]:
+        return Realizations, tuple(getattr(self, name) for name in self.__dataclass_fields__)
 
     def __len__(self) -> int:
         return len(self.coefficients)
@@ -90,7 +95,7 @@ class Draws:
             found[first : first + 1000] = np.cbrt(3 * enclosed_volumes(radii, grid) / (4 * np.pi))
         return found
 
-    def chosen(self, indices: ArrayLike) -> "Draws":
+    def chosen(self, indices: ArrayLike) -> "Realizations":
         """Some of the particles, by index."""
         picks = np.asarray(indices, dtype=np.int64)
         parents, components = np.asarray(self.parents)[picks], np.asarray(self.components)[picks]
@@ -111,7 +116,7 @@ class Draws:
         return ShCoefficients(outer.expanded(np.exp(values.values[None] @ inner.basis))[0])
 
 
-def virtual_mesh(draws: Draws, index: int, level: int = DEFAULT_LEVEL) -> Mesh:
+def virtual_mesh(draws: Realizations, index: int, level: int = DEFAULT_LEVEL) -> Mesh:
     """Closed mesh of one drawn particle on ``icosphere(level)``, with the volume of its smooth surface.
 
     The vertices stand out a little, as in :func:`regolith_studio.harmonics.surface.reconstruct`.
@@ -134,3 +139,36 @@ def virtual_mesh(draws: Draws, index: int, level: int = DEFAULT_LEVEL) -> Mesh:
     grid = sphere_grid(EXPONENTIAL_DEGREE * draws.l_max + 1, draws.l_max)
     volume = enclosed_volumes(np.exp(drawn.values[None] @ grid.basis), grid)[0]
     return Mesh(flat.vertices * np.cbrt(volume / flat.volume), sphere.faces)
+
+
+def positive_rows(coefficients: FloatArray) -> BoolArray:
+    """Whether each radius function, rows of shape (n, (l_max + 1)^2), is positive, shape (n,).
+
+    First on a Gauss-Legendre grid of twice the degree; those that come near zero there are looked at on
+    ``icosphere(5)`` (10,242 directions).
+    """
+    l_max = isqrt(coefficients.shape[1]) - 1
+    grid = sphere_grid(2 * l_max + 1, l_max)
+    lowest = (coefficients @ grid.basis).min(axis=1)
+    positive: BoolArray = (lowest > 0) & (coefficients[:, 0] > 0)
+    mean = coefficients[:, 0] / np.sqrt(4 * np.pi)
+    close = np.flatnonzero(positive & (lowest < SAFE_SHARE * mean))
+    if len(close):
+        positive[close] = (coefficients[close] @ _fine_basis(l_max)).min(axis=1) > 0
+    return positive
+
+
+def acceptable(bounds: tuple[float, float] | None, coefficients: FloatArray) -> BoolArray:
+    """Whether each radius function is positive, and its equivalent radius inside `bounds`, shape (n,)."""
+    good = positive_rows(coefficients)
+    if bounds is not None:
+        l_max = isqrt(coefficients.shape[1]) - 1
+        grid = sphere_grid(3 * l_max // 2 + 1, l_max)
+        sizes = np.cbrt(3 * np.abs(enclosed_volumes(coefficients @ grid.basis, grid)) / (4 * np.pi))
+        good &= (sizes >= bounds[0]) & (sizes <= bounds[1])
+    return good
+
+
+@lru_cache(maxsize=2)
+def _fine_basis(l_max: int) -> FloatArray:
+    return harmonics(icosphere(CLOSE_LEVEL).vertices, l_max)

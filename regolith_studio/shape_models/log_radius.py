@@ -7,7 +7,7 @@ import numpy as np
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.harmonics.coefficients import degrees
 from regolith_studio.harmonics.sphere_grid import enclosed_volumes, sphere_grid
-from regolith_studio.shape_models.draws import EXPONENTIAL_DEGREE
+from regolith_studio.shape_models.realizations import EXPONENTIAL_DEGREE
 from regolith_studio.shape_models.sample import Sample
 
 _BATCH = 500

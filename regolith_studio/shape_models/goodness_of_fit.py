@@ -8,12 +8,12 @@ from scipy.spatial.distance import cdist
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.shape_models.principal_axes import canonical
+from regolith_studio.shape_models.inertia_ellipsoid import canonical
 
 N_FOLDS = 5
 RIDGE = 1e-2
 NEWTON_STEPS = 25
-MOST_FOR_PAIRS = 2000
+MAX_ROWS_FOR_PAIRS = 2000
 """Rows of each table beyond which the quadratic energy distance takes evenly spaced ones."""
 
 
@@ -111,7 +111,7 @@ def classifier_accuracy(measured: FloatArray, drawn: FloatArray, rng: np.random.
     return right / (2 * n)
 
 
-def novelty(measured: FloatArray, drawn: FloatArray) -> FloatArray:
+def nearest_neighbour_ratio(measured: FloatArray, drawn: FloatArray) -> FloatArray:
     """Distance of each drawn particle to the nearest measured one, in units of the sample's own, shape (m,).
 
     Root-mean-square distance of radius functions of size one in the frames of their principal axes; the unit
@@ -123,11 +123,11 @@ def novelty(measured: FloatArray, drawn: FloatArray) -> FloatArray:
     measured, drawn
         Coefficients of radii, shapes (n, k) and (m, k).
     """
-    return novelty_in_frame(canonical(measured), canonical(drawn))
+    return nearest_neighbour_ratio_in_frame(canonical(measured), canonical(drawn))
 
 
-def novelty_in_frame(measured: FloatArray, drawn: FloatArray) -> FloatArray:
-    """As :func:`novelty`, for particles that are already in the frame of :func:`principal_axes.canonical`."""
+def nearest_neighbour_ratio_in_frame(measured: FloatArray, drawn: FloatArray) -> FloatArray:
+    """As :func:`nearest_neighbour_ratio`, of rows by ``canonical``."""
     tree = cKDTree(measured)
     own = np.asarray(tree.query(tree.data, k=[2])[0])
     unit = float(np.median(own))
@@ -141,9 +141,9 @@ def _rising_share(values: FloatArray, weights: FloatArray, places: FloatArray) -
 
 
 def _thinned(table: FloatArray) -> FloatArray:
-    if len(table) <= MOST_FOR_PAIRS:
+    if len(table) <= MAX_ROWS_FOR_PAIRS:
         return table
-    return table[np.linspace(0, len(table) - 1, MOST_FOR_PAIRS).astype(np.int64)]
+    return table[np.linspace(0, len(table) - 1, MAX_ROWS_FOR_PAIRS).astype(np.int64)]
 
 
 def _features(rows: FloatArray) -> FloatArray:
