@@ -64,7 +64,7 @@ def works() -> Mapping[str, tuple[Callable[[Any], object], Start]]:
     return {
         "study of l_max": (_nothing, lambda window, _: window.session.start_study("lmax_study")),
         "study of losses": (_nothing, lambda window, _: window.session.start_study("coarsening_study")),
-        "study of faces": (_nothing, lambda window, _: window.go("studies").desk.start("faces")),
+        "study of faces": (_nothing, lambda window, _: window.go("studies").sweeps.start("faces")),
         "gallery of polyhedra": (_nothing, lambda window, _: window.go("studies").draw_gallery()),
         "annealing, 1,000,000 iterations": (_nothing, _anneal),
         "dataset of the sample": (_nothing, lambda window, to: window.session.export_dataset(to)),
@@ -150,7 +150,7 @@ def _draw(window: Any) -> None:
 
 def _judge(window: Any, _folder: Path) -> None:
     page = window.go("model")
-    page.judgement.setValue({"all_models": True, "splits": 5, "repeats": 5})
+    page.evaluation.setValue({"all_models": True, "splits": 5, "repeats": 5})
     page.judge()
 
 

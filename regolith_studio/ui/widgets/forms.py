@@ -149,8 +149,8 @@ class ParameterForm(QWidget):
 
     valueChanged = Signal()  # noqa: N815
 
-    def __init__(self, kind: type[Any], name: str, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self, kind: type[Any], name: str) -> None:
+        super().__init__()
         self._kind = kind
         self._editors: dict[str, QDoubleSpinBox] = {}
         form = QFormLayout(self)

@@ -33,7 +33,7 @@ MAX_PARTICLES = 6
 """Maximum number of columns."""
 
 
-class PolyhedronGallery(QWidget):
+class GalleryPanel(QWidget):
     """A table of thumbnails that is filled while polyhedra are computed."""
 
     def __init__(self) -> None:

@@ -19,7 +19,7 @@ from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.layout import side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.studies.controller import SweepController
-from regolith_studio.ui.pages.studies.gallery import MAX_PARTICLES, PolyhedronGallery
+from regolith_studio.ui.pages.studies.gallery import MAX_PARTICLES, GalleryPanel
 from regolith_studio.ui.pages.studies.loss_selector import LossSelector
 from regolith_studio.ui.pages.studies.sweep_panel import SweepPanel
 from regolith_studio.ui.panels.coarsening_study import CoarseningStudyPanel
@@ -48,7 +48,7 @@ class StudiesPage(PageWidget):
         wiring = self._context.wiring
         self.lmax_study = LmaxStudyPanel()
         self.coarsening_study = CoarseningStudyPanel()
-        self.gallery, self.bar = PolyhedronGallery(), LossSelector()
+        self.gallery, self.bar = GalleryPanel(), LossSelector()
         self.variations: dict[str, SweepPanel] = {}
         for key in SWEEPS:
             self.variations[key] = SweepPanel(key)

@@ -42,8 +42,8 @@ class Plot(QWidget):
         Shown instead of an empty plot.
     """
 
-    def __init__(self, x: str, y: str, placeholder: str, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self, x: str, y: str, placeholder: str) -> None:
+        super().__init__()
         self.theme: Theme = current_theme()
         self._painted: Theme | None = None
         self._labels = (x, y)

@@ -7,7 +7,6 @@ import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QPointF
 from PySide6.QtGui import QColor
-from PySide6.QtWidgets import QWidget
 
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.ui.translation import tr
@@ -124,15 +123,13 @@ class CurvePlot(Plot):
         Whether the y axis is logarithmic.
     """
 
-    def __init__(
-        self, x: str, y: str, placeholder: str, log_y: bool = False, parent: QWidget | None = None
-    ) -> None:
+    def __init__(self, x: str, y: str, placeholder: str, log_y: bool = False) -> None:
         self._curves: tuple[PlotCurve, ...] = ()
         self._drawn: list[tuple[PlotCurve, CurveItems]] = []
         self._marker: float | None = None
         self._line: pg.InfiniteLine | None = None
         self._log_y = log_y
-        super().__init__(x, y, placeholder, parent)
+        super().__init__(x, y, placeholder)
         self.canvas.setLogMode(x=False, y=log_y)
         self.canvas.getAxis("left").logTickStrings = _plain_decades
 
